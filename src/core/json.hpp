@@ -11,9 +11,9 @@
 
 namespace weft {
 
-/// Throws std::exception if the text is no JSON, nests too deep (nlohmann::json copies, compares and writes
-/// recursively), or has too many keys in its objects (nlohmann::ordered_json compares each key with all keys before it
-/// in its object).
+/// Throws std::exception if the text is no JSON, nests too deep, or has too many keys in its objects: nlohmann::json
+/// copies, compares and writes recursively, and nlohmann::ordered_json compares each key with all earlier keys of its
+/// object.
 template <class Json = nlohmann::ordered_json>
 Json parse_json(std::string_view text);
 

@@ -40,7 +40,7 @@ void print(State& s, std::string_view text) {
   }
 }
 
-/// Passes a text to the handler. Without one, prints and keeps it if the list does not contain it yet.
+/// Passes a text to the handler. Without a handler, prints and keeps the text unless the list contains it already.
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
   std::unique_lock lock(s.mutex);

@@ -13,7 +13,7 @@ std::int64_t peak_memory_bytes() {
   return static_cast<std::int64_t>(usage.ru_maxrss) * 1024;  // ru_maxrss is in KiB on Linux
 }
 
-std::int64_t memory_bytes() {
+std::int64_t resident_bytes() {
   std::ifstream pages("/proc/self/statm");
   std::int64_t all = 0, resident = 0;
   pages >> all >> resident;

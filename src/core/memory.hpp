@@ -9,6 +9,6 @@ namespace weft {
 std::int64_t peak_memory_bytes();
 
 /// Current resident memory [bytes].
-std::int64_t memory_bytes();
+std::int64_t resident_bytes();
 
 }  // namespace weft

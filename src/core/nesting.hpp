@@ -10,8 +10,9 @@ namespace weft {
 inline constexpr int kMaxDepth = 128;
 
 /// Whether TOML or JSON text nests deeper than kMaxDepth. Behind the first mistake of a text, where the parser stops,
-/// the result is arbitrary. A TOML document that passes is at most about three times as deep as kMaxDepth: a key counts
-/// without the header above it, and each component of that header may be a list of tables, which has two levels.
+/// the result is arbitrary. A TOML document that passes is at most about three times as deep as kMaxDepth, for two
+/// reasons. A key counts without the header above it. Each component of a header may be a list of tables, which has two
+/// levels.
 bool nests_too_deep(std::string_view text);
 
 }  // namespace weft

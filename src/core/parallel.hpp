@@ -39,7 +39,7 @@ class CountedLoop {
  public:
   explicit CountedLoop(std::size_t chunks) : chunks_(chunks), counts_(chunks > 1 ? counted_loops : nullptr) {
     if (counts_ == nullptr) return;
-    counted_loops = nullptr;  // for loops inside of this one
+    counted_loops = nullptr;  // loops inside of this one do not count
     timer_.restart();
   }
   ~CountedLoop() {

@@ -31,7 +31,7 @@ class RemainingTime {
   void sample(double seconds, const StageCounts& done);
 
   /// Seconds left: those of the slowest stage, because stages overlap. Stages without a frame in the last half minute
-  /// have no known pace; returns nothing if no stage that has frames left has one. 0 if all frames are done.
+  /// have no known pace; returns nothing if no stage with frames left has a known pace. 0 if all frames are done.
   std::optional<double> seconds() const;
 
  private:

@@ -149,8 +149,8 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
 
 TemporaryName::~TemporaryName() {
   const fs::path path = path_;
-  // unlink() removes a file without a new descriptor, as none may be left; remove_all() needs some for a folder, so
-  // release() closes one first.
+  // No file descriptor may be left. unlink() needs none; remove_all() needs some for a folder, so release() closes one
+  // first.
   const bool removed = path.empty() || ::unlink(path.c_str()) == 0;
   release();
   std::error_code ignored;

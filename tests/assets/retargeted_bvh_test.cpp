@@ -187,7 +187,7 @@ TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) 
   vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), std::vector<double>(bones.size(), 0)));
   const auto joints = character::find_joints(body_);
   const character::Skeleton skeleton({body_, joints});
-  EXPECT_TRUE(result_.doubts.empty()) << result_.doubts.front();
+  EXPECT_TRUE(result_.warnings.empty()) << result_.warnings.front();
   for (int key = 0; key < kKeys; ++key) {
     std::vector<Quat> turned;
     for (const Bone& bone : bones)
@@ -210,7 +210,7 @@ TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) 
       const Vec3 thigh = skeleton.bone(posture, on_side(Joint::left_upper_leg, right));
       const Vec3 shin = skeleton.bone(posture, on_side(Joint::left_lower_leg, right));
       const Vec3 left =
-          posture.places[place_of(Joint::left_upper_leg)] - posture.places[place_of(Joint::right_upper_leg)];
+          posture.places[joint_index(Joint::left_upper_leg)] - posture.places[joint_index(Joint::right_upper_leg)];
       EXPECT_GT(thigh.cross(shin).dot(left), 0) << key;
     }
   }

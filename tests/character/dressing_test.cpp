@@ -59,14 +59,14 @@ TEST(Dressing, RaisesStraightArmsAndLeavesTheRest) {
   const Skeleton skeleton({body, joints});
   Pose bent = rest_pose(body);
   for (const Joint elbow : {Joint::left_lower_arm, Joint::right_lower_arm})
-    bent.nodes[static_cast<std::size_t>(joints[place_of(elbow)])].rotation =
+    bent.nodes[static_cast<std::size_t>(joints[joint_index(elbow)])].rotation =
         Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
   const Posture rest = skeleton.at(bent);
   for (const double degrees : {0.0, 30.0, 90.0}) {
     const Posture raised = skeleton.at(raise_arms({body, joints}, bent, degrees, kUp));
     const double angle = degrees * std::acos(0.0) / 90;
     for (const bool right : {false, true}) {
-      const auto place = [&](Joint left) { return raised.places[place_of(on_side(left, right))]; };
+      const auto place = [&](Joint left) { return raised.places[joint_index(on_side(left, right))]; };
       const Vec3 arm = place(Joint::left_hand) - place(Joint::left_upper_arm);
       // The body faces -y: its left is at +x.
       const Vec3 expected((right ? -1 : 1) * std::sin(angle), 0, -std::cos(angle));
@@ -77,7 +77,7 @@ TEST(Dressing, RaisesStraightArmsAndLeavesTheRest) {
           << "straight";
     }
     for (const Joint still : {Joint::hips, Joint::head, Joint::left_foot, Joint::left_upper_arm})
-      EXPECT_LT((raised.places[place_of(still)] - rest.places[place_of(still)]).norm(), 1e-12);
+      EXPECT_LT((raised.places[joint_index(still)] - rest.places[joint_index(still)]).norm(), 1e-12);
   }
 }
 
@@ -153,7 +153,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
     if (after[v].z() > 1.5) {
       EXPECT_LT((after[v] - before[v]).norm(), 1e-3) << "head";
     }
-    if (limbs[v] != Limb::left_arm || after[v].z() > posture.places[place_of(Joint::left_lower_arm)].z()) continue;
+    if (limbs[v] != Limb::left_arm || after[v].z() > posture.places[joint_index(Joint::left_lower_arm)].z()) continue;
     for (std::size_t w = 0; w < after.size(); ++w)
       if (limbs[w] == Limb::trunk) least = std::min(least, (after[v] - after[w]).norm());
   }
@@ -164,7 +164,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
 // A crease is a fold in the skin of one body: making clearance does not open it and adds no crossings.
 TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   Pose pose = rest_pose(body_);
-  const Index thigh = joints_[place_of(Joint::left_upper_leg)];
+  const Index thigh = joints_[joint_index(Joint::left_upper_leg)];
   const Quat above(global_transforms(body_, pose)[body_.nodes[thigh].parent].linear());
   const Quat turn(Eigen::AngleAxisd(-75 * kDegree, above.conjugate() * Vec3::UnitX()));
   pose.nodes[thigh].rotation = (turn * pose.nodes[thigh].rotation).normalized();
@@ -252,7 +252,7 @@ Character leg_above_wall() {
 TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
   const Character body = leg_above_wall();
   std::vector<Index> joints(kJointCount, -1);
-  joints[place_of(Joint::hips)] = 0, joints[place_of(Joint::left_upper_leg)] = 1;
+  joints[joint_index(Joint::hips)] = 0, joints[joint_index(Joint::left_upper_leg)] = 1;
   Pose pose = rest_pose(body);
   pose.nodes[1].position.z() = 0.3454;  // 4.2 mm of the clearance of 10 mm are missing
   std::vector<Vec3> x(body.mesh.positions.size());
@@ -269,7 +269,7 @@ TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
 TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   for (const bool right : {false, true}) {
-    const Index arm = joints_[place_of(on_side(Joint::left_upper_arm, right))];
+    const Index arm = joints_[joint_index(on_side(Joint::left_upper_arm, right))];
     // Both arms are turned 20 degrees into the trunk.
     const Quat above(global_transforms(body_, pose)[body_.nodes[arm].parent].linear());
     const Quat turn(Eigen::AngleAxisd((right ? -20 : 20) * kDegree, above.conjugate() * Vec3::UnitY()));

@@ -244,9 +244,9 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   add("RightShoulder", add("RightCollar", last));
   for (const char* leg : {"LeftHip", "RightHip"}) add(leg, 0);
   auto found = find_named_joints(nodes);
-  EXPECT_EQ(found[place_of(Joint::hips)], 0);
-  EXPECT_EQ(found[place_of(Joint::spine)], 2);
-  EXPECT_EQ(found[place_of(Joint::chest)], 4);
+  EXPECT_EQ(found[joint_index(Joint::hips)], 0);
+  EXPECT_EQ(found[joint_index(Joint::spine)], 2);
+  EXPECT_EQ(found[joint_index(Joint::chest)], 4);
   // As in Character Creator and Rigify: the legs are children of a pelvis beside the spine; no node is called hips.
   nodes.clear();
   const Index hip = add("CC_Base_Hip", add("root", -1)), pelvis = add("CC_Base_Pelvis", hip);
@@ -254,10 +254,10 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   for (const char* leg : {"CC_Base_L_Thigh", "CC_Base_R_Thigh"}) add(leg, pelvis);
   for (const char* arm : {"CC_Base_L_Upperarm", "CC_Base_R_Upperarm"}) add(arm, last);
   found = find_named_joints(nodes);
-  EXPECT_EQ(found[place_of(Joint::hips)], hip);
-  ASSERT_GE(found[place_of(Joint::spine)], 0);
-  EXPECT_EQ(nodes[found[place_of(Joint::spine)]].name, "CC_Base_Waist");
-  EXPECT_EQ(found[place_of(Joint::chest)], last);
+  EXPECT_EQ(found[joint_index(Joint::hips)], hip);
+  ASSERT_GE(found[joint_index(Joint::spine)], 0);
+  EXPECT_EQ(nodes[found[joint_index(Joint::spine)]].name, "CC_Base_Waist");
+  EXPECT_EQ(found[joint_index(Joint::chest)], last);
 }
 
 TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
@@ -277,7 +277,7 @@ TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
   add("DEF-spine.006", add("DEF-spine.005", add("DEF-spine.004", last)));
   auto found = find_named_joints(nodes);
   const auto name_of = [&](Joint joint) {
-    return found[place_of(joint)] < 0 ? "" : nodes[found[place_of(joint)]].name;
+    return found[joint_index(joint)] < 0 ? "" : nodes[found[joint_index(joint)]].name;
   };
   EXPECT_EQ(name_of(Joint::hips), "DEF-spine");
   EXPECT_EQ(name_of(Joint::spine), "DEF-spine.001");
@@ -368,7 +368,7 @@ TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons)
     for (const std::string& name : names) body.nodes.push_back({name, 0, Affine::Identity()});
     const std::vector<Index> found = find_joints(body);
     for (std::size_t k = 1; k < joints.size(); ++k)
-      EXPECT_EQ(found[place_of(joints[k])], static_cast<Index>(k + 1)) << names[k];
+      EXPECT_EQ(found[joint_index(joints[k])], static_cast<Index>(k + 1)) << names[k];
   }
 }
 
@@ -378,9 +378,10 @@ Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>&
   const auto joints = find_joints(body);
   const auto at = global_transforms(body, rest_pose(body));
   for (const bool right : {false, true}) {
-    Quat above = to_placement(at[body.nodes[joints[place_of(on_side(Joint::left_upper_arm, right))]].parent]).rotation;
+    Quat above =
+        to_placement(at[body.nodes[joints[joint_index(on_side(Joint::left_upper_arm, right))]].parent]).rotation;
     for (std::size_t k = 0; k < 2; ++k) {
-      const std::size_t joint = place_of(on_side(Joint::left_upper_arm, right)) + k;
+      const std::size_t joint = joint_index(on_side(Joint::left_upper_arm, right)) + k;
       const Vec3 bone = at[joints[joint + 1]].translation() - at[joints[joint]].translation();
       const Quat turned = Quat::FromTwoVectors(bone, directions[right][k]) * to_placement(at[joints[joint]]).rotation;
       Channel channel;
@@ -400,17 +401,17 @@ TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
   Character motion = body;
   const auto joints = find_joints(body);
   for (const bool right : {false, true})
-    motion.nodes[joints[place_of(on_side(Joint::left_hand, right))]].local.translation() *= 1.4;
+    motion.nodes[joints[joint_index(on_side(Joint::left_hand, right))]].local.translation() *= 1.4;
   const auto way = [](double x, double y, double z) { return Vec3(x, y, z).normalized(); };
   const Clip clip =
       arms_along(motion, {{{way(0.1, -0.6, -0.8), way(-0.42, -0.9, 0)}, {way(-0.1, -0.6, -0.8), way(0.42, -0.9, 0)}}});
   const auto hand_difference = [&](const Character& of, const Clip& by) {
     const auto at = global_transforms(of, pose_at(of, by, 0.5));
-    const auto hand = [&](Joint joint) -> Vec3 { return at[joints[place_of(joint)]].translation(); };
+    const auto hand = [&](Joint joint) -> Vec3 { return at[joints[joint_index(joint)]].translation(); };
     return Vec3(hand(Joint::left_hand) - hand(Joint::right_hand));
   };
   const auto arm = [&](const Character& of) {
-    const auto length = [&](Joint joint) { return of.nodes[joints[place_of(joint)]].local.translation().norm(); };
+    const auto length = [&](Joint joint) { return of.nodes[joints[joint_index(joint)]].local.translation().norm(); };
     return length(Joint::left_lower_arm) + length(Joint::left_hand);
   };
   ASSERT_LT(hand_difference(motion, clip).norm(), 0.24 * arm(motion)) << "they are together";
@@ -426,8 +427,8 @@ TEST(Retarget, DoubtsWhatNoBodyDoes) {
   const Character body = sticks(1, 30, 0, kOwnFrame);
   const auto ours = find_joints(body), theirs = find_joints(motion);
   const Retargeted result = retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ());
-  ASSERT_EQ(result.doubts.size(), 1u);
-  EXPECT_EQ(result.doubts[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
+  ASSERT_EQ(result.warnings.size(), 1u);
+  EXPECT_EQ(result.warnings[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
 }
 
 // A horizontal trunk along -y, on four legs of 0.5 m.
@@ -446,24 +447,24 @@ TEST(Retarget, NamesTheMotionOfAnAnimalWithFourLegs) {
   const Character motion = b.body;
   const Character body = sticks(1, 30, 0, kOwnFrame);
   const auto ours = find_joints(body), theirs = find_joints(motion);
-  const auto doubts = retarget({body, ours}, {motion, theirs}, waving(motion, {0, -1, 0}), Vec3::UnitZ()).doubts;
-  EXPECT_TRUE(std::ranges::any_of(doubts, [](const std::string& text) {
+  const auto warnings = retarget({body, ours}, {motion, theirs}, waving(motion, {0, -1, 0}), Vec3::UnitZ()).warnings;
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& text) {
     return text.find("on all fours in 100 % of its time, as animals with four legs do") != std::string::npos;
-  })) << fmt::format("{}", fmt::join(doubts, "; "));
+  })) << fmt::format("{}", fmt::join(warnings, "; "));
 }
 
 TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {
   const Character motion = sticks(1, 0, 0, Quat::Identity());
   Character body = sticks(1, 30, 0, kOwnFrame);
   const auto ours = find_joints(body), theirs = find_joints(motion);
-  const auto doubts = [&] {
-    return retarget({body, ours}, {motion, theirs}, waving(motion, Vec3::Zero()), Vec3::UnitZ()).doubts;
+  const auto warnings = [&] {
+    return retarget({body, ours}, {motion, theirs}, waving(motion, Vec3::Zero()), Vec3::UnitZ()).warnings;
   };
-  EXPECT_TRUE(doubts().empty());
-  Node& shin = body.nodes[ours[place_of(Joint::left_lower_leg)]];
+  EXPECT_TRUE(warnings().empty());
+  Node& shin = body.nodes[ours[joint_index(Joint::left_lower_leg)]];
   shin.local.rotate(kOwnFrame.conjugate() * about(Vec3::UnitX(), 60) * kOwnFrame);
-  ASSERT_EQ(doubts().size(), 1u);
-  EXPECT_NE(doubts()[0].find("a knee bent by 60°"), std::string::npos) << doubts()[0];
+  ASSERT_EQ(warnings().size(), 1u);
+  EXPECT_NE(warnings()[0].find("a knee bent by 60°"), std::string::npos) << warnings()[0];
 }
 
 // In the motion, the node of the hips is a control 0.4 m higher, above the start of the spine.
@@ -473,7 +474,7 @@ TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   const Character body = motion;
   motion.nodes[joints[0]].local.pretranslate(Vec3(0, 0, 0.4));
   for (const Joint joint : {Joint::spine, Joint::left_upper_leg, Joint::right_upper_leg})
-    motion.nodes[joints[place_of(joint)]].local.pretranslate(Vec3(0, 0, -0.4));
+    motion.nodes[joints[joint_index(joint)]].local.pretranslate(Vec3(0, 0, -0.4));
   Clip clip{"lean", 1, {}, {}};  // too far for a standing body
   Channel lean;
   lean.node = joints[0];
@@ -481,7 +482,7 @@ TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   clip.channels.push_back(lean);
   const Retargeted result = retarget({body, joints}, {motion, joints}, clip, Vec3::UnitZ());
   const auto at = global_transforms(body, pose_at(body, result.clip, 0.5));
-  const auto place = [&](Joint joint) -> Vec3 { return at[joints[place_of(joint)]].translation(); };
+  const auto place = [&](Joint joint) -> Vec3 { return at[joints[joint_index(joint)]].translation(); };
   EXPECT_GT(to_placement(at[joints[0]]).rotation.toRotationMatrix()(2, 2), 0.7) << "hips";
   EXPECT_GT(place(Joint::head).z() - place(Joint::hips).z(), 0.4);
 }

@@ -17,7 +17,7 @@ Places standing(const Vec3& left_hand, const Vec3& right_hand) {
   places.fill(Vec3::Zero());
   for (const bool right : {false, true}) {
     const double side = right ? -1 : 1;
-    const auto at = [&](Joint left) -> Vec3& { return places[place_of(on_side(left, right))]; };
+    const auto at = [&](Joint left) -> Vec3& { return places[joint_index(on_side(left, right))]; };
     at(Joint::left_upper_leg) = {0.1 * side, 0, 0.9};
     at(Joint::left_upper_arm) = {0.18 * side, 0, 1.4};
     at(Joint::left_lower_arm) = {0.35 * side, 0.02, 1.15};
@@ -33,7 +33,7 @@ std::array<bool, kJointCount> all() {
 }
 
 std::size_t hand(bool right) {
-  return place_of(on_side(Joint::left_hand, right));
+  return joint_index(on_side(Joint::left_hand, right));
 }
 
 const Proportions kLarger{1.2, 1.1, 0.55};
@@ -60,7 +60,7 @@ TEST(Touching, AHandOnTheHipStaysThereIfItRestsAndItsArmIsBent) {
   EXPECT_LT((ours[hand(false)] + rests[0] - (middle + 1.1 * (on_hip - middle))).norm(), kRoundingOfPlaces);
   EXPECT_EQ(displace_hands(theirs, ours, all(), kLarger, {0, 0})[0], Vec3(Vec3::Zero())) << "it passes";
   Places hanging = theirs;
-  hanging[place_of(Joint::left_lower_arm)] = 0.5 * (hanging[place_of(Joint::left_upper_arm)] + on_hip);
+  hanging[joint_index(Joint::left_lower_arm)] = 0.5 * (hanging[joint_index(Joint::left_upper_arm)] + on_hip);
   EXPECT_EQ(displace_hands(hanging, ours, all(), kLarger, {1, 0})[0], Vec3(Vec3::Zero())) << "it hangs";
 }
 
@@ -79,7 +79,7 @@ TEST(Touching, ComesAndGoesWithoutAJump) {
 
 TEST(Touching, WithoutAnElbowAnArmDoesNotMove) {
   auto both = all();
-  both[place_of(Joint::left_lower_arm)] = false;
+  both[joint_index(Joint::left_lower_arm)] = false;
   const Places theirs = standing({0.04, -0.4, 1.2}, {-0.04, -0.4, 1.2}), ours = standing({0.2, 0, 1}, {-0.2, 0, 1});
   const auto pull = displace_hands(theirs, ours, both, kLarger, {0, 0});
   EXPECT_EQ(pull[0], Vec3(Vec3::Zero()));

@@ -33,7 +33,7 @@ class Travel : public testing::Test {
     for (const bool right : {false, true})
       for (const Contact& contact : steps.contacts[right])
         for (std::size_t k = contact.first; k <= contact.last; ++k) {
-          const std::size_t ball = place_of(on_side(Joint::left_toes, right));
+          const std::size_t ball = joint_index(on_side(Joint::left_toes, right));
           slip = std::max(slip, (at[k].places[ball] - at[contact.first].places[ball]).norm());
         }
     return slip;

@@ -72,7 +72,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   const double rate = 50;
   Air air(kGrid, 0, {kRho, Vec3(1, 2, 0), kDrag});
   std::vector<std::pair<Index, Index>> pairs;
-  air.couple(pairs);
+  air.append_couplings(pairs);
   solver::BlockMatrix matrix(kGrid.size(), pairs);
   solver::Assembly assembly(matrix);
   air.attach(assembly);

@@ -59,7 +59,7 @@ TEST(Cord, KeepsItsBendingStiffnessWhereKeysMakeItShorter) {
   Cord cord(even_pieces(), false, 0, {.bend = 3e-4});
   EXPECT_TRUE(cord.set_length_ratio(0.4));
   EXPECT_FALSE(cord.set_length_ratio(0.4));
-  cord.hold(std::vector<char>(kPieces + 1, 0));
+  cord.set_held(std::vector<char>(kPieces + 1, 0));
   const double length = 0.4 * kLength, expected = 0.5 * 3e-4 * (length - length / kPieces) / (0.1 * 0.1);
   EXPECT_NEAR(cord.energy(arc(0.1, length)) / expected, 1, 1.1e-4);
 }

@@ -246,7 +246,7 @@ TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
   const auto force = GetParam().make(kStiffness, 5);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 1), v = testing::random_vectors(x.size(), 1, 2);
   std::vector<std::pair<Index, Index>> pairs;
-  force->couple(pairs);
+  force->append_couplings(pairs);
   solver::BlockMatrix matrix(GetParam().grid.size(), pairs);
   solver::Assembly assembly(matrix);
   force->attach(assembly);

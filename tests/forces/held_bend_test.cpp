@@ -41,7 +41,7 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
       held.push_back(s < clamp + 1e-9);
       return Vec3(u, v, in_front(s, clamp));
     });
-    bend.hold(held);
+    bend.set_held(held);
     // Area of the bent part: the free sheet, less half a spacing at its end, which is flat.
     const double area = (end - clamp - (along_weft ? grid.width_u(8) : grid.width_v(8))) * across;
     const double expected = 0.5 * kRigidity * kCurvature * kCurvature * area;
@@ -103,11 +103,11 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
   const TriangleBend never(clamp.sheet, 0, {kRigidity, 1e-5});
   const double held = clamp.bend.energy(clamp.x);
   const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0);
-  clamp.bend.hold(clamp.none);
+  clamp.bend.set_held(clamp.none);
   EXPECT_GT(held, 1.05 * clamp.bend.energy(clamp.x));
   // Equal up to weights of rounding size, which the program drops only from stencils away from pins.
   EXPECT_NEAR(clamp.bend.energy(clamp.x), never.energy(clamp.x), 1e-12 * held);
-  clamp.bend.hold(clamp.held);
+  clamp.bend.set_held(clamp.held);
   EXPECT_EQ(clamp.bend.energy(clamp.x), held);
   EXPECT_EQ(testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0), stiff);
 
@@ -118,9 +118,9 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
     for (int i = 0; i < grid.nu; ++i) two_columns.push_back(i < 2);
   Bend quads(grid, 0, {kRigidity, 0});
   const double free = quads.energy(x);
-  quads.hold(two_columns);
+  quads.set_held(two_columns);
   EXPECT_GT(quads.energy(x), 1.05 * free);
-  quads.hold(std::vector<char>(x.size()));
+  quads.set_held(std::vector<char>(x.size()));
   EXPECT_EQ(quads.energy(x), free);
 }
 
@@ -134,7 +134,7 @@ TEST(HeldBend, OneRowOrOneCornerIsAHinge) {
       for (int i = 0; i < grid.nu; ++i) held.push_back(i == 0 && (j == 0 || !corner));
     Bend quads(grid, 0, {kRigidity, 0});
     const double free = quads.energy(x);
-    quads.hold(held);
+    quads.set_held(held);
     EXPECT_EQ(quads.energy(x), free);
 
     std::vector<char> of_crossed;
@@ -155,7 +155,7 @@ TEST(HeldBend, CurvedRestShapeHasNoForceWhereItIsClamped) {
   const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
   TriangleBend bend(sheet, 0, {kRigidity, 0}, held_up_to(mesh.uv, 0.05));
   for (const bool let_go : {false, true}) {
-    if (let_go) bend.hold(std::vector<char>(sheet.rest.size()));
+    if (let_go) bend.set_held(std::vector<char>(sheet.rest.size()));
     // B / l² = 1 N/m times coordinates of metres rounded by 4e-16 m.
     EXPECT_LT(testing::largest(testing::force_of(bend, sheet.rest, testing::zeros(sheet.rest))), 1e-13);
   }

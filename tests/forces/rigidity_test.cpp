@@ -129,7 +129,7 @@ TEST(Rigidity, IsLinearisedAsItChanges) {
   const mesh::RigidFrame frame = plate();
   Rigidity rigidity(frame, 0, kMass, kStiffness);
   solver::BlockMatrix::Couplings couplings;
-  rigidity.couple(couplings);
+  rigidity.append_couplings(couplings);
   solver::BlockMatrix matrix(4, std::move(couplings), {});
   solver::Assembly assembly(matrix);
   rigidity.attach(assembly);

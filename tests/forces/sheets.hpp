@@ -105,7 +105,7 @@ inline Eigen::MatrixXd dense(const solver::BlockMatrix& matrix) {
 /// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, including its constant part.
 inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
-  force.couple(pairs);
+  force.append_couplings(pairs);
   solver::BlockMatrix matrix(static_cast<Index>(x.size()), pairs);
   solver::Assembly assembly(matrix);
   force.attach(assembly);
@@ -122,13 +122,13 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
 /// evaluating all at once, and that each range writes only its own.
 inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
-  force.couple(pairs);
+  force.append_couplings(pairs);
   const auto count = static_cast<Index>(x.size());
   solver::BlockMatrix at_once(count, pairs), in_ranges = at_once;
   solver::Assembly assembly(at_once);
   force.attach(assembly);
   const std::vector<Index> bounds{0, 1, count / 3, count / 2 + 1, count};
-  force.cut(bounds);
+  force.partition(bounds);
   Place all(x, v), parts(x, v);
   Evaluation at = all.evaluation(rate);
   at.assembly = assembly;
@@ -155,7 +155,7 @@ inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const P
 /// −(∂f/∂x + rate ∂f/∂v) as in stiffness_of(), but exact: not projected to a definite matrix.
 inline Eigen::MatrixXd jacobian_of(const Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
-  force.couple(pairs);
+  force.append_couplings(pairs);
   solver::BlockMatrix matrix(static_cast<Index>(x.size()), pairs);
   force.add_jacobian(x, v, rate, matrix);
   return dense(matrix);

@@ -151,7 +151,7 @@ TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
   EXPECT_LT(tries, 200);
   // If no step meets the tolerance, the shortest step is accepted.
   const auto wall = [&](double t, double h) { return t <= 0.5 && t + h > 0.5 ? 1 : 5 * h * h; };
-  EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), numerics.steps.least);
+  EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), numerics.steps.min_step);
 }
 
 TEST(StepControl, DoesNotGrowAtOnceAfterAStepWasDoneAgain) {

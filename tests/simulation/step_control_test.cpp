@@ -169,9 +169,9 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   const auto at = text.find("down to h = ");
   ASSERT_NE(at, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + at, "down to h = %lf", &h), 1);
-  EXPECT_LT(h, numerics.steps.least);
+  EXPECT_LT(h, numerics.steps.min_step);
   // Each length is at least a fifth of the previous one.
-  EXPECT_GE(h, 0.2 * numerics.steps.least);
+  EXPECT_GE(h, 0.2 * numerics.steps.min_step);
 }
 
 // A sheet on a block hangs down over its edges; two steps per frame.

@@ -188,7 +188,7 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
 TEST_F(StepProblems, FollowLoadsOfContactsThatAreOthersWithinAStep) {
   StepProblem problem = this->problem();
   for (int update = 0; update < 25; ++update) linearise(problem, moved(0, 0.01));
-  EXPECT_GE(problem.memory().contacts.updates, numerics.newton.patience);
+  EXPECT_GE(problem.memory().contacts.updates, numerics.newton.slow_after);
   problem.limit_friction_updates();
   linearise(problem, x_);
   const double load = problem.memory().contacts.normal_forces[0];

@@ -1,4 +1,4 @@
-// The seed's own contact response in scenes: velocities prescribed in the solver (Eq. (4)).
+// The contact response of Etzmuß et al. (2001) in scenes: velocities prescribed in the solver (Eq. (4)).
 #include <gtest/gtest.h>
 
 #include <cmath>

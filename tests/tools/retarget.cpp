@@ -63,7 +63,7 @@ double lowest(const Rig& body, const Pose& pose) {
 
 /// Mean horizontal position of the vertices that a joint moves [m].
 Vec3 middle_of_skin(const Rig& body, Joint joint, const Pose& pose) {
-  const VertexMask mask = vertices_below(body.character, body.joints[place_of(joint)]);
+  const VertexMask mask = vertices_below(body.character, body.joints[joint_index(joint)]);
   std::vector<Vec3> x(mask.size());
   skin(body.character, pose, x);
   Vec3 sum = Vec3::Zero();
@@ -100,7 +100,7 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   std::vector<bool> standing(times.size(), false);
   const double ratio = a.leg_length(at.front()) / b.leg_length(from.front());
   const auto level_way = [](const std::vector<Posture>& postures, Joint joint, std::size_t k0, std::size_t k1) {
-    const Vec3 displacement = postures[k1].places[place_of(joint)] - postures[k0].places[place_of(joint)];
+    const Vec3 displacement = postures[k1].places[joint_index(joint)] - postures[k0].places[joint_index(joint)];
     return (displacement - displacement.dot(kUp) * kUp).norm();
   };
   for (const bool right : {false, true}) {
@@ -173,7 +173,7 @@ void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const
     }
     const double arm = b.arm_length(q);
     const auto hand = [](const Posture& at, bool right) -> Vec3 {
-      return at.places[place_of(on_side(Joint::left_hand, right))];
+      return at.places[joint_index(on_side(Joint::left_hand, right))];
     };
     const Vec3 apart = hand(q, false) - hand(q, true);
     if (apart.norm() < kTogether * arm) {
@@ -286,7 +286,7 @@ void report(const Character& body, const std::string& file, bool nameless) {
       short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes,
       1e3 * f.theirs, f.angle, f.bone.c_str(), f.arm, f.trunk, f.trunk_when, 1e3 * f.hands, f.hands_keys, 1e3 * f.hips,
       f.hips_keys, seconds, missing.empty() ? "" : (" without" + missing).c_str());
-  for (const std::string& warning : result.doubts) std::printf("    %s\n", warning.c_str());
+  for (const std::string& warning : result.warnings) std::printf("    %s\n", warning.c_str());
   report_ranges({body, ours}, {motion.character, theirs}, clip, result.clip);
   if (nameless) report_without_names(body, motion.character, result.clip);
 }

@@ -47,9 +47,9 @@ class ClothModel {
           std::make_unique<forces::TriangleBend>(cloth.sheet, 0, forces::BendParameters{m.bend, 0, 0}, held_));
     }
     std::vector<std::pair<Index, Index>> pairs;
-    for (const auto& force : forces_) force->couple(pairs);
+    for (const auto& force : forces_) force->append_couplings(pairs);
     matrix_ = solver::BlockMatrix(static_cast<Index>(x.size()), pairs);
-    for (const auto& force : forces_) force->hold(held_);
+    for (const auto& force : forces_) force->set_held(held_);
   }
 
   /// Indices 3 i + axis of the coordinates of unpinned particles along these axes.

@@ -68,7 +68,7 @@ class Statics {
   Statics(const Sample& sample, int first_axis, int axes)
       : first_axis_(first_axis), axes_(axes), values_(Eigen::VectorXd::Zero(axes * size(sample))), held_(size(sample)) {
     std::vector<std::pair<Index, Index>> pairs;
-    for (const auto& force : sample.forces) force->couple(pairs);
+    for (const auto& force : sample.forces) force->append_couplings(pairs);
     solver::BlockMatrix matrix(static_cast<Index>(sample.areas.size()), pairs);
     const std::vector<Vec3> zero(sample.mesh.positions.size(), Vec3::Zero());
     for (const auto& force : sample.forces) force->add_jacobian(sample.mesh.positions, zero, 0, matrix);
@@ -174,7 +174,7 @@ double plate_error(const Make& make, int cells, bool along_u, bool along_v) {
 /// Error of a plate held flat up to `clamp` along weft, under an even load: its compliance relative to that of a beam
 /// clamped there, less one. `held` has an entry per particle.
 double cantilever_error(const Sample& sample, double clamp, const std::vector<char>& held) {
-  for (const auto& force : sample.forces) force->hold(held);
+  for (const auto& force : sample.forces) force->set_held(held);
   Statics statics(sample, 2, 1);
   const double length = 1 - clamp;
   std::vector<Vec3> loads, exact;

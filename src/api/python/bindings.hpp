@@ -17,6 +17,6 @@ void bind_tools(py::module_& module);
 void bind_drawing(py::module_& module);
 
 /// Releases the lock of the interpreter during a call, so that other threads can run.
-using WithoutLock = py::call_guard<py::gil_scoped_release>;
+using ReleaseGil = py::call_guard<py::gil_scoped_release>;
 
 }  // namespace weft::python

@@ -27,8 +27,8 @@ render::Quality quality_of(const std::string& name) {
   throw std::invalid_argument("quality: expected \"draft\", \"preview\" or \"final\", got \"" + name + "\"");
 }
 
-/// Draws frames as `weft run` does, except that a camera that the scene does not place stands for the first frame drawn
-/// and not for the whole run. Only the thread that created the renderer can use it.
+/// Draws frames as `weft run` does, but computes a camera that the scene does not place from the first drawn frame, not
+/// from the whole run. Only the thread that created the renderer can use it.
 class Renderer {
  public:
   Renderer(const Scene& scene, const std::string& quality) {
@@ -48,9 +48,9 @@ class Renderer {
       throw py::value_error("expected a frame of a scene, got one of a Model, which has no looks");
     auto image = std::make_unique<image::Image>();
     {
-      const py::gil_scoped_release without_lock;
-      const frame::FrameSnapshot* earlier = before ? before->data().snapshot.get() : nullptr;
-      *image = with_public_errors([&] { return renderer_->draw(*frame.data().snapshot, earlier); });
+      const py::gil_scoped_release release_gil;
+      const frame::FrameSnapshot* previous = before ? before->data().snapshot.get() : nullptr;
+      *image = with_public_errors([&] { return renderer_->draw(*frame.data().snapshot, previous); });
     }
     const std::vector<py::ssize_t> shape{image->height, image->width, 3};
     const std::uint8_t* bytes = image->rgb.data();
@@ -73,7 +73,7 @@ void bind_drawing(py::module_& module) {
            "quality: \"draft\", \"preview\" or \"final\".")
       .def("draw", &Renderer::draw, py::arg("frame"), py::arg("before") = py::none(),
            "The picture of a frame: an array of height x width x 3 bytes, sRGB, top row first. A camera that the scene "
-           "does not place stands where the first frame that is drawn is in view. `before`: the frame before it, "
+           "does not place is computed from the first frame that is drawn. `before`: the frame before `frame`, "
            "needed for motion blur. Call it from the thread that made the renderer.");
 }
 

@@ -273,7 +273,7 @@ void bind_simulation(py::module_& module) {
            "returned by save(), to continue "
            "from there.")
       .def_property_readonly("frame", &Simulation::frame, py::return_value_policy::copy, "The current frame.")
-      .def("advance", &Simulation::advance, py::return_value_policy::copy, WithoutLock(),
+      .def("advance", &Simulation::advance, py::return_value_policy::copy, ReleaseGil(),
            "Compute the next frame. If it raises SimulationError, the current frame stays as it was. Ctrl-C acts when "
            "the frame is complete.")
       .def("move", move, py::arg("obstacle"), py::arg("position"),

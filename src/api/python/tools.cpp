@@ -34,19 +34,19 @@ Errors errors_of(const run_error::Errors& errors) {
   return result;
 }
 
-struct ErrorOfRun {
+struct ErrorEstimate {
   Errors all;
   std::map<std::string, std::optional<Errors>> parts;  // none: unknown
   bool chaotic = false;
   double cpu_s = 0;
 };
 
-ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
+ErrorEstimate estimate_error(const Scene& public_scene, bool with_mesh_error) {
   return with_public_errors([&] {
     const scene::Scene& scene = public_scene.data().scene;
     const run_error::ErrorEstimate estimate =
-        run_error::estimate_error(scene, run_error::follow(scene), {.mesh = mesh});
-    ErrorOfRun result{errors_of(estimate.all), {}, estimate.start_matters, estimate.cpu_s};
+        run_error::estimate_error(scene, run_error::follow(scene), {.mesh = with_mesh_error});
+    ErrorEstimate result{errors_of(estimate.all), {}, estimate.start_matters, estimate.cpu_s};
     for (const run_error::ErrorPart& part : estimate.parts)
       result.parts[std::string(name_of(part.source))] =
           part.missing.empty() ? std::optional(errors_of(part.errors)) : std::nullopt;
@@ -54,7 +54,7 @@ ErrorOfRun estimate_error(const Scene& public_scene, bool mesh) {
   });
 }
 
-/// The frames of a cache, in the form of frames of a simulation. Data that only a simulation has are missing.
+/// The frames of a cache, as Frame objects without the data that a cache does not store.
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)
@@ -121,7 +121,7 @@ void bind_difference(py::module_& module) {
       .def_property_readonly("pixels_changed", figure(&Figures::pixels_changed))
       .def_property_readonly("pixels_over", figure(&Figures::pixels_over))
       .def_property_readonly("pixels_at_edges", figure(&Figures::pixels_at_edges),
-                             "Number of pixels_over that are at edges; with the default budget each counts a fortieth.")
+                             "Number of pixels_over at edges; with the default pixel_budget, each counts as 1/40.")
       .def_property_readonly("largest", figure(&Figures::largest), "Largest difference of a channel, out of 255.")
       .def_property_readonly("ssim", figure(&Figures::ssim), "Mean structural similarity, 1 where equal.")
       .def_property_readonly("flip", figure(&Figures::flip), "Mean of the FLIP map, 0 where equal.")
@@ -138,29 +138,30 @@ void bind_difference(py::module_& module) {
   const compare::Limits limits;
   module.def("compare", compare, py::arg("reference"), py::arg("test"), py::kw_only(),
              py::arg("pixel_tolerance") = limits.pixel_tolerance, py::arg("pixel_budget") = limits.pixel_budget,
-             py::arg("flip") = limits.flip, py::arg("spot") = limits.spot, py::arg("mask") = py::none(), WithoutLock(),
+             py::arg("flip") = limits.flip, py::arg("spot") = limits.spot, py::arg("mask") = py::none(), ReleaseGil(),
              "Compare two pictures or videos as `weft diff` does.");
 }
 
 }  // namespace
 
 void bind_tools(py::module_& module) {
-  py::class_<ErrorOfRun>(module, "ErrorEstimate", "Estimated error of a run, compared with exactly solved short steps.")
-      .def_readonly("all", &ErrorOfRun::all, "By quantity: position (m), velocity (m/s), energy (relative), ...")
-      .def_readonly("parts", &ErrorOfRun::parts,
+  py::class_<ErrorEstimate>(module, "ErrorEstimate",
+                            "Estimated error of a run, compared with exactly solved short steps.")
+      .def_readonly("all", &ErrorEstimate::all, "By quantity: position (m), velocity (m/s), energy (relative), ...")
+      .def_readonly("parts", &ErrorEstimate::parts,
                     "The same for each source: time steps, solver, start, mesh; None if not known.")
       .def_readonly(
-          "chaotic", &ErrorOfRun::chaotic,
+          "chaotic", &ErrorEstimate::chaotic,
           "Whether a start moved by 1 um changes the run as much as its errors do; then no setting reduces them.")
-      .def_readonly("cpu_s", &ErrorOfRun::cpu_s, "CPU seconds of the comparison runs.");
-  module.def("estimate_error", &estimate_error, py::arg("scene"), py::arg("mesh") = false, WithoutLock(),
+      .def_readonly("cpu_s", &ErrorEstimate::cpu_s, "CPU seconds of the comparison runs.");
+  module.def("estimate_error", &estimate_error, py::arg("scene"), py::arg("mesh") = false, ReleaseGil(),
              "Simulate the scene several times and estimate its error; with `mesh`, also that of the mesh.");
   py::class_<Cache>(module, "Cache", "A frame cache that `weft simulate` wrote or is still writing.")
       .def(py::init<const std::filesystem::path&>(), py::arg("folder"))
       .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that the cache contains now.")
       .def_property_readonly("fps", &Cache::fps)
       .def_property_readonly("scene", &Cache::scene)
-      .def("__getitem__", &Cache::frame, py::arg("number"), WithoutLock())
+      .def("__getitem__", &Cache::frame, py::arg("number"), ReleaseGil())
       .def(
           "__contains__", [](const Cache& self, int number) { return std::ranges::count(self.frames(), number) > 0; },
           py::arg("number"), "Whether the cache contains the frame of this number now.")

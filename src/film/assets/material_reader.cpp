@@ -69,8 +69,8 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
 
 /// Finds a picture file: tries the path as given, then its file name beside `file` and in the usual picture folders,
 /// because FBX and Collada store paths of the machine that wrote them.
-std::optional<fs::path> find_file(const std::string& named, const fs::path& file) {
-  std::string plain = named.starts_with("file://") ? named.substr(7) : named;
+std::optional<fs::path> find_file(const std::string& texture_path, const fs::path& file) {
+  std::string plain = texture_path.starts_with("file://") ? texture_path.substr(7) : texture_path;
   std::ranges::replace(plain, '\\', '/');
   const fs::path folder = file.parent_path();
   for (const fs::path path : {plain, percent_decoded(plain)}) {
@@ -85,26 +85,27 @@ std::optional<fs::path> find_file(const std::string& named, const fs::path& file
 }
 
 /// If FBX declares a picture without name or content, assimp returns the name of the current folder.
-bool is_nameless(const std::string& named) {
-  return named.empty() || named == "." || named == "./" || named == ".\\";
+bool is_nameless(const std::string& texture_path) {
+  return texture_path.empty() || texture_path == "." || texture_path == "./" || texture_path == ".\\";
 }
 
 constexpr const char* kNameless = "neither named nor held by the file";
 
 /// Bytes of a picture; empty, with `reason`, if it cannot be read.
-std::string read_picture(const aiScene& scene, const aiString& named, const fs::path& file, std::string& reason) {
+std::string read_picture(const aiScene& scene, const aiString& texture_path, const fs::path& file,
+                         std::string& reason) {
   std::string bytes;
-  if (const aiTexture* inside = scene.GetEmbeddedTexture(named.C_Str())) {
+  if (const aiTexture* inside = scene.GetEmbeddedTexture(texture_path.C_Str())) {
     if (inside->mHeight != 0) {
       reason = "raw pixels are not read";
       return {};
     }
     bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
-  } else if (is_nameless(named.C_Str())) {
+  } else if (is_nameless(texture_path.C_Str())) {
     reason = kNameless;
     return {};
   } else {
-    const std::optional<fs::path> found = find_file(named.C_Str(), file);
+    const std::optional<fs::path> found = find_file(texture_path.C_Str(), file);
     if (!found) {
       reason = "not there";
       return {};
@@ -176,21 +177,21 @@ std::vector<Material> read_materials(const aiScene& scene, const fs::path& file,
     material.color = base_color(*from);
     const auto type = picture_type(*from);
     if (!type) continue;
-    aiString named;
-    from->GetTexture(*type, 0, &named);
+    aiString texture_path;
+    from->GetTexture(*type, 0, &texture_path);
     int wrap_u = aiTextureMapMode_Wrap, wrap_v = aiTextureMapMode_Wrap;
     from->Get(AI_MATKEY_MAPPINGMODE_U(*type, 0), wrap_u);
     from->Get(AI_MATKEY_MAPPINGMODE_V(*type, 0), wrap_v);
     material.wrap_u = to_wrap(wrap_u);
     material.wrap_v = to_wrap(wrap_v);
     std::string reason;
-    material.picture = read_picture(scene, named, file, reason);
+    material.picture = read_picture(scene, texture_path, file, reason);
     material.cutout = !material.picture.empty() && is_cutout(*from);
     if (material.picture.empty()) {
       auto same = std::ranges::find(left_out, reason, &LeftOut::reason);
       if (same == left_out.end()) same = left_out.insert(same, {reason, {}, {}});
       same->materials.push_back(material.name);
-      same->pictures.emplace_back(named.C_Str());
+      same->pictures.emplace_back(texture_path.C_Str());
     } else if (*type == aiTextureType_DIFFUSE) {
       // Files often keep a dark or black colour along with a picture that replaces it.
       material.color = Vec3::Ones();

@@ -80,7 +80,7 @@ class AnatomyFinder {
 
  private:
   Vec3 axis(const Posture& posture, Joint joint, const Vec3& of) const {
-    return posture.rotations[place_of(joint)] * (own_[place_of(joint)] * of);
+    return posture.rotations[joint_index(joint)] * (own_[joint_index(joint)] * of);
   }
 
   /// Sum over all postures of a world direction, in the axes of the joint.
@@ -88,7 +88,7 @@ class AnatomyFinder {
   Vec3 sum(Joint joint, const Direction& direction) const {
     Vec3 sum = Vec3::Zero();
     for (std::size_t k = 0; k < postures_.size(); ++k)
-      sum += postures_[k].rotations[place_of(joint)].conjugate() * Vec3(direction(postures_[k], k));
+      sum += postures_[k].rotations[joint_index(joint)].conjugate() * Vec3(direction(postures_[k], k));
     return sum;
   }
 
@@ -127,7 +127,7 @@ class AnatomyFinder {
 
   /// Copies the mean axes of another joint.
   void copy_axes(Joint joint, Joint from) {
-    own_[place_of(joint)] =
+    own_[joint_index(joint)] =
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
@@ -136,13 +136,13 @@ class AnatomyFinder {
   void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
     if (unit(z).isZero()) return copy_axes(joint, parent);
-    own_[place_of(joint)] = axes_along(z, across);
+    own_[joint_index(joint)] = axes_along(z, across);
   }
 
   void find_trunk_axes(Joint joint) {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
-      if (joint == Joint::head) return unit(p.places[place_of(joint)] - p.places[place_of(below)]);
+      if (joint == Joint::head) return unit(p.places[joint_index(joint)] - p.places[joint_index(below)]);
       // Control nodes of a rig may lie above the joint that they move, so that their bone points down. The direction of
       // the trunk then replaces that of the bone.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
@@ -162,13 +162,13 @@ class AnatomyFinder {
     });
     // The line through the hip joints determines the rotation of the hips best: their x axis follows it exactly.
     const Vec3 line = unit(x), beside = z - z.dot(line) * line;
-    own_[place_of(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
+    own_[joint_index(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
   }
 
   /// Axes of upper and lower arm or leg.
   void find_limb_axes(Joint upper, Joint lower, Joint trunk, bool right) {
     if (!skeleton_.has(upper)) return;
-    const bool arm = place_of(upper) < place_of(on_side(Joint::left_upper_leg, right));
+    const bool arm = joint_index(upper) < joint_index(on_side(Joint::left_upper_leg, right));
     // Guess of the hinge axis: arms stretched out sideways bend forward, legs that hang straight down bend backward.
     // From there the axis rotates with the bone along the shortest arc.
     const auto guess = [&](const Posture& p, std::size_t) {
@@ -208,11 +208,11 @@ class AnatomyFinder {
                                  : Vec3(axis(p, shin, Vec3::UnitZ()).cross(axis(p, shin, Vec3::UnitX())));
     };
     // Guess: the foot at a right angle to the shin, with straight toes.
-    own_[place_of(foot)] =
+    own_[joint_index(foot)] =
         axes_along(sum(foot, flat, upright(), axis_of(shin, -Vec3::UnitZ())), sum(foot, flat, forward, forward));
     if (!skeleton_.has(toes)) return;
     const auto of_foot = axis_of(foot, Vec3::UnitX());
-    own_[place_of(toes)] =
+    own_[joint_index(toes)] =
         axes_along(sum(toes, flat, upright(), axis_of(foot, Vec3::UnitZ())), sum(toes, flat, of_foot, of_foot));
   }
 
@@ -242,7 +242,7 @@ Skeleton::Skeleton(const Rig& rig) : rig_(rig) {
         children_[j].push_back(static_cast<Index>(n));
   for (const bool right : {false, true}) {
     fingers_[right] = {-1, -1};
-    const Index hand = rig.joints[place_of(on_side(Joint::left_hand, right))];
+    const Index hand = rig.joints[joint_index(on_side(Joint::left_hand, right))];
     if (hand < 0) continue;
     Index little = find_below(rig.character, hand, "pinky");
     for (const char* other : {"little", "pinkie", "ring", "finger4", "finger3"})
@@ -277,16 +277,16 @@ Posture Skeleton::at(const Pose& pose) const {
 }
 
 Vec3 Skeleton::bone(const Posture& posture, Joint joint) const {
-  const std::size_t from = place_of(joint);
+  const std::size_t from = joint_index(joint);
   std::size_t last = from;  // last joint of its limb
   if (joint <= Joint::head) {
-    last = place_of(Joint::head);
+    last = joint_index(Joint::head);
   } else {
-    const std::size_t in_side = (from - place_of(Joint::left_shoulder)) % kSideJointCount;
-    const std::size_t end = in_side <= place_of(Joint::left_hand) - place_of(Joint::left_shoulder)
-                                ? place_of(Joint::left_hand)
-                                : place_of(Joint::left_toes);
-    last = from - in_side + end - place_of(Joint::left_shoulder);
+    const std::size_t in_side = (from - joint_index(Joint::left_shoulder)) % kSideJointCount;
+    const std::size_t end = in_side <= joint_index(Joint::left_hand) - joint_index(Joint::left_shoulder)
+                                ? joint_index(Joint::left_hand)
+                                : joint_index(Joint::left_toes);
+    last = from - in_side + end - joint_index(Joint::left_shoulder);
   }
   for (std::size_t to = from + 1; to <= last; ++to)
     if (has(static_cast<Joint>(to))) return posture.places[to] - posture.places[from];
@@ -295,7 +295,7 @@ Vec3 Skeleton::bone(const Posture& posture, Joint joint) const {
 
 Vec3 Skeleton::across(const Posture& posture, Joint left) const {
   const Joint right = on_side(left, true);
-  return has(left) && has(right) ? Vec3(posture.places[place_of(left)] - posture.places[place_of(right)])
+  return has(left) && has(right) ? Vec3(posture.places[joint_index(left)] - posture.places[joint_index(right)])
                                  : Vec3(Vec3::Zero());
 }
 
@@ -309,17 +309,18 @@ Vec3 Skeleton::across_shoulders(const Posture& posture) const {
 }
 
 Vec3 Skeleton::middle_of_hips(const Posture& posture) const {
-  if (!has(Joint::left_upper_leg) || !has(Joint::right_upper_leg)) return posture.places[place_of(Joint::hips)];
-  return (posture.places[place_of(Joint::left_upper_leg)] + posture.places[place_of(Joint::right_upper_leg)]) / 2;
+  if (!has(Joint::left_upper_leg) || !has(Joint::right_upper_leg)) return posture.places[joint_index(Joint::hips)];
+  return (posture.places[joint_index(Joint::left_upper_leg)] + posture.places[joint_index(Joint::right_upper_leg)]) / 2;
 }
 
 Vec3 Skeleton::trunk(const Posture& posture) const {
   const Vec3 from = middle_of_hips(posture);
   if (has(Joint::left_upper_arm) && has(Joint::right_upper_arm))
-    return (posture.places[place_of(Joint::left_upper_arm)] + posture.places[place_of(Joint::right_upper_arm)]) / 2 -
+    return (posture.places[joint_index(Joint::left_upper_arm)] + posture.places[joint_index(Joint::right_upper_arm)]) /
+               2 -
            from;
   for (const Joint top : {Joint::neck, Joint::head, Joint::chest, Joint::spine})
-    if (has(top)) return posture.places[place_of(top)] - from;
+    if (has(top)) return posture.places[joint_index(top)] - from;
   return bone(posture, Joint::hips);
 }
 

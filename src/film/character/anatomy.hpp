@@ -30,7 +30,7 @@ class Skeleton {
  public:
   explicit Skeleton(const Rig& rig);
 
-  bool has(Joint joint) const { return rig_.joints[place_of(joint)] >= 0; }
+  bool has(Joint joint) const { return rig_.joints[joint_index(joint)] >= 0; }
   Posture at(const Pose& pose) const;
 
   /// Vector from a joint to the next existing one: outward along limbs, upward along the trunk. From the last joint of

@@ -138,7 +138,7 @@ Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up
       const Joint part = on_side(joint, right);
       if (!skeleton.has(part)) continue;
       const Vec3 bone = skeleton.bone(skeleton.at(raised), part);
-      if (bone.norm() > 0) point_node(rig.character, raised, rig.joints[place_of(part)], bone, to);
+      if (bone.norm() > 0) point_node(rig.character, raised, rig.joints[joint_index(part)], bone, to);
     }
   }
   return raised;

@@ -20,8 +20,8 @@ constexpr double kSpeedWindow = 1.0 / 30;
 constexpr double kMinContactTime = 0.08;
 /// Movement of the ball that ends a contact and begins the next one, as in a shuffle [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
-/// The number of slow feet is counted over height. The floor is the lowest peak of this number that is at least this
-/// fraction of the maximum. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
+/// Slow feet are counted by height. The floor is the lowest peak of the counts that is at least this fraction of the
+/// largest count. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
 constexpr double kMinFrequencyRatio = 0.5;
 /// Time in which feet blend from a contact into their own motion [s]; a step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;
@@ -60,7 +60,7 @@ struct FootTrack {
 FootTrack track_of(Joint joint, std::span<const Posture> postures, std::span<const double> times, const Vec3& up) {
   FootTrack track;
   for (const Posture& posture : postures) {
-    track.places.push_back(posture.places[place_of(joint)]);
+    track.places.push_back(posture.places[joint_index(joint)]);
     track.heights.push_back(up.dot(track.places.back()));
   }
   track.speeds = speeds(track.places, times);

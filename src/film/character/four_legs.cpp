@@ -19,7 +19,7 @@ double lowest_height(const Skeleton& skeleton, const Posture& posture, std::init
                      const Vec3& up) {
   double height = std::numeric_limits<double>::infinity();
   for (const Joint joint : joints)
-    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[place_of(joint)]));
+    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[joint_index(joint)]));
   return height;
 }
 

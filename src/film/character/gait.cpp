@@ -88,7 +88,7 @@ class Walker {
 
   Vec3 hip_offset(int k, int side) const {
     const Joint hip = side == 0 ? Joint::left_upper_leg : Joint::right_upper_leg;
-    return pelvis_rotation(k) * (body_.joints[place_of(hip)] - body_.joints[place_of(Joint::hips)]);
+    return pelvis_rotation(k) * (body_.joints[joint_index(hip)] - body_.joints[joint_index(Joint::hips)]);
   }
 
   /// World rotations of all joints.
@@ -103,11 +103,11 @@ class Walker {
     // The head turns less than the chest and against its pitch, so that the gaze stays steady.
     const Quat head =
         heading(k, kHeadLead) * tilt_rotation(size * walking::head_yaw.at(phase), kHeadRoll * roll, kHeadNod * nod);
-    global[place_of(Joint::hips)] = hips;
-    global[place_of(Joint::spine)] = hips.slerp(0.5, chest);
-    global[place_of(Joint::chest)] = chest;
-    global[place_of(Joint::neck)] = chest.slerp(0.5, head);
-    global[place_of(Joint::head)] = head;
+    global[joint_index(Joint::hips)] = hips;
+    global[joint_index(Joint::spine)] = hips.slerp(0.5, chest);
+    global[joint_index(Joint::chest)] = chest;
+    global[joint_index(Joint::neck)] = chest.slerp(0.5, head);
+    global[joint_index(Joint::head)] = head;
     for (int side = 0; side < 2; ++side) {
       arm(global, side, phase + 0.5 * side, size, chest);
       leg(global, feet.at(side, k), side, pelvis + hip_offset(k, side));
@@ -116,12 +116,12 @@ class Walker {
   }
 
   static Joint of_side(Joint left, int side) {
-    return static_cast<Joint>(place_of(left) + static_cast<std::size_t>(side) * kSideJointCount);
+    return static_cast<Joint>(joint_index(left) + static_cast<std::size_t>(side) * kSideJointCount);
   }
 
   /// Rotation of the forearms relative to the upper arms: inward, unless wide hips need more clearance [degrees].
   double turn_of_forearms() const {
-    const auto at = [this](Joint joint) { return body_.joints[place_of(joint)]; };
+    const auto at = [this](Joint joint) { return body_.joints[joint_index(joint)]; };
     const Vec3 &shoulder = at(Joint::left_upper_arm), &elbow = at(Joint::left_lower_arm), &wrist = at(Joint::left_hand);
     const double cm = body_.height / 175, hand = (wrist - elbow).norm() + 8 * cm;
     const double wanted = body_.hips_half_width + kHandClearance * cm;
@@ -143,11 +143,11 @@ class Walker {
     const Quat upper = hanging(out);
     const Vec3 along(sign * std::sqrt(0.5), 0, -std::sqrt(0.5));
     const Quat lower = hanging(out + forearm_turn_) * axis_rotation(bend * kDegree, along.cross(-Vec3::UnitY()));
-    global[place_of(of_side(Joint::left_shoulder, side))] =
+    global[joint_index(of_side(Joint::left_shoulder, side))] =
         chest * axis_rotation(-sign * kShoulderTurnRatio * forward * kDegree, Vec3::UnitZ());
-    global[place_of(of_side(Joint::left_upper_arm, side))] = upper;
-    global[place_of(of_side(Joint::left_lower_arm, side))] = lower;
-    global[place_of(of_side(Joint::left_hand, side))] = lower;
+    global[joint_index(of_side(Joint::left_upper_arm, side))] = upper;
+    global[joint_index(of_side(Joint::left_lower_arm, side))] = lower;
+    global[joint_index(of_side(Joint::left_hand, side))] = lower;
   }
 
   /// The rotation that takes one pair of directions to another, the first of them exactly.
@@ -165,28 +165,28 @@ class Walker {
   /// Two-bone inverse kinematics from hip to ankle; the knee axis is halfway between the x axes of pelvis and foot.
   void leg(std::array<Quat, kJointCount>& global, const FootState& foot, int side, const Vec3& hip) const {
     const double sign = side == 0 ? 1 : -1;
-    const Vec3 hip0 = body_.joints[place_of(of_side(Joint::left_upper_leg, side))],
-               knee0 = body_.joints[place_of(of_side(Joint::left_lower_leg, side))],
-               ankle0 = body_.joints[place_of(of_side(Joint::left_foot, side))];
+    const Vec3 hip0 = body_.joints[joint_index(of_side(Joint::left_upper_leg, side))],
+               knee0 = body_.joints[joint_index(of_side(Joint::left_lower_leg, side))],
+               ankle0 = body_.joints[joint_index(of_side(Joint::left_foot, side))];
     const double a = (knee0 - hip0).norm(), b = (ankle0 - knee0).norm();
     const Vec3 to_ankle = foot.ankle - hip;
     const double d = std::min(to_ankle.norm(), 0.9999 * (a + b));
     const Quat foot_yaw = axis_rotation(foot.yaw, Vec3::UnitZ());
     const Vec3 along = to_ankle.normalized();
-    Vec3 axis = global[place_of(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
+    Vec3 axis = global[joint_index(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
     axis = (axis - axis.dot(along) * along).normalized();
     // Law of cosines; the knee is in front.
     const double cosine = (a * a + d * d - b * b) / (2 * a * d);
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const Vec3 thigh = a * (cosine * along + sine * along.cross(axis).normalized());
     const Vec3 shin = to_ankle - thigh;
-    global[place_of(of_side(Joint::left_upper_leg, side))] =
+    global[joint_index(of_side(Joint::left_upper_leg, side))] =
         rotation_between_frames(knee0 - hip0, Vec3::UnitX(), thigh, axis);
-    global[place_of(of_side(Joint::left_lower_leg, side))] =
+    global[joint_index(of_side(Joint::left_lower_leg, side))] =
         rotation_between_frames(ankle0 - knee0, Vec3::UnitX(), shin, axis);
     const Vec3 across = axis_rotation(foot.yaw + sign * body_.foot_yaw, Vec3::UnitZ()) * Vec3::UnitX();
-    global[place_of(of_side(Joint::left_foot, side))] = axis_rotation(-foot.pitch, across) * foot_yaw;
-    global[place_of(of_side(Joint::left_toes, side))] = axis_rotation(-foot.pitch - foot.toes, across) * foot_yaw;
+    global[joint_index(of_side(Joint::left_foot, side))] = axis_rotation(-foot.pitch, across) * foot_yaw;
+    global[joint_index(of_side(Joint::left_toes, side))] = axis_rotation(-foot.pitch - foot.toes, across) * foot_yaw;
   }
 
   void add_key(Clip& clip, const Feet& feet, int key) const {
@@ -196,7 +196,7 @@ class Walker {
     const double t = key * plan_.key_time;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto joint = static_cast<Joint>(j);
-      const Quat local = joint == Joint::hips ? global[j] : global[place_of(parent(joint))].conjugate() * global[j];
+      const Quat local = joint == Joint::hips ? global[j] : global[joint_index(parent(joint))].conjugate() * global[j];
       clip.channels[j].rotation.times.push_back(t);
       clip.channels[j].rotation.values.push_back(local.normalized());
     }

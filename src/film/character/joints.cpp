@@ -113,10 +113,10 @@ bool is_above(std::span<const Node> nodes, Index above, Index node) {
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// Determines the trunk from the tree: the hips are the node at which legs and spine branch, or a named one above it;
-/// the chest is the node at which the arms branch; the spine is halfway between, the lower of two candidates.
+/// Determines the trunk from the tree. Hips: the node at which legs and spine branch, or a named node above it. Chest:
+/// the node at which the arms branch. Spine: halfway between, the lower of two candidates.
 void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
-  const auto at = [&](Joint joint) -> Index& { return joints[place_of(joint)]; };
+  const auto at = [&](Joint joint) -> Index& { return joints[joint_index(joint)]; };
   Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
   const Index legs = common_ancestor(nodes, at(Joint::left_upper_leg), at(Joint::right_upper_leg));
   const Index branching = common_ancestor(nodes, legs, arms);
@@ -138,7 +138,7 @@ void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
 bool has_all_limbs(const std::vector<Index>& joints) {
   return std::ranges::all_of(
       std::array{Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg},
-      [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
+      [&](Joint left) { return joints[joint_index(left)] >= 0 && joints[joint_index(on_side(left, true))] >= 0; });
 }
 
 /// An affix counts as the name of a rig if at least this number of nodes share it: the size of a minimal skeleton.
@@ -216,7 +216,7 @@ std::string_view name(Joint joint) {
       "LeftUpperArm",  "LeftLowerArm",  "LeftHand",      "LeftUpperLeg",  "LeftLowerLeg", "LeftFoot",
       "LeftToes",      "RightShoulder", "RightUpperArm", "RightLowerArm", "RightHand",    "RightUpperLeg",
       "RightLowerLeg", "RightFoot",     "RightToes"};
-  return names[place_of(joint)];
+  return names[joint_index(joint)];
 }
 
 Joint parent(Joint joint) {
@@ -235,7 +235,7 @@ Joint parent(Joint joint) {
     case Joint::head:
       return Joint::neck;
     default:
-      return static_cast<Joint>(place_of(joint) - 1);
+      return static_cast<Joint>(joint_index(joint) - 1);
   }
 }
 
@@ -273,7 +273,7 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
   }
-  if (joints[place_of(Joint::spine)] == joints[place_of(Joint::chest)]) joints[place_of(Joint::chest)] = -1;
+  if (joints[joint_index(Joint::spine)] == joints[joint_index(Joint::chest)]) joints[joint_index(Joint::chest)] = -1;
   determine_trunk(nodes, joints);
   return joints;
 }

@@ -38,13 +38,13 @@ enum class Joint : std::uint8_t {
 inline constexpr std::size_t kJointCount = 21;
 inline constexpr std::size_t kSideJointCount = 8;  ///< per side
 
-constexpr std::size_t place_of(Joint joint) {
+constexpr std::size_t joint_index(Joint joint) {
   return static_cast<std::size_t>(joint);
 }
 
 /// A joint of the left side, or its mirror image if `right`.
 constexpr Joint on_side(Joint left, bool right) {
-  return static_cast<Joint>(place_of(left) + (right ? kSideJointCount : 0));
+  return static_cast<Joint>(joint_index(left) + (right ? kSideJointCount : 0));
 }
 
 std::string_view name(Joint joint);

@@ -107,8 +107,8 @@ double BlendedBody::operator()(const Vec3& p) const {
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
   for (const Part& part : parts_) {
-    // A part changes nothing if its distance exceeds the blend width plus the current value, or minus this value if it
-    // is carved.
+    // A part changes nothing if its distance exceeds the blend width plus the current value (a carved part: minus the
+    // current value).
     const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
     const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
     double value = nothing;

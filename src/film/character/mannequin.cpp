@@ -36,7 +36,8 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
 /// shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
   const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kMaxHandEdge * unit);
-  const double wrist = joints[place_of(Joint::left_hand)].x(), shoulder = joints[place_of(Joint::left_upper_arm)].x();
+  const double wrist = joints[joint_index(Joint::left_hand)].x(),
+               shoulder = joints[joint_index(Joint::left_upper_arm)].x();
   const Vec3 crotch(0, 0, 0.78 * unit), armpit(0.82 * shoulder, 0, 1.31 * unit);
   const Vec3 nose(0, -0.095 * unit, 1.61 * unit), ear(0.078 * unit, 0.019 * unit, 1.627 * unit);
   return [=](const Vec3& p) {
@@ -99,7 +100,7 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   const double wide = 1 + 0.2 * build.masculinity;
   std::array<Vec3, kJointCount> at{};
   const auto set = [&](Joint joint, double x, double forward, double up) {
-    at[place_of(joint)] = Vec3(x, -forward, up);
+    at[joint_index(joint)] = Vec3(x, -forward, up);
   };
   set(Joint::hips, 0, 0, 0.545 * h);
   set(Joint::spine, 0, -1.5 * cm, 106 * cm);
@@ -109,8 +110,8 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   set(Joint::left_shoulder, 3 * cm, -1.5 * cm, 141 * cm);
   set(Joint::left_upper_arm, 16.4 * wide * cm, -1.4 * cm, 139 * cm);
   const Vec3 down(std::sqrt(0.5), 0, -std::sqrt(0.5));
-  at[place_of(Joint::left_lower_arm)] = at[place_of(Joint::left_upper_arm)] + 0.186 * h * down;
-  at[place_of(Joint::left_hand)] = at[place_of(Joint::left_lower_arm)] + 0.146 * h * down;
+  at[joint_index(Joint::left_lower_arm)] = at[joint_index(Joint::left_upper_arm)] + 0.186 * h * down;
+  at[joint_index(Joint::left_hand)] = at[joint_index(Joint::left_lower_arm)] + 0.146 * h * down;
   set(Joint::left_upper_leg, 8.7 * cm, 0, 0.530 * h);
   set(Joint::left_lower_leg, 10.2 * cm, 0.1 * cm, 0.285 * h);
   set(Joint::left_foot, 11.0 * cm, -1.3 * cm, 0.039 * h);
@@ -126,9 +127,9 @@ Character make_mannequin(const MannequinBuild& build) {
   Character character;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto joint = static_cast<Joint>(j);
-    Node node{std::string(name(joint)), joint == Joint::hips ? -1 : static_cast<Index>(place_of(parent(joint)))};
+    Node node{std::string(name(joint)), joint == Joint::hips ? -1 : static_cast<Index>(joint_index(parent(joint)))};
     node.local =
-        Eigen::Translation3d(joint == Joint::hips ? joints[j] : Vec3(joints[j] - joints[place_of(parent(joint))]));
+        Eigen::Translation3d(joint == Joint::hips ? joints[j] : Vec3(joints[j] - joints[joint_index(parent(joint))]));
     character.nodes.push_back(node);
     character.bones.push_back({static_cast<Index>(j), Affine(Eigen::Translation3d(-joints[j]))});
   }

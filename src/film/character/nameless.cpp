@@ -101,7 +101,7 @@ class NamelessFinder {
   }
 
  private:
-  void set_joint(Joint left, bool right, Index node) { joints_[place_of(on_side(left, right))] = node; }
+  void set_joint(Joint left, bool right, Index node) { joints_[joint_index(on_side(left, right))] = node; }
 
   /// Computes the length of the longest chain below each node, and the child along which it runs.
   void compute_reach() {
@@ -285,8 +285,8 @@ class NamelessFinder {
       if (below != 1) break;
       head = only;
     }
-    if (head != neck) joints_[place_of(Joint::neck)] = neck;
-    joints_[place_of(Joint::head)] = head;
+    if (head != neck) joints_[joint_index(Joint::neck)] = neck;
+    joints_[joint_index(Joint::head)] = head;
   }
 
   const Character& character_;

@@ -63,7 +63,7 @@ Vec3 to_the_left(const Skeleton& skeleton, const Posture& posture) {
 double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3& up) {
   double height = std::numeric_limits<double>::infinity();
   for (const Joint joint : {Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes})
-    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[place_of(joint)]));
+    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[joint_index(joint)]));
   return height;
 }
 
@@ -87,7 +87,7 @@ bool same_skeleton(const Rig& a, const Rig& b) {
 
 /// World rotation of the parent of the hips.
 Quat rotation_above_hips(const Rig& rig) {
-  const Index above = rig.character.nodes[rig.joints[place_of(Joint::hips)]].parent;
+  const Index above = rig.character.nodes[rig.joints[joint_index(Joint::hips)]].parent;
   const Pose rest = rest_pose(rig.character);
   return above < 0 ? Quat::Identity() : to_placement(global_transforms(rig.character, rest)[above]).rotation;
 }
@@ -129,12 +129,12 @@ class Retargeter {
     std::vector<Frame> frames;
     for (std::size_t k = 0; k < times_.size(); ++k) frames.push_back(frame_at(k));
     Retargeted result;
-    if (!same_ && can_stand()) plant_both_feet(frames, result.doubts);
+    if (!same_ && can_stand()) plant_both_feet(frames, result.warnings);
     if (!same_) keep_hands_near(frames);
-    if (!same_) check_joints(result.doubts);
-    if (!same_) check_rest(result.doubts);
+    if (!same_) check_joints(result.warnings);
+    if (!same_) check_rest(result.warnings);
     if (!same_)
-      if (auto doubt = warn_if_on_all_fours(theirs_, postures_, up_)) result.doubts.push_back(*std::move(doubt));
+      if (auto warning = warn_if_on_all_fours(theirs_, postures_, up_)) result.warnings.push_back(*std::move(warning));
     result.clip = {clip_.name, clip_.duration, {}, {}};
     for (std::size_t n = 0; n < joint_of_.size(); ++n)
       if (joint_of_[n] >= 0) result.clip.channels.push_back({static_cast<Index>(n), {}, {}, {}});
@@ -146,7 +146,7 @@ class Retargeter {
   bool can_stand() const {
     for (const bool right : {false, true})
       for (const Joint joint : {Joint::left_upper_leg, Joint::left_lower_leg, Joint::left_foot})
-        if (!moves_[place_of(on_side(joint, right))]) return false;
+        if (!moves_[joint_index(on_side(joint, right))]) return false;
     return true;
   }
 
@@ -178,11 +178,11 @@ class Retargeter {
     for (std::size_t j = 0; j < kJointCount; ++j)
       frame.axes[j] = (face_ * posture.rotations[j] * their_axes_[j]).normalized();
     for (const Joint joint : {Joint::spine, Joint::neck})
-      if (const std::size_t j = place_of(joint); !theirs_.has(joint) && moves_[j])
+      if (const std::size_t j = joint_index(joint); !theirs_.has(joint) && moves_[j])
         frame.axes[j] = frame.axes[j - 1].slerp(0.5, frame.axes[j + 1]);
     for (const bool right : {false, true})
       if (const Joint toes = on_side(Joint::left_toes, right); !theirs_.has(toes))
-        frame.axes[place_of(toes)] = frame.axes[place_of(toes) - 1];
+        frame.axes[joint_index(toes)] = frame.axes[joint_index(toes) - 1];
     for (std::size_t j = 0; j < kJointCount; ++j)
       frame.turned[j] = (frame.axes[j] * our_axes_[j].conjugate()).normalized();
     frame.hips = hips_at(k, frame);
@@ -211,7 +211,8 @@ class Retargeter {
       return std::isfinite(ground) ? floor + ratio_ * (up_.dot(place) - ground) - travelled : 0;
     }
     double ankles = 0;
-    for (const bool right : {false, true}) ankles += up_.dot(rest_.places[place_of(on_side(Joint::left_foot, right))]);
+    for (const bool right : {false, true})
+      ankles += up_.dot(rest_.places[joint_index(on_side(Joint::left_foot, right))]);
     return can_stand() ? ankles / 2 + ratio_ * (up_.dot(place) - steps_.ankle_height) - travelled : 0;
   }
 
@@ -264,11 +265,13 @@ class Retargeter {
     Legs legs;
     for (const bool right : {false, true}) {
       const auto place = [&](Joint left) -> Vec3 {
-        return nodes[body_.joints[place_of(on_side(left, right))]].translation();
+        return nodes[body_.joints[joint_index(on_side(left, right))]].translation();
       };
-      const std::size_t foot = place_of(on_side(Joint::left_foot, right));
+      const std::size_t foot = joint_index(on_side(Joint::left_foot, right));
       const Joint toes = ours_.has(on_side(Joint::left_toes, right)) ? Joint::left_toes : Joint::left_foot;
-      const auto above_sole = [&](Joint left) { return up_.dot(rest_.places[place_of(on_side(left, right))]) - floor; };
+      const auto above_sole = [&](Joint left) {
+        return up_.dot(rest_.places[joint_index(on_side(left, right))]) - floor;
+      };
       const Vec3 normal = frame.axes[foot] * Vec3::UnitZ();
       Leg& leg = legs[right];
       leg.hip = place(Joint::left_upper_leg);
@@ -277,12 +280,12 @@ class Retargeter {
       leg.heel = leg.ankle - above_sole(Joint::left_foot) * normal;
       // Toes stay flat while the heel rises; the toe joint stays above the ball.
       leg.ball = place(toes) - above_sole(toes) * (toes == Joint::left_toes ? up_ : normal);
-      leg.hinge = frame.axes[place_of(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
+      leg.hinge = frame.axes[joint_index(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
     }
     return legs;
   }
 
-  void plant_both_feet(std::vector<Frame>& frames, std::vector<std::string>& doubts) {
+  void plant_both_feet(std::vector<Frame>& frames, std::vector<std::string>& warnings) {
     const double sole = floor();
     for (const bool right : {false, true}) toe_length_[right] = toe_length(right);
     std::vector<Legs> legs;
@@ -299,11 +302,11 @@ class Retargeter {
         bend_toes(frames[k], legs[k][right].ball + stance.shift[right], sole, right);
       }
     }
-    check_floor(frames, stances, sole, doubts);
+    check_floor(frames, stances, sole, warnings);
   }
 
   void check_floor(const std::vector<Frame>& frames, const std::vector<Stance>& stances, double sole,
-                   std::vector<std::string>& doubts) const {
+                   std::vector<std::string>& warnings) const {
     double worst = 0, when = 0;
     std::size_t in_air = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -318,19 +321,19 @@ class Retargeter {
       }
     }
     if (std::abs(worst) > kMaxFloorError)
-      doubts.push_back(fmt::format("a foot that stands is {:.3g} m {} the floor at {:.3g} s of the motion",
-                                   std::abs(worst), worst > 0 ? "above" : "below", when));
+      warnings.push_back(fmt::format("a foot that stands is {:.3g} m {} the floor at {:.3g} s of the motion",
+                                     std::abs(worst), worst > 0 ? "above" : "below", when));
     if (2 * in_air > frames.size())
-      doubts.push_back(fmt::format("in {:.0f} % of the motion both feet are more than {:g} m above the floor",
-                                   100.0 * static_cast<double>(in_air) / static_cast<double>(frames.size()),
-                                   kMaxFloorError));
+      warnings.push_back(fmt::format("in {:.0f} % of the motion both feet are more than {:g} m above the floor",
+                                     100.0 * static_cast<double>(in_air) / static_cast<double>(frames.size()),
+                                     kMaxFloorError));
   }
 
-  /// Bends a leg, or likewise an arm, so that it ends at `end`.
+  /// Bends a leg or an arm so that it ends at `end`.
   static void bend_limb(Frame& frame, const Leg& limb, const Vec3& end, Joint upper_joint) {
     const LegTurns turns = reach(limb, end);
-    Quat& upper = frame.turned[place_of(upper_joint)];
-    Quat& lower = frame.turned[place_of(upper_joint) + 1];
+    Quat& upper = frame.turned[joint_index(upper_joint)];
+    Quat& lower = frame.turned[joint_index(upper_joint) + 1];
     upper = (turns.upper * upper).normalized();
     lower = (turns.lower * lower).normalized();
   }
@@ -355,7 +358,7 @@ class Retargeter {
         const std::array<Vec3, 2> pull = displace_hands(theirs, ours, both, proportions, rests[k]);
         if (std::max(pull[0].norm(), pull[1].norm()) < kMinPull) break;
         for (const bool right : {false, true}) {
-          const std::size_t upper = place_of(on_side(Joint::left_upper_arm, right));
+          const std::size_t upper = joint_index(on_side(Joint::left_upper_arm, right));
           if (pull[right].isZero()) continue;
           Leg arm;
           arm.hip = ours[upper], arm.knee = ours[upper + 1], arm.ankle = ours[upper + 2];
@@ -368,7 +371,7 @@ class Retargeter {
 
   /// Bends toes up so that they do not reach below the floor.
   void bend_toes(Frame& frame, const Vec3& ball, double floor, bool right) const {
-    const std::size_t toes = place_of(on_side(Joint::left_toes, right));
+    const std::size_t toes = joint_index(on_side(Joint::left_toes, right));
     if (!moves_[toes] || toe_length_[right] <= 0) return;
     const Vec3 forward = frame.axes[toes] * Vec3::UnitX(), normal = frame.axes[toes] * Vec3::UnitZ();
     // Toes that are rotated up by an angle reach down by their length · (cos(angle) · down + sin(angle) · back).
@@ -382,7 +385,7 @@ class Retargeter {
 
   /// Length of the skin of the toes beyond their joint at rest [m].
   double toe_length(bool right) const {
-    const std::size_t toes = place_of(on_side(Joint::left_toes, right));
+    const std::size_t toes = joint_index(on_side(Joint::left_toes, right));
     if (body_.joints[toes] < 0) return 0;
     const Vec3 forward = rest_.rotations[toes] * (our_axes_[toes] * Vec3::UnitX());
     const VertexMask mask = vertices_below(body_.character, body_.joints[toes]);
@@ -396,7 +399,8 @@ class Retargeter {
 
   /// Warns if a joint exceeds the human limit `limit` [degrees]. `angle(posture)`: angle of the joint [rad].
   template <class Angle>
-  void check_joint(const std::string& what, double limit, const Angle& angle, std::vector<std::string>& doubts) const {
+  void check_joint(const std::string& what, double limit, const Angle& angle,
+                   std::vector<std::string>& warnings) const {
     double worst = 0, when = 0;
     for (std::size_t k = 0; k < times_.size(); ++k) {
       const double here = angle(postures_[k]) / kDegree;
@@ -405,20 +409,20 @@ class Retargeter {
       when = times_[k];
     }
     if (worst > limit)
-      doubts.push_back(
+      warnings.push_back(
           fmt::format("{} by {:.0f}° at {:.3g} s of the motion; people reach {:.0f}°", what, worst, when, limit));
   }
 
-  void check_joints(std::vector<std::string>& doubts) const {
+  void check_joints(std::vector<std::string>& warnings) const {
     const auto axis = [&](const Posture& p, Joint joint, const Vec3& of) -> Vec3 {
-      return p.rotations[place_of(joint)] * (their_axes_[place_of(joint)] * of);
+      return p.rotations[joint_index(joint)] * (their_axes_[joint_index(joint)] * of);
     };
     const auto angle = [](const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); };
     const auto lean = [&](Joint a, Joint b, const std::string& what, double limit) {
       if (theirs_.has(a) && theirs_.has(b))
         check_joint(
             what, limit, [&](const Posture& p) { return angle(axis(p, a, Vec3::UnitZ()), axis(p, b, Vec3::UnitZ())); },
-            doubts);
+            warnings);
     };
     lean(Joint::hips, Joint::chest, "the chest leans against the hips", kMaxSpine);
     lean(Joint::chest, Joint::head, "the head leans against the chest", kMaxHead);
@@ -427,23 +431,23 @@ class Retargeter {
         check_joint(
             fmt::format("{} goes up", name(thigh)), kMaxThigh,
             [&](const Posture& p) { return angle(-axis(p, Joint::hips, Vec3::UnitZ()), theirs_.bone(p, thigh)); },
-            doubts);
+            warnings);
       for (const Joint left : {Joint::left_lower_arm, Joint::left_lower_leg}) {
-        const Joint lower = on_side(left, right), upper = static_cast<Joint>(place_of(lower) - 1);
+        const Joint lower = on_side(left, right), upper = static_cast<Joint>(joint_index(lower) - 1);
         if (!theirs_.has(lower) || !theirs_.has(upper)) continue;
         const auto bend = [&](const Posture& p) { return angle(theirs_.bone(p, upper), theirs_.bone(p, lower)); };
         const auto backward = [&](const Posture& p) {
           const Vec3 hinge = theirs_.bone(p, upper).cross(theirs_.bone(p, lower));
           return hinge.dot(axis(p, lower, Vec3::UnitX())) < 0 ? bend(p) : 0;
         };
-        check_joint(fmt::format("{} bends", name(lower)), kMaxBend, bend, doubts);
-        check_joint(fmt::format("{} bends backward", name(lower)), kMaxBackward, backward, doubts);
+        check_joint(fmt::format("{} bends", name(lower)), kMaxBend, bend, warnings);
+        check_joint(fmt::format("{} bends backward", name(lower)), kMaxBackward, backward, warnings);
       }
     }
   }
 
   /// Warns if the rest pose does not stand upright: all rotations of the body refer to this pose.
-  void check_rest(std::vector<std::string>& doubts) const {
+  void check_rest(std::vector<std::string>& warnings) const {
     double largest = 0;
     for (const bool right : {false, true}) {
       const Joint thigh = on_side(Joint::left_upper_leg, right), shin = on_side(Joint::left_lower_leg, right);
@@ -452,7 +456,7 @@ class Retargeter {
       largest = std::max(largest, std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree);
     }
     if (largest > kMaxRestBend)
-      doubts.push_back(
+      warnings.push_back(
           fmt::format("the body of the file stands with a knee bent by {:.0f}°, so that feet will not stand well; "
                       "motions of others "
                       "ask for one that stands upright",

@@ -11,7 +11,7 @@ namespace weft::character {
 
 struct Retargeted {
   Clip clip;
-  std::vector<std::string> doubts;  ///< warnings about the rest pose and implausible motions, with numbers
+  std::vector<std::string> warnings;  ///< warnings about the rest pose and implausible motions, with numbers
 };
 
 /// Makes a clip that moves `body` as `clip` moves `motion`. Both skeletons must have Hips; other joints move if both

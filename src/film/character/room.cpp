@@ -214,7 +214,7 @@ Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifte
   moved.limb = name_of(limb_weights_[v]);
   moved.away_from = "ground";
   if ((x[v] - unlifted[v]).norm() > (unlifted[v] - before[v]).norm()) return moved;
-  // Skin that only followed its neighbours moved away from the same limb as the nearest skin that did not only follow.
+  // Skin that only followed its neighbours gets the limb of the nearest skin that moved away from a limb by itself.
   std::vector<Index> known;
   while (other[v] < 0 && known != other) {
     known = other;

@@ -29,9 +29,9 @@ struct Moved {
 };
 
 /// Moves skin along the lines from its bones. Limbs are upper and lower arms, upper and lower legs, and the trunk with
-/// the head; each of two limbs moves by at most half of the missing clearance (farther only to follow its neighbours),
-/// and only if cloth is near one of them. Skin that is closer at rest, as at the joint of two limbs, keeps its
-/// clearance at rest; limbs that cross at rest are not changed. Skin near cloth is lifted out of the ground, except
+/// the head. The skin of two limbs moves only if cloth is near one of them, and each by at most half of the missing
+/// clearance (farther only to follow its neighbours). Skin that is closer at rest, as at the joint of two limbs, keeps
+/// its clearance at rest; limbs that cross at rest are not changed. Skin near cloth is lifted out of the ground, except
 /// that of feet.
 class Room {
  public:

@@ -7,10 +7,9 @@
 namespace weft::character {
 namespace {
 
-// Distances of the wrist, in arm lengths (0.55 m in an adult), up to which a hand counts as touching; at twice these
-// distances it does not. Wrists of joined hands are 5 to 12 cm apart, so half of that from their midpoint; a hand that
-// holds an elbow has its wrist 8 to 13 cm from the joint, a hand on a hip has it 17 to 22 cm from the midpoint between
-// the hip joints.
+// Distances of the wrist, in arm lengths (0.55 m in an adult). Up to these distances the hand touches fully; from there
+// to twice the distance, contact fades. Adults: 2.5 to 6 cm from the midpoint of the wrists if the hands are joined, 8
+// to 13 cm from a held elbow, 17 to 22 cm from the midpoint between the hip joints if the hand is on a hip.
 constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.4;
 // Arms bent by less than the first angle hang, by more than the second reach for something [radians].
 constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
@@ -26,8 +25,8 @@ class Puller {
       : theirs_(theirs), ours_(ours), both_(both), proportions_(proportions) {}
 
   Vec3 pull(bool right, double rests) {
-    const auto at = [&](Joint left) { return place_of(on_side(left, right)); };
-    const auto across = [&](Joint left) { return place_of(on_side(left, !right)); };
+    const auto at = [&](Joint left) { return joint_index(on_side(left, right)); };
+    const auto across = [&](Joint left) { return joint_index(on_side(left, !right)); };
     const std::size_t shoulder = at(Joint::left_upper_arm), elbow = at(Joint::left_lower_arm);
     hand_ = at(Joint::left_hand);
     if (!both_[shoulder] || !both_[elbow] || !both_[hand_]) return Vec3::Zero();
@@ -44,7 +43,8 @@ class Puller {
   }
 
  private:
-  /// Adds the displacement relative to a point that lies at the fraction `fraction` between joints `a` and `b`.
+  /// Adds the displacement that restores the hand's place relative to the point between joints `a` and `b` at
+  /// `fraction`.
   void add_target(std::size_t a, std::size_t b, double fraction, double distance, double ratio, double max_weight = 1) {
     if (!both_[a] || !both_[b] || !(distance > 0)) return;
     const auto place = [&](const Places& of) -> Vec3 { return (1 - fraction) * of[a] + fraction * of[b]; };
@@ -79,7 +79,7 @@ std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> p
     std::vector<Vec3> offsets;
     for (const Posture& p : postures)
       offsets.push_back(p.rotations[0].conjugate() *
-                        (p.places[place_of(on_side(Joint::left_hand, right))] - p.places[place_of(Joint::hips)]));
+                        (p.places[joint_index(on_side(Joint::left_hand, right))] - p.places[joint_index(Joint::hips)]));
     for (std::size_t k = 0; k < offsets.size(); ++k) {
       double furthest = 0;
       const auto extend_to = [&](std::size_t at) {

@@ -27,9 +27,9 @@ struct Proportions {
 std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
                                    const Proportions& proportions, const std::array<double, 2>& rests);
 
-/// Weight with which each hand rests on the hips, per posture: 1 if it moves relative to the hips by less than 0.09
-/// `arm` within 0.1 s to either side, 0 if it moves by twice as much, as in running. `arm`: length from shoulder to
-/// wrist [m]. `times`: increasing [s].
+/// Weight with which each hand rests on the hips, per posture. Within 0.1 s to either side, the hand moves relative to
+/// the hips by less than 0.09 `arm`: 1; by more than 0.18 `arm`, as in running: 0. `arm`: length from shoulder to wrist
+/// [m]. `times`: increasing [s].
 std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> postures, std::span<const double> times,
                                                       double arm);
 

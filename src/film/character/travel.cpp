@@ -24,7 +24,7 @@ class Path {
  public:
   Path(const Rig& rig, const Clip& clip, const Vec3& up)
       : rig_(rig), skeleton_(rig), clip_(clip), up_(up), times_(key_times(clip)) {
-    const Index hips = rig.joints[place_of(Joint::hips)], middle = hips >= 0 ? hips : traveling_node(clip);
+    const Index hips = rig.joints[joint_index(Joint::hips)], middle = hips >= 0 ? hips : traveling_node(clip);
     for (const double t : times_) {
       const Pose pose = pose_at(rig.character, clip, t);
       postures_.push_back(skeleton_.at(pose));
@@ -36,7 +36,7 @@ class Path {
   /// The clip, translated by a displacement at each key.
   Clip translate(const std::vector<Vec3>& by) const {
     Index node = traveling_node(clip_);
-    if (node < 0) node = rig_.joints[place_of(Joint::hips)];
+    if (node < 0) node = rig_.joints[joint_index(Joint::hips)];
     if (node < 0) return clip_;
     const Index parent = rig_.character.nodes[node].parent;
     Curve<Vec3> position;
@@ -125,7 +125,7 @@ class Path {
       const Joint toes = on_side(Joint::left_toes, right), foot = on_side(Joint::left_foot, right);
       balls[right] = skeleton_.has(toes) ? toes : foot;
       for (const Posture& p : postures_)
-        if (skeleton_.has(balls[right])) floor = std::min(floor, up_.dot(p.places[place_of(balls[right])]));
+        if (skeleton_.has(balls[right])) floor = std::min(floor, up_.dot(p.places[joint_index(balls[right])]));
     }
     const double low = kMaxFootHeight * skeleton_.leg_length(postures_.front());
     std::vector<double> weights(times_.size(), 0);
@@ -134,8 +134,8 @@ class Path {
       if (!skeleton_.has(ball) || low <= 0) continue;
       for (std::size_t k = 0; k < times_.size(); ++k) {
         const std::size_t a = k > 0 ? k - 1 : k, b = std::min(k + 1, times_.size() - 1);
-        const Vec3 &from = postures_[a].places[place_of(ball)], &to = postures_[b].places[place_of(ball)];
-        const double weight = 1 - (up_.dot(postures_[k].places[place_of(ball)]) - floor) / low;
+        const Vec3 &from = postures_[a].places[joint_index(ball)], &to = postures_[b].places[joint_index(ball)];
+        const double weight = 1 - (up_.dot(postures_[k].places[joint_index(ball)]) - floor) / low;
         if (weight <= 0 || a == b) continue;
         weights[k] += weight;
         velocities[k] -= weight / (times_[b] - times_[a]) * (heading(k).transpose() * horizontal(to - from));

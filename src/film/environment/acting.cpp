@@ -159,8 +159,8 @@ character::Clip retarget_motion(const Cast& cast, const scene::Acting& acting, B
   const character::Clip clip =
       travel(cast, acting, from, choose_clip(cast, acting.clip, motion.character.clips, file), size, body.warnings);
   character::Retargeted result = character::retarget(to, from, clip, cast.up());
-  for (const std::string& doubt : result.doubts)
-    body.warnings.push_back(fmt::format("{}: motion file {}: {}", cast.where, file, doubt));
+  for (const std::string& warning : result.warnings)
+    body.warnings.push_back(fmt::format("{}: motion file {}: {}", cast.where, file, warning));
   return std::move(result.clip);
 }
 
@@ -210,8 +210,8 @@ Body make_playing_body(const Cast& cast, const Source& source) {
                        choose_clip(cast, source.clip, body.character.clips, body.source), 1, body.warnings);
   }
   if (body.clip)
-    if (const auto doubt = warn_of_missing_skin(body.character, *body.clip))
-      body.warnings.push_back(fmt::format("{}: {} {}", cast.where, body.source, *doubt));
+    if (const auto warning = warn_of_missing_skin(body.character, *body.clip))
+      body.warnings.push_back(fmt::format("{}: {} {}", cast.where, body.source, *warning));
   if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
                                    body.clip->duration, cast.settings.start));
@@ -296,8 +296,8 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
 void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
-  if (const auto doubt = warn_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
-    body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *doubt));
+  if (const auto warning = warn_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
+    body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *warning));
 }
 
 void check_size(const Cast&, const scene::Mannequin&, Body&) {}
@@ -359,7 +359,7 @@ std::optional<character::Room> room_of(const Cast& cast, const Source& source, c
     for (std::size_t v = 0; v < part.vertices.size(); ++v)
       if (!part.collide && part.vertices[v] != 0) touched[v] = 0;
   const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
-  return character::Room({body.character, joints}, touched, std::move(near_cloth), room, grounds_below(cast));
+  return character::Room({body.character, joints}, touched, std::move(near_cloth), room, static_grounds(cast));
 }
 
 /// The largest displacement of the skin over all keys, its time and its place (body's coordinates) [m].
@@ -413,7 +413,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   std::vector<Vec3> bones;  // points on the bones from which the body's vertices (not those of pins) grow
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
-  const std::vector<character::Ground> grounds = grounds_below(cast);
+  const std::vector<character::Ground> grounds = static_grounds(cast);
   std::vector<double> lowest;  // height of the lowest vertex over the floor at each key [m]
   KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
     const character::Pose pose = performance.at(t);
@@ -425,11 +425,11 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     for (std::size_t v = 0; v < bones.size(); ++v)
       x[v] = bones[v] + character::grown(since, cast.settings.grow) * (x[v] - bones[v]);
   });
-  if (const auto doubt =
+  if (const auto warning =
           warn_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count, vertices))
-    body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
-  if (const auto doubt = warn_of_floor_distance(std::move(lowest), cast.scene.obstacles.size() == 1))
-    body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
+    body.warnings.push_back(fmt::format("{}: {}", cast.where, *warning));
+  if (const auto warning = warn_of_floor_distance(std::move(lowest), cast.scene.obstacles.size() == 1))
+    body.warnings.push_back(fmt::format("{}: {}", cast.where, *warning));
   std::vector<std::string> notes;
   if (auto note = describe(cast, moved)) notes.push_back(*std::move(note));
   mesh::Mesh mesh = std::move(body.character.mesh);

@@ -50,7 +50,7 @@ struct Actor {
   std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
-  std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if that has none
+  std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if the file has none
 };
 
 /// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.

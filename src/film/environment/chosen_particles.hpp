@@ -10,9 +10,9 @@
 namespace weft::environment {
 
 /// Adds pins (without their motion), weights and attachments to a cloth whose rest shape is made. `file`: data of the
-/// vertices in the mesh file; empty for other cloth. Throws Error(scene_invalid) that begins with `where` (for
-/// attachments, with the scene file and their name) for a region that holds no particle, and for a panel, an edge, UVs,
-/// colours or a group that the cloth does not have.
+/// vertices in the mesh file; empty for other cloth. Throws Error(scene_invalid) for a region that holds no particle,
+/// and for a panel, an edge, UVs, colours or a group that the cloth does not have. The message begins with `where` or,
+/// for attachments, with the scene file and their name.
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
                       const std::string& where, MadeCloth& made);
 

@@ -75,7 +75,7 @@ void add_samples(const std::array<Vec3, 3>& corners, PointCubes& places) {
 
 }  // namespace
 
-std::vector<character::Ground> grounds_below(const Cast& cast) {
+std::vector<character::Ground> static_grounds(const Cast& cast) {
   const scene::Pose& pose = cast.settings.pose;
   std::vector<character::Ground> grounds;
   for (const scene::Obstacle& obstacle : cast.scene.obstacles) {

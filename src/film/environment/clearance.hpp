@@ -12,7 +12,7 @@
 namespace weft::environment {
 
 /// The grounds on which a body can lie: infinite planes that collide and stand still, in the body's coordinates.
-std::vector<character::Ground> grounds_below(const Cast& cast);
+std::vector<character::Ground> static_grounds(const Cast& cast);
 
 /// Height of the lowest of these points over the ground [m].
 double height_over(const character::Ground& ground, std::span<const Vec3> x);

@@ -1,5 +1,4 @@
-// Converts a scene to its model (Fig. 1 of the seed, the paper that README.md names) and to the data that are only
-// drawn.
+// Converts a scene to its model and to the data that are only drawn.
 #pragma once
 
 #include <cstdint>

@@ -94,9 +94,9 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
         "the waist, {:.2f} around the hips, and is {:.2f} m tall",
         fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
     factors = factors.cwiseProduct(fit);
-    if (const std::string doubt = garment::warn_if_hips_do_not_hold(pattern, factors, body);
-        !doubt.empty() && cloth.pins.empty())
-      made.details.warnings.push_back(fmt::format("{}: {}", where, doubt));
+    if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, body);
+        !warning.empty() && cloth.pins.empty())
+      made.details.warnings.push_back(fmt::format("{}: {}", where, warning));
   }
   pattern.scale_by(factors);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);

@@ -19,10 +19,10 @@ constexpr double kMaxFloorDistance = 0.05;
 
 }  // namespace
 
-std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said) {
+std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool scale_given) {
   const auto [low, high] = std::ranges::minmax(x, {}, [&](const Vec3& v) { return up.dot(v); });
   const double height = up.dot(high - low);
-  const double more = said ? 10 : 1;
+  const double more = scale_given ? 10 : 1;
   if (height >= kMinHeight / more && height <= kMaxHeight * more) return std::nullopt;
   return fmt::format(
       "is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many metres a unit of the file has: with "

@@ -12,8 +12,8 @@
 namespace weft::environment {
 
 /// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
-/// `said`: whether the scene sets the scale; if so, heights up to ten times beyond the limits are accepted.
-std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
+/// `scale_given`: the scene sets the scale; heights up to ten times beyond the limits are then accepted.
+std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool scale_given);
 
 /// Warns of a body whose skin is all bound to one node, although the clip turns several others.
 std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);

@@ -375,9 +375,9 @@ class Sewing {
         const std::vector<double> lengths = band_along(edge).lengths;
         return std::accumulate(lengths.begin(), lengths.end(), 0.0);
       };
-      // As that of other seams, the length is the mean of both sides.
+      // As for other seams, the length is the mean of both sides.
       const double length = 0.5 * (length_of(seam.a) + length_of(seam.b));
-      // If both edges are rings, their last particles are the first again.
+      // If both edges are closed, each ends with the particle with which it begins.
       const bool ring = last > 0 && a.front() == a.back() && b.front() == b.back();
       const std::size_t places = ring ? last : a.size();
       // If there are more buttons than particles, each particle gets one tie.

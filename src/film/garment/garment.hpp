@@ -20,9 +20,8 @@ struct SewnSeam {
 /// A pattern as one mesh, sewn from the start.
 ///
 /// Sheet::rest holds the start: a smooth surface without intersections, but not isometric to the panels. Its
-/// coordinates are those of the world for panels around a wearer, else x to the wearer's left, y from front to back, z
-/// up. Sheet::material holds the rest shape, that of the flat panels. The front of the cloth faces away from the
-/// wearer.
+/// coordinates are those of the world for panels around a wearer, else x to the left, y from front to back, z up.
+/// Sheet::material holds the rest shape, that of the flat panels. The front of the cloth faces away from the wearer.
 struct Garment {
   mesh::Sheet sheet;
   std::vector<Vec2> uv;         ///< per vertex: coordinates in a plane, for drawing the weave [m]; bent panels overlap

@@ -26,7 +26,7 @@ using scene::TableBuilder;
 using scene::Type;
 using scene::within;
 
-// Maximum deviation of a fold edge from a line / length of the edge; it is not 0, since files round coordinates.
+// Maximum deviation of a fold edge from a straight line, relative to its length. Not 0, since files round coordinates.
 constexpr double kMaxFoldDeviation = 1e-3;
 // Maximum size of a panel [m].
 constexpr double kMaxPanelSize = 100;

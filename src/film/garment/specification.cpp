@@ -193,7 +193,7 @@ class Reader {
       const auto p = numbers(*params, 3, key + ".params");
       if (!p) return;
       edge.radius = unit_ * (*p)[0];
-      edge.large = (*p)[1] != 0, edge.right = (*p)[2] != 0;
+      edge.large_arc = (*p)[1] != 0, edge.sweep = (*p)[2] != 0;
       if (!(edge.radius > 0)) mistake(key + ".params", fmt::format("expected a radius > 0, got {:g}", (*p)[0]));
     } else if (count == 0) {
       mistake(key + ".type", "expected quadratic, cubic or circle, got " + text_of(*type));
@@ -287,8 +287,9 @@ class Reader {
         for (const std::size_t k : {0, 1}) {
           SpecPanel& panel = panels_[stitch.panel[k]];
           const SpecPanel& other = panels_[stitch.panel[1 - k]];
-          if (panel.is_limb() && panel.steps < 0 && (other.is_limb() ? step > 0 && other.steps == step - 1 : step == 0))
-            panel.steps = step;
+          if (panel.is_limb() && panel.limbs_to_trunk < 0 &&
+              (other.is_limb() ? step > 0 && other.limbs_to_trunk == step - 1 : step == 0))
+            panel.limbs_to_trunk = step;
         }
   }
 
@@ -300,7 +301,7 @@ class Reader {
     for (const SpecStitch& stitch : stitches_)
       for (const std::size_t k : {0, 1}) {
         const SpecPanel& other = panels_[stitch.panel[1 - k]];
-        if (stitch.panel[k] != p || (other.is_limb() && other.steps >= panel.steps)) continue;
+        if (stitch.panel[k] != p || (other.is_limb() && other.limbs_to_trunk >= panel.limbs_to_trunk)) continue;
         for (const Vec2& x : panel.points[stitch.edge[k]]) cap += x, ++count;
       }
     if (count == 0) return {0, 1};

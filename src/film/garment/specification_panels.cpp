@@ -23,7 +23,7 @@ std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map) {
     if (!edge.has_length()) continue;
     if (path.empty()) path = "M" + text(edge.start);
     if (edge.radius > 0)
-      path += fmt::format(" A {0} {0} 0 {1:d} {2:d}", edge.radius, edge.large, edge.right != flips);
+      path += fmt::format(" A {0} {0} 0 {1:d} {2:d}", edge.radius, edge.large_arc, edge.sweep != flips);
     else
       path += edge.control.empty() ? " L" : edge.control.size() == 1 ? " Q" : " C";
     for (const Vec2& p : edge.control) path += text(p);

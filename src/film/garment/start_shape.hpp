@@ -21,9 +21,9 @@ struct LaidPanel {
 /// as possible (least squares), so that the distortion by closed seams and darts spreads smoothly over the panels.
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices);
 
-/// Separates front and back panels in depth. With d the distance in the plane to the nearest seam between front and
-/// back, front panels move to −f(d) and back panels to +f(d), where f(d) = √(d (2 depth − d)) and f = depth for d >=
-/// depth: a pillow with round edges. A few smoothing steps then move each vertex toward its neighbours, except on these
+/// Separates front and back panels in depth. Front panels move to −f(d) and back panels to +f(d), where d is the
+/// distance in the plane to the nearest seam between front and back: f(d) = √(d (2 depth − d)) for d < depth, else f =
+/// depth, a pillow with round edges. A few smoothing steps then move each vertex toward its neighbours, except on these
 /// seams and on rims of openings. Both halves are graphs over the plane and meet only in the seams. Returns (across,
 /// depth, up) [m].
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);

@@ -17,10 +17,9 @@ namespace {
 // Maximum relative difference between the scales along u and v that still counts as one scale: hanging cloth is some
 // percent longer in one direction.
 constexpr double kMaxScaleDifference = 0.05;
-// UVs are in one of the units below if more than the fraction kMinFractionInUnit of all edges, weighted by their
-// lengths in the UVs, is as long as in the mesh within kUnitTolerance. (Measured with a tolerance of 5 %, not with this
-// one: 35 to 67 % for garments that start sewn together around a body with strongly stretched seams; 4 % for charts of
-// a body.)
+// UVs are in one of the units below if more than kMinFractionInUnit of all edges (weighted by length in the UVs) are as
+// long as in the mesh within kUnitTolerance. (Measured with a tolerance of 5 %, not with this one: 35 to 67 % for
+// garments that start sewn together around a body with strongly stretched seams; 4 % for charts of a body.)
 constexpr double kUnitTolerance = 0.02, kMinFractionInUnit = 0.2;
 constexpr std::array<std::pair<double, const char*>, 4> kUnits{
     {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}}};
@@ -160,8 +159,8 @@ std::size_t count_islands(const mesh::Mesh& mesh, std::span<const UvCorners> uv)
 }
 
 /// Replaces triangles whose height is less than `flattest` times the longest edge of all triangles by their shape in
-/// the mesh, if its height is larger. Adds to the number of unusable triangles, and the area that they lack in the UVs
-/// [m²] to `unusable_area`.
+/// the mesh, if that shape is higher. Counts them as unusable, and adds the area that they lack in the UVs [m²] to
+/// `unusable_area`.
 void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& rest) {
   const auto longest_edge = [](const UvCorners& c) {
     return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});

@@ -41,10 +41,10 @@ struct UvRest {
 };
 
 /// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or none. If `scale` is not given, it is the unit
-/// (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh, if a fifth of them are;
-/// else the median scale of all edges, or separate fitted scales for u and v if these differ by more than 5 %.
-/// `flattest`: minimum height of a triangle in the UVs, relative to the longest edge of all triangles there. Flatter
-/// triangles are unusable if they are higher in the mesh.
+/// (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh; at least a fifth of the
+/// edges must be. Otherwise it is the median scale of all edges or, if the fitted scales for u and v differ by more
+/// than 5 %, these two. `flattest`: minimum height of a triangle in the UVs, relative to the longest edge of all
+/// triangles there. Flatter triangles are unusable if they are higher in the mesh.
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
                     double flattest = 0);
 

@@ -37,9 +37,10 @@ inline const std::vector<std::string> kAroundNames = {"",         "torso",     "
 /// The same part on the other side.
 Around mirrored(Around part);
 
-/// A tube around a part: convex sections of the skin across an axis. Coordinates on the tube: s along the axis [m],
-/// increasing toward the trunk (height above the floor for upright parts; for arms 0 at the shoulder, negative below);
-/// and a length along the section, counter-clockwise seen from the trunk or from above.
+/// A tube around a part: convex sections of the skin across an axis. Coordinates on the tube: s along the axis, and a
+/// length along the section [m]. s increases toward the trunk: for upright parts, it is the height above the floor; for
+/// arms, it is 0 at the shoulder and negative below. The length runs counter-clockwise seen from the trunk or from
+/// above.
 class Tube {
  public:
   /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part.

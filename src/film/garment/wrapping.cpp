@@ -98,7 +98,7 @@ class PanelPlacer {
     return pattern_.gap + kLayerDistance * panel.layer + ease;
   }
 
-  // Total width of the panels of layer 0 around each part, which form its ring, per height in steps of kStep.
+  // Total width of the panels of layer 0 around each part (its ring), per height in steps of kStep.
   std::map<Around, std::map<long, double>> widths() const {
     std::map<Around, std::map<long, double>> of_part;
     for (std::size_t p = 0; p < positions_.size(); ++p) {

@@ -18,10 +18,11 @@ namespace weft::garment {
 bool are_drawn_from_same_side(const Panel& a, const Panel& b);
 
 /// For each panel, the start position of each point of its flat mesh before sewing. Points keep the heights and lengths
-/// of the drawing on the tube around the panel's part. Their distance from the skin is Pattern::gap plus that of the
-/// layers below. If the panels of a ring are wider than the girth there, they move outward until the ring closes;
-/// narrow sleeves move inward. A panel without a position moves along its part to where its seams to placed panels are
-/// shortest. `refuse` receives a description of a mistake and must throw. Positions are in the wearer's axes [m].
+/// of the drawing on the tube around the panel's part. Their distance from the skin is Pattern::gap plus kLayerDistance
+/// for each layer below. If panels that close around a part are wider than the girth there, they move outward until
+/// they close; narrow sleeves move inward. A panel without a position moves along its part to where its seams to placed
+/// panels are shortest. `refuse` receives a description of a mistake and must throw. Positions are in the wearer's axes
+/// [m].
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer, const std::function<void(const std::string&)>& refuse);
 

@@ -23,8 +23,8 @@ class CameraPath {
   void see(const frame::FrameSnapshot& snapshot);
   void find();
 
-  /// The camera of a frame. If it is computed, returns that of the last frame given to see() whose number is at most
-  /// that of `snapshot`, or of the first frame if all are later. see() must have received at least one frame.
+  /// The camera of a frame. A computed camera is that of the last frame given to see() whose number is not above that
+  /// of `snapshot`, or of the first frame if all are later. see() must have received at least one frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:

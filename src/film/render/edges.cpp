@@ -44,13 +44,14 @@ class Canvas {
     const int to = std::min(steep ? height_ : width_, static_cast<int>(std::ceil(along(b) - 0.5)));
     for (int step = from; step < to; ++step) {
       const double share = (step + 0.5 - along(a)) / length;
-      const double place = across(a) + share * (across(b) - across(a)) - 0.5;
+      const double cross_place = across(a) + share * (across(b) - across(a)) - 0.5;
       const double nearness = a.nearness + share * (b.nearness - a.nearness);
-      const double pixel = std::floor(place);
+      const double pixel = std::floor(cross_place);
       for (int side = 0; side < 2; ++side) {
-        const int other = static_cast<int>(pixel) + side;
-        const double cover = side ? place - pixel : 1 - (place - pixel);
-        steep ? darken(other, step, nearness, surface, cover) : darken(step, other, nearness, surface, cover);
+        const int cross_pixel = static_cast<int>(pixel) + side;
+        const double cover = side ? cross_place - pixel : 1 - (cross_place - pixel);
+        steep ? darken(cross_pixel, step, nearness, surface, cover)
+              : darken(step, cross_pixel, nearness, surface, cover);
       }
     }
   }
@@ -81,7 +82,7 @@ void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int 
     std::vector<Eigen::Vector4d> clip;
     for (const Vec3& position : surfaces[i].state().positions)
       clip.push_back(view.clip_from_world * position.homogeneous());
-    const auto place = [&](const Eigen::Vector4d& at) {
+    const auto to_picture = [&](const Eigen::Vector4d& at) {
       return Place{(0.5 + 0.5 * at.x() / at.w()) * width, (0.5 + 0.5 * at.y() / at.w()) * height, 1 / at.w()};
     };
     for (const auto& [a, b] : edges_of(surfaces[i].surface())) {
@@ -89,7 +90,7 @@ void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int 
       if (from.w() > to.w()) std::swap(from, to);
       if (to.w() <= view.near) continue;
       if (from.w() < view.near) from += (view.near - from.w()) / (to.w() - from.w()) * (to - from);
-      canvas.line(place(from), place(to), static_cast<float>(kFirstSurface + i));
+      canvas.line(to_picture(from), to_picture(to), static_cast<float>(kFirstSurface + i));
     }
   }
 }

@@ -44,8 +44,8 @@ class FrustumFit {
   const ViewAxes& axes() const { return axes_; }
   /// Distance from `center` that an eye looking at it needs, so that all points are in the picture [m].
   double distance(const Vec3& center) const;
-  /// Sets position and target of the camera. The eye is as close as the points allow; they are centred along that
-  /// direction of the picture, horizontal or vertical, which needs the larger distance. The target has the depth of
+  /// Sets position and target of the camera. The eye is as close as the points allow; the points are centred in the
+  /// direction of the picture (horizontal or vertical) that needs the larger distance. The target has the depth of
   /// `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 

@@ -49,8 +49,8 @@ class GeometryBuffer {
   const Texture& depth_stencil() const { return depth_stencil_; }
 
  private:
-  /// Shader variant. If any surface has paint, the shaders of all surfaces write the paint of each pixel; likewise for
-  /// trims.
+  /// Shader variant. If any surface has paint, the shaders of all surfaces write the paint of each pixel; the same
+  /// applies to trims.
   struct Variant {
     bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
     auto operator<=>(const Variant&) const = default;

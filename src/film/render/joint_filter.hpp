@@ -14,8 +14,8 @@ namespace weft::render {
 /// `scratch`: as many planes as `planes`; their content is overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
-/// Averages one plane over 5 x 5 points in a single pass, with weights as in smooth() that decrease over shorter
-/// distances, and only at points whose `wanted` is above 0. Only neighbours whose `known` is above 0 count. `scratch`
+/// Averages one plane over 5 x 5 points in a single pass, only at points whose `wanted` is above 0, and only over
+/// neighbours whose `known` is above 0. The weights are as in smooth(), but decrease over shorter distances. `scratch`
 /// is overwritten.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);

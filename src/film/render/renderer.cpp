@@ -113,7 +113,7 @@ struct Renderer::Impl {
   Shading::Features features(const Plan& plan) const;
   std::vector<Shading::Material> materials(const Plan& plan) const;
   bool reflects(const Plan& plan) const {
-    return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kMirrorsSubjects;
+    return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kSubjectMirrorRoughness;
   }
   ReflectedLight reflected_light(const Plan& plan, double heat);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
@@ -213,7 +213,7 @@ Shading::Features Renderer::Impl::features(const Plan& plan) const {
           .tiled = plan.floor && plan.floor->look.paint.texture && !plan.lighting.style.plain,
           .painted = passes->geometry.painted() && !plan.lighting.style.plain,
           .trimmed = passes->geometry.trimmed(),
-          .shiny = floor_roughness(plan.lighting.style, plan.floor) < kMirrorsLamps,
+          .shiny = floor_roughness(plan.lighting.style, plan.floor) < kLampMirrorRoughness,
           .reflecting = reflects(plan)};
 }
 

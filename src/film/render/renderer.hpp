@@ -50,8 +50,8 @@ class Renderer {
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
   /// The last picture as linear layers for compositors. Channels R, G, B and A hold the surfaces alone, premultiplied.
   /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor and no
-  /// translucent cloth, channel caught.A holds the alpha of the surfaces composited over the floor's shadow, which is
-  /// black, with the fraction of blocked light as its alpha. All layers of DataPasses follow.
+  /// translucent cloth, channel caught.A holds the alpha of the surfaces over the floor's shadow (black, with the
+  /// fraction of blocked light as alpha). All layers of DataPasses follow.
   image::Layers layers();
   /// The last picture with 16 bits per channel.
   image::Image16 deep();

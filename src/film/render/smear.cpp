@@ -109,8 +109,8 @@ void Smear::dilate_motions() {
 }
 
 /// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
-/// Motion Blur", 2012. A sample shows the picture at its own place if the surface there moves across (x, y), or if it
-/// is behind the surface at (x, y) and that surface moves away; else it shows the picture at (x, y).
+/// Motion Blur", 2012. A sample shows the picture at its own place in two cases: if the surface there moves across (x,
+/// y), or if it is behind the surface at (x, y), which moves away. Else it shows the picture at (x, y).
 Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;

@@ -52,19 +52,19 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
   describe(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
   // Adds an attribute of `size` floats with its own buffer.
-  const auto describe_more = [&](GLuint place, const Buffer& buffer, GLint size) {
+  const auto add_attribute = [&](GLuint place, const Buffer& buffer, GLint size) {
     gl.VertexArrayVertexBuffer(array_.name(), place, buffer.name(), 0, static_cast<GLsizei>(size * sizeof(float)));
     gl.EnableVertexArrayAttrib(array_.name(), place);
     gl.VertexArrayAttribFormat(array_.name(), place, size, GL_FLOAT, GL_FALSE, 0);
     gl.VertexArrayAttribBinding(array_.name(), place, place);
   };
   if (detail_.trims) {
-    describe_more(5, trim_distances_, Trim::kKinds);
-    describe_more(6, trim_places_, Trim::kKinds);
+    add_attribute(5, trim_distances_, Trim::kKinds);
+    add_attribute(6, trim_places_, Trim::kKinds);
   }
   if (!frame::is_painted(*surface_)) return;
   painted_.emplace();
-  describe_more(4, places_, 2);
+  add_attribute(4, places_, 2);
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
@@ -79,15 +79,15 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
     has_corner_map_ = true;
   }
   if (closed_) {
-    double volume = 0;  // six times the enclosed volume: negative if the front is inside
+    double volume_times_6 = 0;  // negative if the front is inside
     bounds_.setEmpty();
     for (const Vec3& position : state.positions) bounds_.extend(position);
     for (const auto& [a, b, c] : surface_->triangles) {
       const Vec3 from_center = state.positions[a] - bounds_.center();
-      volume +=
+      volume_times_6 +=
           from_center.dot((state.positions[b] - state.positions[a]).cross(state.positions[c] - state.positions[a]));
     }
-    faces_outward_ = volume > 0;
+    faces_outward_ = volume_times_6 > 0;
   }
   mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
   if (painted_) painted_ = make_painted_mesh(*surface_, mesh_);
@@ -134,9 +134,9 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   // Takes one drawn vertex for each surface vertex, and if the surface is refined, adds the midpoints of the rims.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
-  std::vector<Vec3> places = state_.positions, normals(vertex_count_);
+  std::vector<Vec3> points = state_.positions, normals(vertex_count_);
   for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
-  std::vector<std::pair<Index, Index>> ends;  // per place: the two drawn vertices whose mean it is
+  std::vector<std::pair<Index, Index>> ends;  // per point: the two drawn vertices whose mean it is
   for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
   const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
   std::vector<Trims::Rim> rims;
@@ -145,16 +145,16 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
       rims.push_back(rim);
       continue;
     }
-    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b], max_offset);
-    const auto m = static_cast<Index>(places.size());
-    places.push_back(here.position);
+    const Middle here = middle(points[rim.a], points[rim.b], normals[rim.a], normals[rim.b], max_offset);
+    const auto m = static_cast<Index>(points.size());
+    points.push_back(here.position);
     normals.push_back(here.normal);
     ends.emplace_back(drawn[rim.a], drawn[rim.b]);
     rims.push_back({rim.a, m, rim.triangle});
     rims.push_back({m, rim.b, rim.triangle});
   }
   const frame::Appearance& look = surface_->appearance;
-  const RimStrip strip = rim_strip(rims, places, normals, width);
+  const RimStrip strip = rim_strip(rims, points, normals, width);
   const std::span<const Triangle> without =
       refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
   const auto first = static_cast<Index>(vertices.size());
@@ -196,18 +196,18 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // Strips get a distance from the border between the hem's fold and its stitches, so that they show neither.
+  // The strips along borders show neither the hem's fold nor its stitches: their distance lies between both.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);
   trims.resize(positions_.size(), plain);
-  std::vector<std::array<float, Trim::kKinds>> distances, places;
+  std::vector<std::array<float, Trim::kKinds>> distances, along;
   for (const Trim& trim : trims) {
     distances.push_back(trim.distance);
-    places.push_back(trim.along);
+    along.push_back(trim.along);
   }
   upload<std::array<float, Trim::kKinds>>(*gl_, trim_distances_, distances);
-  upload<std::array<float, Trim::kKinds>>(*gl_, trim_places_, places);
+  upload<std::array<float, Trim::kKinds>>(*gl_, trim_places_, along);
   uploaded_trim_count_ = trims.size();
 }
 

@@ -13,8 +13,8 @@ namespace weft::render {
 inline constexpr float kNoTrim = 1e3f;
 
 /// Distances from a point to the nearest line of each kind, in rest coordinates [m]; kNoTrim if there is none. Two
-/// borders that meet at a corner have different kinds, because each distance can be interpolated linearly across the
-/// corner, but their minimum cannot. (A closed border with an odd number of sides has one corner with a single kind.)
+/// borders that meet at a corner have different kinds: across the corner, each distance can be interpolated linearly,
+/// but not their minimum. (A closed border with an odd number of sides has one corner with a single kind.)
 struct Trim {
   enum Kind { border, other_border, seam };
   static constexpr int kKinds = 3;

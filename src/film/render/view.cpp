@@ -125,7 +125,7 @@ Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::opt
   lighting.style = style_of(stage);
   lighting.exposure = expose(lighting.style, floor, lights);
   lighting.gain = std::exp2(stage.exposure);
-  // The light from below is that of open floor; rays to shaded floor subtract the difference (reflected_light.hpp).
+  // The light from below is that of open floor; for shaded floor, reflected_light.hpp subtracts the difference.
   const Vec3 ground =
       floor && !stage.ground_color
           ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
@@ -141,7 +141,7 @@ double floor_roughness(const Style& style, const std::optional<Floor>& floor) {
   return std::min(floor->look.roughness, style.floor_roughness);
 }
 
-FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& surroundings,
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& scene_bounds,
                         const std::optional<Floor>& floor, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
@@ -149,7 +149,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   };
   const Style& style = lighting.style;
   const Surroundings& around = lighting.around;
-  const double radius = 0.5 * surroundings.diagonal().norm();
+  const double radius = 0.5 * scene_bounds.diagonal().norm();
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
   // A style with a coloured horizon has a sky with colours of its own; a grey backdrop takes the colour of the floor.
@@ -159,7 +159,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.clip_from_world = view.clip_from_world.cast<float>();
   frame.view_from_world = view.view_from_world.cast<float>();
   frame.eye_world = four(view.eye, radius);
-  frame.center_world = four(surroundings.center(), floor_roughness(style, floor));
+  frame.center_world = four(scene_bounds.center(), floor_roughness(style, floor));
   frame.up_world = four(around.up, 0);
   frame.right_world = four(view.axes.right, 0);
   frame.sky = four(around.sky, 0);

@@ -56,16 +56,17 @@ struct FrameUniform {
 };
 static_assert(offsetof(FrameUniform, eye_world) == 2 * 64 && offsetof(FrameUniform, box_axes) == 2 * 64 + 13 * 16);
 
-/// Strength of the direct light, and the light that open floor shows.
+/// Strength of the direct light, and colour of open floor (floor without shadows or occlusion).
 struct Exposure {
   Vec3 direct = Vec3::Ones();  ///< factor on every light for each channel
-  Vec3 floor = Vec3::Zero();   ///< linear colour that open floor shows; without a floor, 0.8 times Style::sky_color
+  Vec3 floor = Vec3::Zero();   ///< linear colour of open floor; without a floor, 0.8 times Style::sky_color
 };
 
 /// Exposes for the floor, as product photographers do for a white ground. Direct light is increased, never decreased,
 /// until open floor shows its own colour. White balance then raises or lowers each channel slightly, against a bluish
-/// sky or coloured light, so that a white floor stays white. Both are limited, so that dark or coloured scenes stay so.
-/// Without a floor, or if the style does not expose, nothing changes. `lights`: those of the picture.
+/// sky or coloured light, so that a white floor stays white. The increase and the balance are limited, so that dark or
+/// coloured scenes stay dark or coloured. Without a floor, or if the style does not expose, nothing changes. `lights`:
+/// those of the picture.
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
 
 /// Style, environment and exposure of a picture.
@@ -78,13 +79,13 @@ struct Lighting {
 Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
                        std::span<const frame::Light> lights);
 
-/// Roughness of the floor, from its own appearance and from the style; 1 without a floor. Below kMirrorsLamps the floor
-/// mirrors lamps (the default roughness of scenes does not); below kMirrorsSubjects it also mirrors the subjects.
+/// Roughness of the floor, from its own appearance and from the style; 1 without a floor. Below kLampMirrorRoughness
+/// the floor mirrors lamps (the default floor does not); below kSubjectMirrorRoughness also the subjects.
 double floor_roughness(const Style& style, const std::optional<Floor>& floor);
-inline constexpr double kMirrorsLamps = 0.6, kMirrorsSubjects = 0.5;
+inline constexpr double kLampMirrorRoughness = 0.6, kSubjectMirrorRoughness = 0.5;
 
-/// `surroundings`: surroundings_bounds() of the run.
-FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& surroundings,
+/// `scene_bounds`: surroundings_bounds() of the run.
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& scene_bounds,
                         const std::optional<Floor>& floor, int width, int height);
 
 }  // namespace weft::render

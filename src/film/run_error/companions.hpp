@@ -27,8 +27,8 @@ struct ErrorEstimate {
   /// 0.3 of the step and solver errors. This limit is at least 10 µm and at most 1 mm. Also true if the run with these
   /// offsets fails.
   bool start_matters = false;
-  /// The error does not follow the order of the method: the run with twice the step fails, or differs too little from
-  /// the run, compared with the run with half the step.
+  /// The error does not follow the order of the method: the run with twice the step fails, or differs from the run too
+  /// little in relation to the run with half the step.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
   Errors all{};      ///< root of the sum of squares of the parts

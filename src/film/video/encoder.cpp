@@ -128,7 +128,7 @@ struct Encoder::Impl {
   FramePtr frame;
   PacketPtr packet;
   CodecPtr codec;
-  std::unique_ptr<Mp4Writer> writer;
+  std::unique_ptr<VideoFileWriter> writer;
   int frames = 0;   // sent to the encoder
   int packets = 0;  // received from the encoder
   bool finished = false;
@@ -149,8 +149,8 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
       codec(open_codec(f, s, *frame, rate)) {
   const ParametersPtr parameters = check_allocated(ParametersPtr(avcodec_parameters_alloc()), file);
   check(avcodec_parameters_from_context(parameters.get(), codec.get()), file, "describe the video");
-  writer =
-      std::make_unique<Mp4Writer>(fragments->path(), file, Mp4Layout::fragmented, *parameters, rate, settings.metadata);
+  writer = std::make_unique<VideoFileWriter>(fragments->path(), file, Mp4Layout::fragmented, *parameters, rate,
+                                             settings.metadata);
 }
 
 // Sends a frame to the encoder, or nullptr to end the video, and writes the packets that are ready.

@@ -22,7 +22,7 @@ struct LibavDeleter {
   void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
 };
 
-/// Closes the file and frees the context. Ignores errors; Mp4Writer::close() reports them.
+/// Closes the file and frees the context. Ignores errors; VideoFileWriter::close() reports them.
 struct OutputDeleter {
   void operator()(AVFormatContext* output) const;
 };

@@ -60,8 +60,8 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times; there, it is the
-// smallest delay with which no frame is shown before it is decoded. 0 if there is no frame or a time is missing.
+// Delay between decoding and showing the first frame [frames]. As Matroska stores no decoding times, its delay is the
+// smallest with which no frame is shown before it is decoded. 0 if there is no frame or a time is missing.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const AVRational unit = input->streams[0]->time_base;
@@ -80,9 +80,9 @@ std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::
 
 }  // namespace
 
-Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
-                     const AVCodecParameters& codec, AVRational rate,
-                     const std::map<std::string, std::string>& metadata)
+VideoFileWriter::VideoFileWriter(const std::filesystem::path& file, std::filesystem::path reported_file,
+                                 Mp4Layout layout, const AVCodecParameters& codec, AVRational rate,
+                                 const std::map<std::string, std::string>& metadata)
     : reported_file_(std::move(reported_file)), frame_duration_(av_inv_q(rate)) {
   AVFormatContext* allocated = nullptr;
   check(avformat_alloc_output_context2(&allocated, nullptr, container_of(reported_file_), file.c_str()), reported_file_,
@@ -112,7 +112,7 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
   if (av_dict_count(options.entries) != 0) fail(reported_file_, "write the header", "libav ignores movflags");
 }
 
-void Mp4Writer::write(AVPacket& packet) {
+void VideoFileWriter::write(AVPacket& packet) {
   packet.stream_index = 0;
   packet.pos = -1;
   packet.duration = 1;
@@ -120,7 +120,7 @@ void Mp4Writer::write(AVPacket& packet) {
   check(av_write_frame(output_.get(), &packet), reported_file_, "write a frame");
 }
 
-void Mp4Writer::close() {
+void VideoFileWriter::close() {
   check(av_write_trailer(output_.get()), reported_file_, "write the index");
   check(avio_closep(&output_->pb), reported_file_, "close the file");
   output_.reset();
@@ -131,7 +131,7 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
                         const std::map<std::string, std::string>& metadata) {
   const InputPtr first = open_video(from.front(), reported_file);
   const AVCodecParameters& codec = *first->streams[0]->codecpar;
-  Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
+  VideoFileWriter writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
 
   // Packet k is decoded `delay` frames before time k, since B-frames need later frames. Files may differ in this delay

@@ -17,13 +17,13 @@ enum class Mp4Layout {
 };
 
 /// A video file that is being written.
-class Mp4Writer {
+class VideoFileWriter {
  public:
   /// Opens `file` and writes its header. The path must be absolute, since libav reads the text before a colon as a
   /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, the name that
   /// the user has given. Throws Error(output_failed).
-  Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
-            const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
+  VideoFileWriter(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
+                  const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
 
   /// Appends a packet, in decoding order; rescales its times to the unit of the file. Throws Error(output_failed).
   void write(AVPacket& packet);

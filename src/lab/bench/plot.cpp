@@ -41,11 +41,11 @@ PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   return {low - room, high + room, start, length};
 }
 
-// Text of part · 10^decade: for example 0.02, 5, 200; for decades beyond ±3 as 10^4 or 2·10^4.
-std::string tick_name(double part, int decade) {
-  const double value = part * std::pow(10.0, decade);
+// Text of mantissa · 10^decade: for example 0.02, 5, 200; for decades beyond ±3 as 10^4 or 2·10^4.
+std::string tick_name(double mantissa, int decade) {
+  const double value = mantissa * std::pow(10.0, decade);
   if (decade >= -3 && decade <= 3) return fmt::format("{:g}", value);
-  return fmt::format("{}10<tspan dy='-4' font-size='8'>{}</tspan>", part == 1 ? "" : fmt::format("{:g}·", part),
+  return fmt::format("{}10<tspan dy='-4' font-size='8'>{}</tspan>", mantissa == 1 ? "" : fmt::format("{:g}·", mantissa),
                      decade);
 }
 
@@ -75,14 +75,15 @@ std::string ticks(const PlotAxis& axis, bool vertical) {
   const std::vector<double> named = labelled_multiples(decades);
   const int every = static_cast<int>(std::ceil(decades / kMaxLabelledDecades));
   for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high; ++decade) {
-    const auto inside = [&](double part) {
-      const double place = std::log10(part) + decade;
+    const auto inside = [&](double mantissa) {
+      const double place = std::log10(mantissa) + decade;
       return place >= axis.low && place <= axis.high;
     };
-    for (double part : {1.0, 2.0, 5.0})
-      if (inside(part)) line(axis.at(part * std::pow(10.0, decade)), part == 1 ? "#c8c8c8" : "#eeeeee");
-    for (double part : named)
-      if (inside(part) && decade % every == 0) name(axis.at(part * std::pow(10.0, decade)), tick_name(part, decade));
+    for (double mantissa : {1.0, 2.0, 5.0})
+      if (inside(mantissa)) line(axis.at(mantissa * std::pow(10.0, decade)), mantissa == 1 ? "#c8c8c8" : "#eeeeee");
+    for (double mantissa : named)
+      if (inside(mantissa) && decade % every == 0)
+        name(axis.at(mantissa * std::pow(10.0, decade)), tick_name(mantissa, decade));
   }
   return text;
 }

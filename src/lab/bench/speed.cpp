@@ -97,7 +97,7 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
                        const std::function<Drawing()>& open_drawing) {
   set_thread_count(setting.threads);
   charge_all_threads = true;
-  SpeedRun run{.setting = setting, .memory_before = memory_bytes()};
+  SpeedRun run{.setting = setting, .memory_before = resident_bytes()};
   production::SceneSimulation simulation(scene);
   simulation.run_preroll();
   Drawing draw;

@@ -15,7 +15,7 @@ namespace weft::collision {
 /// How a surface collides.
 struct BodyTraits {
   bool deformable = false;  ///< its vertices are particles, which the solve moves
-  double thickness = 0;     ///< half of it adds to the activation distance of a pair [m]; 0 for obstacles
+  double thickness = 0;     ///< half of it is added to the activation distance of a pair [m]; 0 for obstacles
   double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
   bool moving = true;       ///< false: its vertices never leave their start positions
   bool rigid = false;       ///< its vertices keep their distances from each other
@@ -46,9 +46,9 @@ class Bodies {
   Bodies& operator=(Bodies&&) = default;
 
   /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
-  /// before these vertices that count as part of the body but belong to no triangle, such as frame particles; patches
-  /// and `limbs` include them. If patches share a vertex, the last one counts. `limbs`: limb number of each vertex,
-  /// from 0; empty: one limb.
+  /// before these vertices that belong to the body but to no triangle, such as frame particles. Patches and `limbs`
+  /// include these positions. If patches share a vertex, the last one counts. `limbs`: limb number of each vertex, from
+  /// 0; empty: one limb.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 
@@ -72,8 +72,8 @@ class Bodies {
   const std::vector<ContactMaterial>& materials() const { return materials_; }
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
-  /// Number, within its body, of the first triangle that has these corners in any order. For an edge, repeat its second
-  /// end: the result is the first triangle at that edge. If there is none, the result is the number of triangles.
+  /// Index within its body of the first triangle with these corners, in any order; the number of triangles if there is
+  /// none. For an edge, repeat one end: finds the first triangle at the edge.
   Index triangle_of(const Triangle& corners) const;
 
   /// The section of an array over all vertices that belongs to this body.

@@ -129,7 +129,8 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
   return clear_[bodies_.body_of(static_cast<Index>(vertex))].holds(x);
 }
 
-// Whether x is within the margin of the box of the vertex's collected end, or in the half-space of its obstacle.
+// Whether x is within the margin of the box for which the vertex's end was collected, or in the half-space of its
+// obstacle.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
   const Vec3 beyond = (x - high_end()[vertex]).cwiseMax(low_[vertex] - x);
   // A box contains all points within the margin along each axis. Bounds with more directions are only sure to contain

@@ -23,13 +23,13 @@ struct SearchParameters {
 
 /// Collects candidate pairs for the trajectories of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at
 /// both ends. The pairs stay valid for all trajectories whose ends lie inside these bounds. The margin is half the
-/// detection distance. If SearchParameters::reuse is set and the step is slow, a Verlet margin of 2 ·
-/// Numerics::Contact::margin detection distances is added; a step is slow if no vertex moves as far as the Verlet
-/// margin along an axis. As long as no vertex has moved farther than that since the pairs were collected, all features
-/// that are near now were within radius() of each other at that time. Cloth at rest is searched once.
+/// detection distance. With SearchParameters::reuse, slow steps add a Verlet margin of 2 · Numerics::Contact::margin
+/// detection distances. A step is slow if no vertex moves as far as the Verlet margin along an axis. While no vertex
+/// has moved farther than the Verlet margin since the pairs were collected, all features that are near now were within
+/// radius() of each other then. Cloth at rest is searched once.
 ///
-/// A clear obstacle is one that an axis-aligned plane separates from all particles. It may move on its side of that
-/// plane without invalidating the pairs, and its motion does not count above.
+/// A clear obstacle is one that an axis-aligned plane separates from all particles. Its motion on its side of that
+/// plane is ignored: it neither makes a step fast nor invalidates the pairs.
 ///
 /// Bounds at the start and at the end are compared separately, so surfaces that move together with a gap between them
 /// are not listed (measured: 4 instead of 70 pairs per particle in sphere_drape at 256²).
@@ -58,8 +58,8 @@ class CandidateCache {
   double radius() const { return 2 * margin_; }
   double detection_distance() const { return detection_distance_; }
 
-  /// Whether each vertex at x is within the Verlet margin of the start for which the pairs were collected (exactly
-  /// there if no margin was added), or is_kept_clear(). Like the next two functions, false if no pairs are valid.
+  /// Whether each vertex at x is within the Verlet margin of the start for which the pairs were collected (without that
+  /// margin: exactly at this start), or is_kept_clear(). Like the next two functions, false if no pairs are valid.
   bool covers_start(std::span<const Vec3> x) const;
   /// Whether each vertex at x is inside the bounds of its end, or is_kept_clear(). If so, the pairs include all that
   /// can meet on the trajectory from a covered start to x.
@@ -71,8 +71,8 @@ class CandidateCache {
   /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if there is none.
   bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
 
-  /// For callers that collect pairs themselves: declares them valid for ends within `margin` [m] of x_t1, and for
-  /// starts within `margin` less half the detection distance of x_t0.
+  /// For callers that collect pairs themselves: declares the pairs valid for ends within `margin` [m] of x_t1, and for
+  /// starts within (`margin` − half the detection distance) of x_t0.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     find_clear_bodies(Motion(x_t0, x_t1));
     cover(Motion(x_t0, x_t1), margin);

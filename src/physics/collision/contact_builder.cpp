@@ -18,10 +18,10 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
-// Reduces the activation distance, so that a step over h [s] opens the contact from `gap` [m] by at most the fraction h
-// / Numerics::Contact::opening_time of its full range.
+// Limits the activation distance in a step over h [s] to `gap` [m] plus the fraction h /
+// Numerics::Contact::range_growth_time of the full one.
 void limit_opening(Contact& contact, double gap, double h) {
-  const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.opening_time);
+  const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.range_growth_time);
   contact.depth -= contact.range - range;
   contact.range = range;
 }
@@ -53,12 +53,12 @@ FeaturePair pair_with_corner(Index corner, const Triangle& corners, const Featur
 double stiffness_fraction(const Proximity& proximity, bool with_cloth) {
   if (proximity.kind == ProximityKind::vertex_face) return 1;
   const auto& outside = proximity.outside_wedge;
-  const double inside_wedges = ramp(-numerics.contact.fade, 0, -std::max(outside[0], outside[1]));
+  const double inside_wedges = ramp(-numerics.contact.ramp_width, 0, -std::max(outside[0], outside[1]));
   if (!with_cloth) return inside_wedges;
   double smallest_weight = 1;
   for (double weight : proximity.weights) smallest_weight = std::min(smallest_weight, std::abs(weight));
-  return ramp(numerics.contact.flat_fold(), 2 * numerics.contact.fade, -outside[0] - outside[1]) * inside_wedges *
-         ramp(0, numerics.contact.fade, smallest_weight);
+  return ramp(numerics.contact.flat_fold(), 2 * numerics.contact.ramp_width, -outside[0] - outside[1]) * inside_wedges *
+         ramp(0, numerics.contact.ramp_width, smallest_weight);
 }
 
 // A pair of bodies uses the coefficients given for it, or else the geometric mean of those of both materials.
@@ -102,7 +102,7 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
 
 void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotion& motion,
                                  ContactResponse& response) const {
-  const double fraction = push.is_exit_clear ? 1 : numerics.contact.depenetration_stiffness;
+  const double fraction = push.is_exit_clear ? 1 : numerics.contact.blocked_exit_factor;
   auto contact = build(push.exit_pair, fraction, kNoLimit, motion);
   if (!contact) return;
   limit_opening(*contact, push.exit_pair.distance, motion.h);

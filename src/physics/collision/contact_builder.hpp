@@ -42,10 +42,9 @@ struct StepMotion {
 ///   - as both surfaces become flat at the edges: vertices and faces then keep the layers apart (one sharp edge
 ///     suffices for 1, such as a box edge on smooth cloth);
 ///   - as the contact direction leaves a wedge (see Proximity): a neighbouring face is then closer;
-///   - as a closest point approaches the end of an edge.
-/// Because it fades, no contact switches on or off while cloth rests. Without cloth (a rigid body against another one
-/// or an obstacle) only the second condition counts, because the rims of stacked boxes may cross where no vertex is
-/// near.
+///   - as a closest point approaches the end of an edge. With these ramps, no contact switches on or off while cloth
+/// rests. Without cloth (a rigid body against another one or an obstacle) only the second condition counts, because the
+/// rims of stacked boxes may cross where no vertex is near.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
@@ -61,15 +60,15 @@ class ContactBuilder {
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
-  /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction. It opens no
-  /// faster than other contacts (Numerics::Contact::opening_time). If the exit is blocked, the stiffness is reduced, so
-  /// that two obstacles do not clamp the cloth.
+  /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction. Its activation
+  /// distance grows as in new contacts (Numerics::Contact::range_growth_time). If the exit is blocked, the stiffness is
+  /// reduced, so that two obstacles do not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at
-  /// x_from. Adds one contact of these features, unless they have one of full stiffness already; it then returns false.
-  /// If motion.is_straight(), that contact only prevents them from coming closer. In a continued step, it restores the
-  /// activation distance, and further contacts keep each particle on its side of the plane between the triangles,
+  /// x_from. Adds a contact of these features, unless one of full stiffness exists; then returns false. If
+  /// motion.is_straight(), the contact only prevents the features from coming closer. In a continued step, it restores
+  /// the activation distance, and further contacts keep each particle on its side of the plane between the triangles,
   /// because other features could slide past the closest ones. With velocity constraints, a pair with an obstacle gets
   /// walls (see VelocityConstraints) for the corners of the other triangle instead.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,

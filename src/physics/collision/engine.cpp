@@ -128,7 +128,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   pushed_pairs_.clear();
   // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
   // because pairs that only turning planes separate come near each other. Exception: pairs for which separate_guess()
-  // has found such a plane are not tested again if it has not moved them since.
+  // has found such a plane, and which it has not moved since, are not tested again.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
@@ -144,10 +144,10 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Pushes surfaces apart that the estimate x_t1 lets meet. Contacts found at intersecting positions would have
-// meaningless directions, and of several layers that push each other, only one would be found per iteration. Exempts no
-// pinched cloth, because x_t1 is only an estimate. Between cloths, seeks only planes for the whole step (measured in
-// falling_band: two thirds of the searches were for parts of the step, mostly in vain).
+// Pushes apart surfaces that would meet on the way to the estimate x_t1. Contacts found at intersecting positions would
+// have meaningless directions, and each iteration would find only one contact of a stack of layers. Exempts no pinched
+// cloth, because x_t1 is only an estimate. Between cloths, seeks only planes for the whole step (measured in
+// falling_band: two thirds of all searches were for parts of the step, and most failed).
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;

@@ -44,8 +44,8 @@ class Engine {
 
   /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
   /// particles. `motions`: per body, its rigid motion, or the identity if it deforms; empty: no body moves rigidly.
-  /// x_t0 and x_t1 must outlive the step. With springs, changes x_t1 so that every pair has a separating plane, if that
-  /// succeeds. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether x_t1 has changed.
+  /// x_t0 and x_t1 must outlive the step. With springs, tries to change x_t1 so that every pair has a separating plane.
+  /// `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether x_t1 has changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 

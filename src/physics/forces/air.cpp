@@ -31,7 +31,7 @@ std::vector<Air::Faces<Corners>> Air::pack(const std::vector<std::array<Index, C
   return packs;
 }
 
-void Air::cut(std::span<const Index> bounds) {
+void Air::partition(std::span<const Index> bounds) {
   cut_packs(
       bounds, cells_, [](const Faces<4>& cells) { return std::span(cells.corners); }, ranges_of_cells_);
   cut_packs(
@@ -56,9 +56,9 @@ void Air::add_drag(const Faces<Corners>& faces, const Evaluation& at) const {
   const VecLanes n = (size > 0 ? 1 / size : lanes_of(0.0)) * area;
   VecLanes velocity = gather(at.v, faces.corners[0]);
   for (std::size_t k = 1; k < Corners; ++k) velocity = velocity + gather(at.v, faces.corners[k]);
-  if (!at.air.empty())
-    for (const Four& corner : faces.corners) velocity = velocity - gather(at.air, corner);
-  const VecLanes wind = lanes_of(at.air.empty() ? wind_ : Vec3(Vec3::Zero()));
+  if (!at.air_velocity.empty())
+    for (const Four& corner : faces.corners) velocity = velocity - gather(at.air_velocity, corner);
+  const VecLanes wind = lanes_of(at.air_velocity.empty() ? wind_ : Vec3(Vec3::Zero()));
   const Lanes speed = dot(n, lanes_of(1.0 / Corners) * velocity - wind);
   const Lanes drag_per_speed = coefficient_ / Corners * faces.is_used * size * abs(speed);  // per corner [kg/s]
   const VecLanes drag = drag_per_speed * speed * n;

@@ -12,26 +12,26 @@ namespace weft::forces {
 
 struct AirParameters {
   double density = 1.2;      ///< of the air [kg/m³]
-  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], if Evaluation::air is empty
+  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], if Evaluation::air_velocity is empty
   double drag = 1.0;         ///< coefficient of drag along the normal
 };
 
 /// Quadratic drag along the normal of each cell or triangle, divided equally among its corners: f = −½ ρ c A ‖v_n‖ v_n,
 /// with the density ρ, the drag coefficient c, the area A and the velocity v_n along the normal, relative to the air.
 ///
-/// The drag is implicit although it is not stiff. The seed (the paper that README.md names, section "Time integration")
-/// evaluates it once per step at the initial velocity; terminal velocities and folds in steady wind would then depend
-/// on the step size. The matrix contains the derivative with respect to velocities, lumped on the diagonal: an upper
-/// bound of the full derivative, exact if the corners of a face change velocity together. The derivatives of normals
-/// and areas are neglected.
+/// The drag is implicit although it is not stiff. If it were evaluated once per step at the initial velocity (Etzmuß et
+/// al. 2001, "Time integration"), terminal velocities and folds in steady wind would depend on the step size. The
+/// matrix contains the derivative with respect to velocities, lumped on the diagonal: an upper bound of the full
+/// derivative, exact if the corners of a face change velocity together. The derivatives of normals and areas are
+/// neglected.
 class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);
   Air(const mesh::Sheet& sheet, Index first, const AirParameters& parameters);
 
-  void couple(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
+  void append_couplings(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
   void attach(const solver::Assembly& /*assembly*/) override {}
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> /*x*/) const override { return 0; }
 

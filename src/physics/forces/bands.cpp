@@ -38,7 +38,7 @@ void Bands::interpolate_rest_shape(double progress) {
     piece.rest = progress == 1 ? piece.pattern_rest : (1 - progress) * piece.start + progress * piece.pattern_rest;
 }
 
-void Bands::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Bands::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
   for (const auto& [p, weights, stiffness, scalars] : bends_)
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(p[k], p[(k + 1) % 3]);

@@ -8,20 +8,19 @@
 
 namespace weft::forces {
 
-/// The bands of a sheet. A piece of an elastic band between two particles, of length l, rest length r and stiffness k
-/// [N], has the energy ½ k r (l / r − 1)². A hem of bending stiffness E [N·m²] has the energy ½ E L ‖s''‖² at each
-/// particle between two pieces, where s'' is the second difference of the positions and L the mean length of both
-/// pieces in the pattern. A hem is straight at rest: if its edge is curved in the pattern with radius R, the hem pulls
-/// with E / R² [N], which is negligible beside the stiffness of cloth. A seam allowance is an elastic band as stiff as
-/// a strip of cloth of its width.
+/// The bands of a sheet. A piece of an elastic band has the energy ½ k r (l / r − 1)²: length l, rest length r,
+/// stiffness k [N]. A hem has the energy ½ E L ‖s''‖² at each particle between two pieces: bending stiffness E [N·m²],
+/// second difference of the positions s'', mean length of both pieces in the pattern L. A hem is straight at rest: if
+/// its edge is curved in the pattern with radius R, the hem pulls with E / R² [N], which is negligible beside the
+/// stiffness of cloth. A seam allowance is an elastic band as stiff as a strip of cloth of its width.
 class Bands final : public Force {
  public:
   /// `stretch`: stiffness of the cloth [N/m].
   Bands(const mesh::Sheet& sheet, Index first, double stretch);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

@@ -28,7 +28,7 @@ Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters
   create_differences({});
 }
 
-void Bend::hold(std::span<const char> held) {
+void Bend::set_held(std::span<const char> held) {
   create_differences(held);
 }
 
@@ -66,9 +66,9 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
   }
 }
 
-// Adds the second derivative at the middle one of three particles; exact for parabolas. It is the change of slope over
-// the length along which the slope changes: the mean of both spacings, or at a clamp half of the free spacing (Bend).
-// The weights sum to exactly zero, so that a translation adds no rounding.
+// Adds the second derivative at the middle one of three particles; exact for parabolas. This derivative is the change
+// of slope, divided by the length in which it happens: the mean of both spacings, or at a clamp half of the free
+// spacing (Bend). The weights sum to exactly zero, so that a translation adds no rounding.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
@@ -84,7 +84,7 @@ void Bend::for_all(const Body& body) const {
   for (const auto& cells : cells_.packs) body(cells);
 }
 
-void Bend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Bend::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for_all([&](const auto& d) {
     for (std::size_t a = 0; a < d.particles.size(); ++a)
       for (std::size_t b = a + 1; b < d.particles.size(); ++b)
@@ -104,7 +104,7 @@ void Bend::attach(const solver::Assembly& assembly) {
   find_scalars(cells_.packs);
 }
 
-void Bend::cut(std::span<const Index> bounds) {
+void Bend::partition(std::span<const Index> bounds) {
   cut_packs(
       bounds, lines_.packs, [](const auto& d) { return std::span(d.particles); }, lines_.ranges);
   cut_packs(

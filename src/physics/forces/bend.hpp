@@ -9,28 +9,28 @@
 
 namespace weft::forces {
 
-/// The bending force of the seed (the paper that README.md names, section "Elastic Model"), f = −B Δ² s along the
-/// normal N, is the restoring force of a plate with rigidity B, Poisson's ratio ν = 0 and energy density ½ B (‖s_uu‖² +
-/// 2 ‖s_uv‖² + ‖s_vv‖²). This class discretises the energy by central differences on grid lines (s_uu, s_vv) and in
-/// cells (s_uv). The energy also determines the forces at free edges.
+/// The bending force f = −B Δ² s along the normal N (Etzmuß et al. 2001, "Elastic Model") is the restoring force of a
+/// plate with rigidity B, Poisson's ratio ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²). This class
+/// discretises the energy by central differences on grid lines (s_uu, s_vv) and in cells (s_uv). The energy also
+/// determines the forces at free edges.
 ///
-/// The full second differences are used, not their component along N. On an inextensible sheet both are equal, and the
+/// The full second differences are used, not their component along N. On an inextensible sheet both are equal. The
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components add B/l² to the stretch
 /// stiffness: for cotton at a spacing l = 1 cm, 0.5 N/m are added to 1000 N/m.
 ///
 /// A difference covers half a spacing on either side of its middle particle. If the middle and only one end are held,
-/// that side keeps its direction, and the other half spacing contains the whole turn: the clamp acts at the last held
-/// particle. If both halves counted, the clamp would act half a spacing behind it, an error of first order. For
-/// viscosity and friction see BendDamping.
+/// the held side keeps its direction, and the other half spacing contains the whole change of direction: the clamp acts
+/// at the last held particle. If both halves counted, the clamp would act half a spacing farther inside, an error of
+/// first order. For viscosity and friction see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override { return true; }
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -38,7 +38,7 @@ class Bend final : public Force {
 
   /// Adds the whole elastic stiffness.
   void add_constant_stiffness(solver::Assembly& assembly) const override;
-  void hold(std::span<const char> held) override;
+  void set_held(std::span<const char> held) override;
 
  private:
   /// Four second differences Σ weights[k] x_k [1/m], each with the area that it covers (for s_uv: twice this area).

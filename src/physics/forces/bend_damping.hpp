@@ -23,16 +23,16 @@ struct BendParameters {
 ///
 ///     η (c·κ̇) c / (‖c‖² + κ_f²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + κ_r².
 ///
-/// c is κ at x̂ = x − v / rate (Evaluation), the start of the step (for BDF2 with constant steps a third of a step
+/// c is κ at x̂ = x − v / rate (Evaluation), the start of the step (with BDF2 and constant steps, a third of a step
 /// later); if `rate` is 0, c is κ at x. κ_f is kFlatCurvature, κ_r is residual_curvature_, ε is kStickRate. As c is
 /// constant during a step, the moment is the gradient of a convex function of κ̇. If c were κ at the iterate, its
 /// direction would turn with every ripple of nearly flat cloth, and Newton's method would oscillate (measured: a strip
 /// pulled over a rod takes ten times the iterations). If c were κ at the positions that constant velocity predicts, a
 /// draped sheet with steps of 40 ms would tremble at 1 to 10 mm/s.
 ///
-/// Damping fades out if the sheet is flat: viscosity below kFlatCurvature, friction below the larger of kFlatCurvature
-/// and the curvature τ / B that friction can hold against bending. If damping kept its full size, the moment would
-/// change direction with every ripple, and its stiffness would exceed that of bending.
+/// Damping fades out if the sheet is flat: viscosity below kFlatCurvature, friction below max(kFlatCurvature, τ / B). τ
+/// / B is the curvature that friction can hold against bending. If damping kept its full size, the moment would change
+/// direction with every ripple, and its stiffness would exceed that of bending.
 class BendDamping {
   // Curvature below which the direction of κ is too uncertain for damping [1/m]: a sheet of radius 10 m looks flat.
   static constexpr double kFlatCurvature = 0.1;

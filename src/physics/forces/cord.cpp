@@ -57,8 +57,8 @@ void Cord::compute_weights(Turn& turn) const {
   turn.weights = {one, -(one + other), other};
 }
 
-// If the middle and one end are held, the free half piece contains the whole turn; see Bend.
-void Cord::hold(std::span<const char> held) {
+// If the middle and one end are held, the free half piece contains the whole change of direction; see Bend.
+void Cord::set_held(std::span<const char> held) {
   for (Turn& turn : turns_) {
     const auto is_held = [&](std::size_t k) { return held[slot(turn.particles[k])] != 0; };
     turn.initial_length = 0.5 * (turn.before + turn.after);
@@ -79,7 +79,7 @@ bool Cord::set_length_ratio(double ratio) {
   return !turns_.empty();
 }
 
-void Cord::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Cord::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
   for (const Turn& turn : turns_)
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(turn.particles[k], turn.particles[(k + 1) % 3]);
@@ -131,7 +131,8 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   const double length = d.norm();
   if (!(length > 0)) return;
   Vec3 v = 0.5 * (vec_at(at.v, a) + vec_at(at.v, b));
-  v -= at.air.empty() ? parameters_.wind : Vec3(0.5 * (vec_at(at.air, a) + vec_at(at.air, b)));
+  v -= at.air_velocity.empty() ? parameters_.wind
+                               : Vec3(0.5 * (vec_at(at.air_velocity, a) + vec_at(at.air_velocity, b)));
   const Vec3 n = d / length, across = v - n.dot(v) * n;
   const double speed = across.norm();
   if (!(speed > 0)) return;
@@ -216,10 +217,10 @@ double Cord::max_strain(std::span<const Vec3> x) const {
   return largest;
 }
 
-void Cord::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+void Cord::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
   for (const Piece& piece : pieces_) {
     const auto strain = static_cast<float>(std::abs(piece_length(x, piece.particles) / piece.rest - 1));
-    for (const Index p : piece.particles) heat[slot(p - first_)] = std::max(heat[slot(p - first_)], strain);
+    for (const Index p : piece.particles) strains[slot(p - first_)] = std::max(strains[slot(p - first_)], strain);
   }
 }
 

@@ -14,7 +14,7 @@ struct CordParameters {
   double bend = 0;               ///< bending stiffness, EI [N·m²]
   double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
   double air_density = 0;        ///< ρ [kg/m³]; 0: no air
-  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], if Evaluation::air is empty
+  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], if Evaluation::air_velocity is empty
   double drag = 0;               ///< c, drag coefficient across the cord
   double diameter = 0;           ///< d, for drag [m]
 };
@@ -31,21 +31,21 @@ class Cord final : public Membrane {
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
   Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::Assembly& assembly) const override;
-  void hold(std::span<const char> held) override;
+  void set_held(std::span<const char> held) override;
 
   /// Sets the rest lengths to `ratio` times the initial ones. Returns whether this changes the constant stiffness.
   bool set_length_ratio(double ratio);
 
   double max_strain(std::span<const Vec3> x) const override;
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
 
  private:
   struct Piece {

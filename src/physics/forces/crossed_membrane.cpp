@@ -18,9 +18,8 @@ constexpr double kCollapsed = 1e-12;
 // are −0.7, −3.5 and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values
 // flatten cells less under tension.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. (Crossed cells have no reinforcement: only patterns do.) The normal
-// turns in proportion to 1 / ‖D₁ × D₂‖, below S₀ too fast to be a reference for the middle (measured: with S₀ at a
-// tenth, a pin that pulls leather reduces steps to 1 µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The normal turns in proportion to 1 / ‖D₁ × D₂‖; below S₀, it turns too
+// fast to be a reference for the middle (measured: with S₀ at a tenth, a pin that pulls leather reduces steps to 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -59,7 +58,7 @@ CrossedMembrane::CrossedMembrane(const mesh::Sheet& sheet, Index first, const St
   }
 }
 
-void CrossedMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void CrossedMembrane::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Cell& cell : cells_)
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = a + 1; b < 5; ++b) pairs.emplace_back(cell.particles[a], cell.particles[b]);
@@ -144,8 +143,8 @@ void CrossedMembrane::push_forward(const State& state, Five& flat, double& heigh
   flat[4] -= height * n + state.height * turn;
 }
 
-void CrossedMembrane::cut(std::span<const Index> bounds) {
-  ranges_.cut(bounds, cells_.size(), [&](std::size_t c, const auto& visit) {
+void CrossedMembrane::partition(std::span<const Index> bounds) {
+  ranges_.partition(bounds, cells_.size(), [&](std::size_t c, const auto& visit) {
     for (Index particle : cells_[c].particles) visit(particle);
   });
 }
@@ -233,9 +232,9 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
 }
 
 // Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the relative lengths L, with stretch stiffness k and viscosity η. For
-// shear, sums the same outer product, without `lateral`. Then adds the geometric stiffness, that of the stresses.
-// Across n, it uses the gradients of the flat cell. Along n, it uses those of a cell with its middle at the mean of the
-// corners, and adds the stiffness of the height. In all directions, it adds the stiffness of the twist.
+// shear, sums the same outer product, without `lateral`. Then adds the geometric stiffness (that of the stresses):
+// across n, with the gradients of the flat cell; along n, with those of a cell with its middle at the mean of the
+// corners, plus the stiffness of the height; in all directions, the stiffness of the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

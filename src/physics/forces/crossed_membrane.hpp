@@ -15,21 +15,20 @@ namespace weft::forces {
 ///
 /// where g is the gradient of the middle's weight in a triangle, and ⟨⟩ the average over the cell. θ = kHeightFraction
 /// is small, so that tension still flattens cells. t = a − b + c − d is the twist of the cell. If the threads at two
-/// opposite sides are skew, both keep their lengths, but the thread halfway between them is the mean of both vectors:
-/// its square is exactly ‖t‖² / 4 less than the mean of theirs, which the last term compensates. Plane parallelograms
-/// have w = 0 and t = 0: nothing changes. n = D₁ × D₂ / S with the diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖;
-/// for folded cells with ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that w and t count less, the more a cell is
-/// folded. (Chen et al., "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices
-/// against locking.)
+/// opposite sides are skew, the vector of the thread halfway between them is their mean. Its square is exactly ‖t‖² / 4
+/// less than the mean of their squares; the last term compensates this. Plane parallelograms have w = 0 and t = 0:
+/// nothing changes. n = D₁ × D₂ / S with the diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖; for folded cells with
+/// ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that w and t count less, the more a cell is folded. (Chen et al.,
+/// "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices against locking.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
   /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
   CrossedMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
                   const ShearParameters& shear);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   /// The matrix and add_jacobian() contain the Gauss-Newton part and the stiffness of elastic stresses, but neither the
   /// stiffness that stresses add because n changes, nor the stiffness of viscous stresses.
   void add(const Evaluation& at) const override;
@@ -58,7 +57,7 @@ class CrossedMembrane final : public TriangleMembrane {
     std::array<Vec3, 2> diagonals;
     double size = 0;                // S [m²]
     Vec3 direction = Vec3::Zero();  // e, unit vector of the cross product of the diagonals
-    double kept_change = 0;         // κ: along e, S δn is κ times the change of that product
+    double kept_change = 0;         // κ: along e, S δn is κ times the change of D₁ × D₂
   };
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
   static State state_of(const Cell& cell, const Five& positions);

@@ -17,7 +17,7 @@ std::size_t index_of(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// Loops of border edges. Each edge has the direction opposite to that in its triangle.
+// Loops of border edges. Each edge has the opposite direction as in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
   // A border edge is one whose reverse is in no triangle.
   std::map<std::array<Index, 2>, int> runs;

@@ -42,40 +42,41 @@ struct Evaluation {
   std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
   ForceRows force;                                ///< receives the forces f [N]
-  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term, as conjugate
-  /// gradients and line search require, without the part that add_constant_stiffness() adds. Empty: forces only.
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part of add_constant_stiffness(). Each term is made symmetric and
+  /// positive semidefinite, as conjugate gradients and line search require. Empty: forces only.
   solver::AssemblyRows assembly = {};
-  double rate = 0;  ///< dv/dx of the integration scheme [1/s]: v = rate (x − x̂), x̂ fixed in a step; 0: fixed v
+  double rate = 0;  ///< dv/dx of the integration scheme [1/s]: v = rate (x − x̂), x̂ fixed in a step; 0: v is fixed
   /// Earlier positions whose weighted sum is x̂ (see Past). Empty: rates of strain q are ∂q/∂x v.
   std::span<const Past> past = {};
-  /// Range of Force::cut() to evaluate; kAll: everything.
+  /// Range of Force::partition() to evaluate; kAll: everything.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
   /// Velocity of the air at each particle [m/s]. If empty, each force uses its own uniform wind.
-  std::span<const solver::PaddedVec3<double>> air = {};
-  /// Extensions at which StretchLimit linearises its matrix, but not its forces; null: linearise at x.
+  std::span<const solver::PaddedVec3<double>> air_velocity = {};
+  /// Extensions at which StretchLimit evaluates its matrix (its forces are always those at x); null: at x, too.
   const LockLinearisation* locks = nullptr;
 
-  /// Rate of a quantity q of the positions. `now` is q(x), of_places(y) returns q at earlier positions y, and
+  /// Rate of a quantity q of the positions. `now` is q(x), at_positions(y) returns q at earlier positions y, and
   /// by_velocity() returns ∂q/∂x v, which is used if `past` is empty. With ∂q/∂x v and implicit Euler, an edge that
-  /// turns by θ in a step would seem to lengthen by the fraction 1 − cos θ. Stiff viscosity would then shorten the edge
-  /// by that fraction in every step, and create energy.
-  template <class Quantity, class OfPlaces, class ByVelocity>
-  Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
+  /// turns by θ in a step would seem to lengthen by the fraction 1 − cos θ. Stiff viscosity would shorten the edge by 1
+  /// − cos θ in every step, and create energy.
+  template <class Quantity, class AtPositions, class ByVelocity>
+  Quantity rate_of(const Quantity& now, const AtPositions& at_positions, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
     Quantity change = now;
-    for (const Past& before : past) change = change - before.weight * of_places(before.x);
+    for (const Past& before : past) change = change - before.weight * at_positions(before.x);
     return rate * change;
   }
 };
 
-/// A force on the particles of one cloth. In all forces, `first` is the cloth's first particle in the global numbering.
+/// A force on the particles of one cloth. Constructors of forces take `first`, the cloth's first particle in the global
+/// numbering.
 class Force {
  public:
   virtual ~Force() = default;
 
   /// Appends the pairs of particles that the Jacobian couples, in either order; pairs may repeat.
-  virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
+  virtual void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const = 0;
   /// Whether everything that the force adds to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
   /// Looks up the blocks of the pairs. Call once, when the pattern is known.
@@ -83,14 +84,14 @@ class Force {
 
   /// Prepares ranges of particles that threads may evaluate at the same time: range r is [bounds[r], bounds[r + 1]).
   /// Call after attach().
-  virtual void cut(std::span<const Index> bounds) = 0;
+  virtual void partition(std::span<const Index> bounds) = 0;
 
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. add() adds its force, but not its matrix. Only
-  /// hold() changes it.
+  /// Adds the part of −∂f/∂x that does not depend on x, if there is one; only set_held() changes this part. add() adds
+  /// the forces of this part, but not its matrix.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
   /// Adds the exact −(∂f/∂x + rate ∂f/∂v), with the rates of an empty `Evaluation::past`. It is indefinite under
@@ -101,7 +102,7 @@ class Force {
 
   /// Sets which particles of all cloths are held or moved from now on: a clamp changes the stiffness of the free
   /// particles beside it. The pattern of the Jacobian does not change.
-  virtual void hold(std::span<const char> /*held*/) {}
+  virtual void set_held(std::span<const char> /*held*/) {}
 };
 
 /// A force that resists deformation within the sheet or along a cord, and measures its strain.
@@ -109,13 +110,13 @@ class Membrane : public Force {
  public:
   /// Largest relative change of length of a piece of weft, warp or cord, in absolute value.
   virtual double max_strain(std::span<const Vec3> x) const = 0;
-  /// Raises heat[particle − first] to the largest strain of the pieces or triangles at the particle.
-  virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
+  /// Raises strains[particle − first] to the largest strain of the pieces or triangles at the particle.
+  virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const = 0;
 };
 
 /// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
-/// Lumped masses of triangles [kg], a third at each corner, and of bands and their allowances, half at each end.
+/// Lumped masses of triangles [kg], a third at each corner, and of bands and seam allowances, half at each end.
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

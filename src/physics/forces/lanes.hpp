@@ -133,10 +133,10 @@ inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// Ranges::cut() for packs of four elements; all_of(pack) lists their particles as Fours.
+/// Ranges::partition() for packs of four elements; all_of(pack) lists their particles as Fours.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
-  ranges.cut(bounds, packs.size(), [&](std::size_t p, const auto& visit) {
+  ranges.partition(bounds, packs.size(), [&](std::size_t p, const auto& visit) {
     for (const Four& four : all_of(packs[p]))
       for (Index particle : four) visit(particle);
   });

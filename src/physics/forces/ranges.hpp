@@ -14,9 +14,9 @@ namespace weft::forces {
 /// a bound are in several ranges; each range adds only to its own particles (ForceRows, AssemblyRows).
 class Ranges {
  public:
-  /// `bounds`: see Force::cut(). touch(element, visit) must call visit(particle) for all particles of an element.
+  /// `bounds`: see Force::partition(). touch(element, visit) must call visit(particle) for all particles of an element.
   template <class Touch>
-  void cut(std::span<const Index> bounds, std::size_t count, const Touch& touch) {
+  void partition(std::span<const Index> bounds, std::size_t count, const Touch& touch) {
     runs_.assign(bounds.size() - 1, {});
     for (std::size_t e = 0; e < count; ++e)
       touch(e, [&](Index particle) {

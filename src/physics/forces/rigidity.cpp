@@ -11,7 +11,7 @@ constexpr std::array<std::array<std::size_t, 2>, 6> kPairs{{{0, 1}, {0, 2}, {0, 
 Rigidity::Rigidity(const mesh::RigidFrame& frame, Index first, double mass, double stiffness)
     : first_(first), deviations_(frame.deviations()), modulus_(stiffness * mass) {}
 
-void Rigidity::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Rigidity::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const auto& [i, j] : kPairs) pairs.emplace_back(first_ + static_cast<Index>(i), first_ + static_cast<Index>(j));
 }
 

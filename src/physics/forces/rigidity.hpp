@@ -22,9 +22,9 @@ class Rigidity final : public Force {
   /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].
   Rigidity(const mesh::RigidFrame& frame, Index first, double mass, double stiffness);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
 

@@ -35,7 +35,7 @@ Shear::Shear(const mesh::Grid& grid, Index first, const ShearParameters& paramet
     });
 }
 
-void Shear::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Shear::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Cell& cell : cells_)
     for (int a = 0; a < 4; ++a)
       for (int b = a + 1; b < 4; ++b) pairs.emplace_back(cell.corners[a], cell.corners[b]);
@@ -68,7 +68,7 @@ Shear::StrainLanes Shear::strain(const Cells& cells, Points x) {
   return {cells.half_u * (main + cross), cells.half_v * (main - cross)};
 }
 
-void Shear::cut(std::span<const Index> bounds) {
+void Shear::partition(std::span<const Index> bounds) {
   cut_packs(
       bounds, packs_, [](const Cells& cells) { return std::span(cells.corners); }, ranges_);
 }

@@ -13,22 +13,21 @@ struct ShearParameters {
   double viscosity = 0;  ///< η, shear stress per rate of ½ ⟨s_u, s_v⟩ [N·s/m]
 };
 
-/// Eq. (1), entry 12, of the seed (the paper that README.md names): stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy
-/// density ¼ μ ⟨s_u, s_v⟩².
+/// Eq. (1), entry 12, of Etzmuß et al. (2001): stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
 ///
 /// s_u and s_v are the derivatives of the positions along weft and warp: central differences in the middle of each
-/// cell, each the mean over two opposite edges, with an error of O(l²) for spacing l. The seed uses central differences
-/// at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also with four particles per term. Each of those vanishes for any
-/// pattern that repeats at every second particle in its direction. Of patterns that alternate from particle to
-/// particle, only the checkerboard, which stretches the edges, makes both differences of this class vanish. The seed
-/// prints O(l³) for its difference; a test measures order 2 for this one.
+/// cell, each the mean over two opposite edges, with an error of O(l²) for spacing l. The paper uses central
+/// differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also with four particles per term, which vanish for
+/// any pattern that repeats at every second particle. The differences of this class both vanish only for the
+/// checkerboard pattern, which stretches the edges. The paper prints O(l³) for its difference; a test measures order 2
+/// for this one.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

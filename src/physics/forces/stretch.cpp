@@ -31,7 +31,7 @@ Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& p
     });
 }
 
-void Stretch::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Stretch::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Edge& edge : edges_) pairs.emplace_back(edge.i, edge.j);
 }
 
@@ -42,7 +42,7 @@ void Stretch::attach(const solver::Assembly& assembly) {
     });
 }
 
-void Stretch::cut(std::span<const Index> bounds) {
+void Stretch::partition(std::span<const Index> bounds) {
   cut_packs(
       bounds, packs_,
       [](const Edges& edges) {
@@ -118,12 +118,12 @@ double Stretch::max_strain(std::span<const Vec3> x) const {
   return largest;
 }
 
-void Stretch::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+void Stretch::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
   for (const Edge& e : edges_) {
     const double length = (x[e.j] - x[e.i]).norm();
     const auto strain = static_cast<float>(std::abs(length / e.rest_length - 1));
     for (Index p : {e.i, e.j}) {
-      float& value = heat[p - first_];
+      float& value = strains[p - first_];
       value = std::max(value, strain);
     }
   }

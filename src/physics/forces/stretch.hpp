@@ -14,19 +14,19 @@ struct StretchParameters {
   double viscosity = 0;       ///< η, stress per strain rate, both directions [N·s/m]
 };
 
-/// Tension along the grid lines: Eq. (1), entries 11 and 22, of the seed (the paper that README.md names), with the
-/// spring formula of its section "Elastic Model".
+/// Tension along the grid lines: Eq. (1), entries 11 and 22, of Etzmuß et al. (2001), with the spring formula of
+/// "Elastic Model".
 ///
 /// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
-/// seed's force density, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force of an
-/// edge. Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
+/// force density of the paper, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force of
+/// an edge. Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
 class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -34,8 +34,8 @@ class Stretch final : public Membrane {
 
   /// Largest |‖d‖/l − 1| of all edges.
   double max_strain(std::span<const Vec3> x) const override;
-  /// Raises heat[particle − first] to the largest |‖d‖/l − 1| of the particle's edges.
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+  /// Raises strains[particle − first] to the largest |‖d‖/l − 1| of the particle's edges.
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
 
  private:
   struct Edge {

@@ -75,7 +75,7 @@ void StretchLimit::follow(const TriangleMembrane& membrane) {
   }
 }
 
-void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void StretchLimit::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   const auto couple_all = [&](const auto& pieces) {
     for (const auto& piece : pieces)
       for (std::size_t a = 0; a < piece.corners; ++a)
@@ -124,9 +124,9 @@ void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const 
   });
 }
 
-void StretchLimit::cut(std::span<const Index> bounds) {
+void StretchLimit::partition(std::span<const Index> bounds) {
   const auto cut_pieces = [&](const auto& pieces, Ranges& ranges) {
-    ranges.cut(bounds, pieces.size(), [&](std::size_t p, const auto& visit) {
+    ranges.partition(bounds, pieces.size(), [&](std::size_t p, const auto& visit) {
       for (std::size_t k = 0; k < pieces[p].corners; ++k) visit(pieces[p].particles[k]);
     });
   };

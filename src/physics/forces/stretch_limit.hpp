@@ -25,7 +25,7 @@ class Lock {
   /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
   /// to 9,000 N/m in the fabrics of film/scene/fabrics.hpp (a transverse wave along a thread of strain e, with the
   /// density ρ per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns
-  /// Subjected to Rapid Impact Loading", 1958). Measured: with 2e4 and a stress that is linear from the limit on,
+  /// Subjected to Rapid Impact Loading", 1958). Measured with 2e4 and a stress that is linear from the limit on:
   /// Newton's method oscillates at the kink, and takes 1.2 times the iterations.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
@@ -59,9 +59,9 @@ struct LockLinearisation {
 };
 
 /// The energy of each piece of weft and warp is A · Lock::energy() at its extension ‖s‖ − 1, where A is the area that
-/// it covers. That of each cell or triangle of area A is A · Lock::energy() at its shear |⟨s_u, s_v⟩|: if both
-/// derivatives have unit length, the sine of the deviation of weft and warp from a right angle. Pieces, cells and their
-/// derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+/// it covers. The energy of each cell or triangle of area A is A · Lock::energy() at its shear |⟨s_u, s_v⟩|. If both
+/// derivatives have unit length, this is the sine of the deviation of weft and warp from a right angle. Pieces, cells
+/// and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
 class StretchLimit final : public Force {
  public:
   /// `stretch`: limit of the extension; `shear`: limit of the sine. Infinite: no limit. `below`: stiffness below the
@@ -69,10 +69,10 @@ class StretchLimit final : public Force {
   StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   /// Does nothing: few pieces lock at a time; add() looks up their blocks.
   void attach(const solver::Assembly& /*assembly*/) override {}
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -80,8 +80,8 @@ class StretchLimit final : public Force {
 
   /// Sets the extensions of `lag` to those at x, before the first iteration of a step.
   void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
-  /// Updates `lag` before the linearisation at x. `first`: whether this is the first iteration of a step; as no tension
-  /// is predicted, the extensions then stay.
+  /// Updates `lag` before the linearisation at x. `first`: whether this is the first iteration of a step, which keeps
+  /// the extensions because no tension is predicted yet.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
   /// For the pieces in `lag.near`: adds the force linearised at `lag` minus the exact force, at any x.
   void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;

@@ -76,7 +76,7 @@ void Ties::serialize(Archive& archive) {
 template void Ties::serialize(ByteWriter&);
 template void Ties::serialize(ByteReader&);
 
-void Ties::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void Ties::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.tie.a, piece.tie.b);
 }
 

@@ -11,7 +11,7 @@ namespace weft::forces {
 /// The ties of a sheet. Both particles of a tie, at a distance l, pull each other with F min(l / r − 1, 1) if l > r =
 /// kRest. At smaller distances they do not pull; contact keeps them apart. F is the strength [N]. It grows from zero
 /// during sewing, and for kClosing after a tie closes. A tie of a tearable seam holds once it has full strength and
-/// pulls with less than F. If it pulls with F after that, it tears permanently.
+/// pulls with less than F. If its pull reaches F after that, the tie breaks for good.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
@@ -41,9 +41,9 @@ class Ties final : public Force {
   template <class Archive>
   void serialize(Archive& archive);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

@@ -72,7 +72,7 @@ TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendPara
   if (std::ranges::count(pinned_, 0) == std::ssize(pinned_)) sheet_ = {};
 }
 
-void TriangleBend::hold(std::span<const char> held) {
+void TriangleBend::set_held(std::span<const char> held) {
   if (sheet_.triangles.empty()) return;
   const std::span<const char> own = held.subspan(static_cast<std::size_t>(first_), held_.size());
   if (std::ranges::equal(own, held_)) return;
@@ -130,7 +130,7 @@ TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::si
   return lanes;
 }
 
-void TriangleBend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void TriangleBend::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Element& element : elements_)
     for (std::size_t a = element.begin; a < element.end; ++a)
       for (std::size_t b = a + 1; b < element.end; ++b) pairs.emplace_back(particles_[a], particles_[b]);
@@ -153,8 +153,8 @@ void TriangleBend::attach(const solver::Assembly& assembly) {
       }
 }
 
-void TriangleBend::cut(std::span<const Index> bounds) {
-  ranges_.cut(bounds, packs_of(elements_.size()), [&](std::size_t pack, const auto& visit) {
+void TriangleBend::partition(std::span<const Index> bounds) {
+  ranges_.partition(bounds, packs_of(elements_.size()), [&](std::size_t pack, const auto& visit) {
     for (std::size_t e = 4 * pack; e < std::min(4 * pack + 4, elements_.size()); ++e)
       for (Index particle : particles(elements_[e])) visit(particle);
   });

@@ -18,20 +18,20 @@ namespace weft::forces {
 /// and friction see BendDamping.
 class TriangleBend final : public Force {
  public:
-  /// `pinned`: per particle of all cloths, whether hold() may hold it; these particles start held. Empty: none.
+  /// `pinned`: per particle of all cloths, whether set_held() may hold it; these particles start held. Empty: none.
   TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters,
                std::span<const char> pinned = {});
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::Assembly& assembly) const override;
-  void hold(std::span<const char> held) override;
+  void set_held(std::span<const char> held) override;
 
  private:
   using Quad = solver::PaddedVec3<double>;

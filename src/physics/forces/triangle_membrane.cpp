@@ -84,7 +84,7 @@ void TriangleMembrane::interpolate_rest_shape(double progress) {
   if (!starts_.empty()) pack();
 }
 
-void TriangleMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+void TriangleMembrane::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Element& e : elements_)
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(e.particles[k], e.particles[(k + 1) % 3]);
 }
@@ -119,7 +119,7 @@ VecLanes TriangleMembrane::strains_of(const GradientLanes& s) {
   return {length_of(s.u), length_of(s.v), dot(s.u, s.v)};
 }
 
-void TriangleMembrane::cut(std::span<const Index> bounds) {
+void TriangleMembrane::partition(std::span<const Index> bounds) {
   cut_packs(
       bounds, packs_, [](const Triangles& t) { return std::span(t.corners); }, ranges_);
 }
@@ -229,11 +229,11 @@ double TriangleMembrane::max_strain(std::span<const Vec3> x) const {
   return largest;
 }
 
-void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
   for (std::size_t t = 0; t < elements_.size(); ++t) {
     const auto largest = static_cast<float>(strain(t, x));
     for (Index p : elements_[t].particles) {
-      float& value = heat[p - first_];
+      float& value = strains[p - first_];
       value = std::max(value, largest);
     }
   }

@@ -29,9 +29,9 @@ class TriangleMembrane : public Membrane {
   TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
                    const ShearParameters& shear);
 
-  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void cut(std::span<const Index> bounds) override;
+  void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -42,7 +42,7 @@ class TriangleMembrane : public Membrane {
   void interpolate_rest_shape(double progress);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
 
  protected:
   /// Derivatives along weft and warp, of positions or of velocities.

@@ -10,12 +10,11 @@
 
 namespace weft::integrator {
 
-/// Friction can hide a remaining error: friction holds sticking cloth stiffly until the cloth slides as a whole, and
-/// the normal contacts are stiffer still. If friction is near its limit, this class therefore measures the residual
-/// force along the friction, and the friction in excess of what the normal force allows. It measures sums over a
-/// diagonal block; if it measured each particle, the scene sphere_drape would take two to three times the iterations.
-/// (Measured on slopes half a degree too steep for sticking: sheets slide 1.00 to 1.01 of a rigid body's distance;
-/// without this class 0.92 to 0.97.)
+/// Friction can hide a remaining error, because friction and contacts are stiff until the cloth slides as a whole. If
+/// friction is near its limit, this class therefore measures the residual force along the friction, and the friction in
+/// excess of what the normal force allows. It measures sums over a diagonal block (measured with single particles
+/// instead: two to three times the iterations in sphere_drape). (Measured on slopes half a degree too steep for
+/// sticking: sheets slide 1.00 to 1.01 of a rigid body's distance; without this class 0.92 to 0.97.)
 class Sliding {
  public:
   /// Evaluates the contact forces of a system at this stage. Returns false if there is no contact.

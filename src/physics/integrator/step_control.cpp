@@ -18,7 +18,7 @@ StepControl::StepControl(Method method, double tolerance, double first)
     : order_plus_one_(method == Method::implicit_euler ? 2 : 3), tolerance_(tolerance), wanted_(first) {}
 
 bool StepControl::accepts(double h, double error) const {
-  return meets(error) || (h <= numerics.steps.least && std::isfinite(error));
+  return meets(error) || (h <= numerics.steps.min_step && std::isfinite(error));
 }
 
 // Ratio of the aimed error to this error; finite even if the error is 0.
@@ -32,8 +32,8 @@ void StepControl::record_accepted_step(double h, double error) {
       std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
   // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
   const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
-  // After unsolved steps, `max_step` may be below `least`; it is then the bound.
-  wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least), max_step);
+  // After unsolved steps, `max_step` may be below `min_step`; `max_step` is then the bound.
+  wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.min_step), max_step);
   last_ratio_ = ratio;
   after_failure_ = false;
 }
@@ -41,7 +41,7 @@ void StepControl::record_accepted_step(double h, double error) {
 // The elementary controller, without `last_ratio_`.
 void StepControl::record_rejected_step(double h, double error) {
   const double factor = std::pow(aim_to_error_ratio(error), 1 / order_plus_one_);
-  wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1.0), numerics.steps.least);
+  wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1.0), numerics.steps.min_step);
   after_failure_ = true;
 }
 

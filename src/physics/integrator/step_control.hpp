@@ -10,8 +10,8 @@
 namespace weft::integrator {
 
 /// Keeps the local error of each step at a tolerance: error per step, not per second. An impact changes the velocity by
-/// Δv at once, so the error of its step is of the order h Δv however small h is; a bound of the error per second would
-/// reduce h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
+/// Δv at once, so the error of a step of length h is about h Δv for any h; a bound of the error per second would reduce
+/// h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
 /// tolerance^(p/(p+1)): 1/2 for Euler, 2/3 for midpoint and BDF2.
 ///
 /// `wanted_` and `last_ratio_` are part of the state of a simulation.
@@ -38,7 +38,7 @@ class StepControl {
     serialize_values(archive, wanted_, last_ratio_);
     // After an unsolved step, the wanted length may be below the minimum.
     if constexpr (Archive::kReads)
-      require(wanted_ >= 0.1 * numerics.steps.least && std::isfinite(wanted_) && std::isfinite(last_ratio_),
+      require(wanted_ >= 0.1 * numerics.steps.min_step && std::isfinite(wanted_) && std::isfinite(last_ratio_),
               "a step length");
   }
 

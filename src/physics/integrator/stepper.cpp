@@ -103,18 +103,17 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
   gather_residual(system.masses(), stage);
 }
 
-// Sets `allowed` of each block, the velocity error [m/s], root mean square over its mass, that the solver may leave.
-// Within `lasting_time`, this error displaces the block by `tolerance` times the larger of the local error of positions
-// and the visibility threshold. If that displacement were allowed in each step, adaptive step sizes would lose one
-// order. From `patience` iterations on, the local velocity error of implicit Euler may raise the bound. The bound never
-// falls below rounding.
+// Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass. In
+// `lasting_time`, this error displaces the block by `tolerance` · max(local error of positions, visibility threshold).
+// If this displacement were allowed in each step, adaptive step sizes would lose one order. From `slow_after`
+// iterations on, the local velocity error of implicit Euler may raise the bound. The bound never falls below rounding.
 void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
   for (BlockState& part : blocks_) {
     double error = std::max(part.local_error, unseen) / time;
-    if (iterations >= numerics.newton.patience)
+    if (iterations >= numerics.newton.slow_after)
       error = std::max(error, numerics.newton.velocity_ratio * part.velocity_error);
     part.allowed = std::max(parameters_.tolerance * error, part.rounding);
   }
@@ -174,7 +173,7 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
 
 bool Stepper::is_solved(int iterations) const {
   double unseen_speed =
-      iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity();
+      iterations < numerics.newton.slow_after ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity();
   if (parameters_.position_tolerance > 0)
     unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
   return std::ranges::all_of(
@@ -185,13 +184,13 @@ bool Stepper::is_solved(int iterations) const {
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
   for (std::size_t p = 0; p < blocks_.size(); ++p)
-    if (iterations >= numerics.newton.patience / 2 ||
+    if (iterations >= numerics.newton.slow_after / 2 ||
         blocks_[p].error() > numerics.newton.linear_fraction * blocks_[p].allowed)
       unsolved_.push_back(p);
 }
 
-// Line search along delta_: moves x by delta_, less if that overshoots, more if it hardly approaches the minimum.
-// Returns the factor of delta_; if a slope is not finite, returns that slope.
+// Line search along delta_: moves x by delta_; by less if delta_ overshoots the minimum, by more if it hardly
+// approaches the minimum. Returns the factor of delta_; if a slope is not finite, returns that slope.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
   // of the energy: positive before the minimum along delta, negative behind it. The product becomes strongly negative
@@ -361,7 +360,7 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
 // step, x − x0 (the sum of `motion_` and `drift_`).
 solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
   goals_.clear();
-  const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.undamped : 1;
+  const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.midpoint_tightening : 1;
   const double fraction = tightening * numerics.newton.linear_fraction;
   for (const BlockState& part : blocks_) goals_.push_back(fraction * part.allowed * std::sqrt(part.mass));
   motion_.resize(x_.size());

@@ -1,5 +1,5 @@
-// One implicit time step, as in Fig. 2 of the seed (the paper that README.md names): the method defines an implicit
-// equation, which Newton's method with residual control solves by constrained conjugate gradients.
+// One implicit time step (Etzmuß et al. 2001, Fig. 2): the method defines an implicit equation, which Newton's method
+// with residual control solves by constrained conjugate gradients.
 #pragma once
 
 #include <algorithm>
@@ -64,11 +64,11 @@ struct StepReport {
 /// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
 /// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
 /// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
-/// Meth. Engng 96, 2013). In the solve, impacts displace particles by δ with A δ = F, where F are the forces of
-/// impacts, and A is the matrix of the step, whose contact terms are only those of friction in impacts and of contacts
-/// that transmit impacts. Positions keep this displacement, but velocities change by δ/h instead of δ/β. The start
-/// velocity in the history also changes by δ/h, so that the next step starts from a smooth trajectory. Changes of
-/// velocity by corrections after a solve count as impacts, too.
+/// Meth. Engng 96, 2013). In the solve, impacts displace particles by δ with A δ = F. F are the forces of impacts; A is
+/// the matrix of the step, with contact terms only for friction in impacts and for contacts that transmit impacts.
+/// Positions keep this displacement, but velocities change by δ/h instead of δ/β. The start velocity in the history
+/// also changes by δ/h, so that the next step starts from a smooth trajectory. Changes of velocity by corrections after
+/// a solve count as impacts, too.
 ///
 /// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
 /// the mean acceleration from the last step to this one; then the leading terms of the error are
@@ -79,11 +79,11 @@ struct StepReport {
 ///
 /// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
 /// accounts for the following steps, which propagate a third of each change of the error. Steps without a history, and
-/// BDF2 steps beyond longest_step(), use Euler's estimate (BDF2: 3/2 of it, as such a step is Euler's; midpoint: an
-/// upper bound). Errors of velocity are not included; they affect positions only in later steps. The error is the root
-/// mean square over the mass of each diagonal block (a cloth or a rigid body), so that it depends neither on the mesh
-/// resolution nor on a single particle in contact; the error of a step is the largest of all blocks. Held directions
-/// have no error.
+/// BDF2 steps beyond longest_step(), use Euler's estimate: for the midpoint rule an upper bound; times 3/2 for BDF2,
+/// whose step then is an Euler step. Errors of velocity are not included; they affect positions only in later steps.
+/// The error of a diagonal block (a cloth or a rigid body) is the root mean square over its mass. It depends neither on
+/// the mesh resolution nor on a single particle in contact. The error of a step is the largest of all blocks. Held
+/// directions have no error.
 class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At

@@ -41,12 +41,12 @@ class System {
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
   /// As `forces`, but with the tangent in place of each force that the last linearise() replaced by its tangent. A line
-  /// search along the solution of that linear system must use these.
+  /// search along the solution of the linear system must use these forces.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
   /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. First
   /// updates what lags behind the positions, such as the normal forces that limit friction. `iteration`: Newton
-  /// iteration, from 0 in each solve. If a paused solve continues, so does the count.
+  /// iteration, from 0 in each solve. The count continues if a paused solve continues.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// Whether translating a diagonal block changes no force except through terms, constraints, and air.

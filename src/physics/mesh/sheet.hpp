@@ -53,10 +53,10 @@ struct Sheet {
 /// Area of a triangle at rest [m²].
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
-/// Largest ratio of a cloth's longest edge to its smallest triangle height (on grids: smallest spacing) at which it may
-/// touch obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin triangles,
-/// eight of nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading of 50, none
-/// at 100.
+/// Largest ratio of a cloth's longest edge to its smallest triangle height (on grids: smallest spacing) at which the
+/// cloth may touch obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin
+/// triangles, eight of nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading
+/// of 50, none at 100.
 inline constexpr double kMaxUnevenness = 80;
 
 /// Triangles lower than the longest edge / kMaxUnevenness.

@@ -11,8 +11,8 @@ enum class Response { springs, velocity_constraints };
 enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
-/// Methods that find surfaces close to each other (section "Collision Detection" of the seed, the paper that README.md
-/// names). They change the speed, not the result.
+/// Methods that find surfaces close to each other (Etzmuß et al. 2001, "Collision Detection"). They change the speed,
+/// not the result.
 struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node

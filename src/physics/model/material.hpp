@@ -5,7 +5,7 @@
 
 namespace weft::model {
 
-/// A fabric in continuum units (section "Elastic Model" of the seed, the paper that README.md names).
+/// A fabric in continuum units (Etzmuß et al. 2001, "Elastic Model").
 struct Material {
   std::string fabric = "cotton";  ///< the named fabric that supplies the default values
   double density = 0.15;          ///< [kg/m²]

@@ -19,7 +19,7 @@ namespace weft::model {
 ///
 /// where s and a are the distances of the point and of the disc from the apex along the axis, and q is the distance
 /// from the axis relative to the radius of the cone there. A free round jet has an opening angle of about 24 degrees,
-/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² is the profile of such a jet
+/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). The profile of such a jet is (1 − q²)²,
 /// except at the edge, where (1 − q²)² falls to 0 with zero slope. Behind the disc and outside the cone, a fan adds
 /// nothing.
 class Weather {

@@ -1,5 +1,4 @@
-// Bodies whose vertices are stored as key frames before the simulation starts (section "System" of the seed, the paper
-// by Etzmuß et al. of 2001).
+// Bodies whose vertices are stored as key frames before the simulation starts (Etzmuß et al. 2001, "System").
 #pragma once
 
 #include <span>

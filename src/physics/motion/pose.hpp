@@ -20,8 +20,8 @@ struct Pose {
 /// angles 0, even if they are not given.
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
-/// The rotation R with the largest tr(Rᵀ M): of a matrix M that is almost a rotation, the nearest one; of
-/// Σ (y − ȳ)(x − x̄)ᵀ, the one that maps points x to y best in the least-squares sense (Kabsch, Acta Cryst. A32, 1976).
+/// The rotation R with the largest tr(Rᵀ M). If M is almost a rotation, R is the nearest rotation. If M = Σ (y − ȳ)(x −
+/// x̄)ᵀ, R maps points x to y best in the least-squares sense (Kabsch, Acta Cryst. A32, 1976).
 Mat3 best_rotation(const Mat3& matrix);
 
 struct PoseKey {

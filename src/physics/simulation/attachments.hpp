@@ -14,11 +14,11 @@
 
 namespace weft::simulation {
 
-/// When an attachment begins, it ties each of its particles to the nearest point on its target: a weighted sum of the
-/// corners of a triangle or, on a body that forces move, of the four particles of its frame, with fixed weights. If the
-/// distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the `length`
-/// of the model, or else the distance at which the particle was tied. A shorter distance causes no force: contact keeps
-/// surfaces apart.
+/// When an attachment begins, it ties each of its particles to the nearest point on its target. This point is a sum,
+/// with fixed weights, of the corners of a triangle or, on a body that forces move, of the four particles of its frame.
+/// If the distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the
+/// `length` of the model, or else the distance at which the particle was tied. A shorter distance causes no force:
+/// contact keeps surfaces apart.
 ///
 /// The spring forces follow from the positions at the end of the step, as contact forces do.
 class Attachments {

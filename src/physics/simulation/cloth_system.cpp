@@ -143,7 +143,7 @@ ClothSystem::ClothSystem(const model::Model& model) : gravity_(model.physics.gra
     for (const auto& force : of_cloth) force->attach(assembly);
   divide_into_ranges();
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->hold(held_);
+    for (const auto& force : of_cloth) force->set_held(held_);
   sew(0);
 }
 
@@ -169,7 +169,7 @@ std::vector<Index> ClothSystem::first_of_frames(const model::Model& model) const
 solver::BlockMatrix ClothSystem::lay_out_matrix() const {
   solver::BlockMatrix::Couplings couplings, isotropic;
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->couple(force->isotropic() ? isotropic : couplings);
+    for (const auto& force : of_cloth) force->append_couplings(force->isotropic() ? isotropic : couplings);
   return {first_.back(), std::move(couplings), std::move(isotropic)};
 }
 
@@ -282,7 +282,7 @@ void ClothSystem::divide_into_ranges() {
       bounds.push_back(first + static_cast<Index>(std::int64_t{count} * r / range_count));
     for (Index r = 0; r < range_count; ++r)
       ranges_.push_back({c, bounds[r], bounds[r + 1], static_cast<std::size_t>(r)});
-    for (const auto& force : forces_[c]) force->cut(bounds);
+    for (const auto& force : forces_[c]) force->partition(bounds);
   }
 }
 
@@ -372,7 +372,7 @@ bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
   if (held == held_) return false;
   held_ = std::move(held);
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->hold(held_);
+    for (const auto& force : of_cloth) force->set_held(held_);
   return true;
 }
 

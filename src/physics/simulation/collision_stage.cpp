@@ -25,8 +25,8 @@ bool moves_by_forces(const model::Body& body) {
   return body.dynamics != nullptr;
 }
 
-// Numbers of the colliding bodies; those that forces move come first. If no such body collides, one that does not is
-// the first: the frame particles of all bodies that forces move belong to the first body.
+// Numbers of the colliding bodies; those that forces move come first. If none of these collides, one that does not
+// collide comes first, because the frame particles of all bodies belong to the first body.
 std::vector<std::size_t> colliding_bodies(const model::Model& model) {
   std::vector<std::size_t> bodies;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -207,7 +207,7 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start)
     return body < cloths && model_.cloths[body].may_be_untangled();
   };
   const std::vector<Vec3> given = start.x;
-  // If surfaces still touch, tries once more without cloth that untangle() may move.
+  // If surfaces still touch, tries again, and ignores cloth that untangle() may move.
   for (const bool with_all : {true, false}) {
     const auto find_pairs = [&] {
       std::vector<std::array<std::size_t, 2>> pairs;

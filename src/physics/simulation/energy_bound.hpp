@@ -32,7 +32,7 @@ class EnergyBound {
   }
 
  private:
-  double energy_in_play() const;
+  double energy_in_play() const;  // see Numerics::Energy [J]
   std::optional<std::string> check_gain(const FrameReport& energies);
   std::optional<std::string> check_solver(int frame);
 

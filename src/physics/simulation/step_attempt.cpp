@@ -14,10 +14,10 @@
 namespace weft::simulation {
 
 // If obstacles or other cloth keep pinned particles from their targets, repeats the attempt with these particles
-// released; after numerics.repair.halvings tries, lets push_apart() move pinned particles.
+// released; after numerics.repair.max_retries tries, lets push_apart() move pinned particles.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
-    const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.halvings};
+    const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.max_retries};
     pins_.begin_step(t, h, progress_.now.x);
     const Start start = begin_attempt(attempt, report);
     if (!collisions_) return rejection_of(solve(h, start, false, report));
@@ -80,14 +80,14 @@ void StepLoop::update_weather(double t, double h) {
 
 // Solves the step and checks it. If pairs would meet, pushes particles apart. If the solve had ended and this adds
 // little energy and strain, accepts the result. Otherwise continues the solve from the corrected positions, with
-// contacts found anew, until every candidate pair has a separating plane. After numerics.newton.patience continuations,
-// or if the last one has led back to where it began, only pushes.
+// contacts found anew, until every candidate pair has a separating plane. After numerics.newton.slow_after
+// continuations, or if the last one has led back to where it began, only pushes.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
   bool is_separated = false;
   for (bool is_first = true;; is_first = false, start = Start::next) {
-    const bool may_continue = continuations < numerics.newton.patience;
+    const bool may_continue = continuations < numerics.newton.slow_after;
     // An iterate that is separated already is solved to the end; others are checked early.
     const bool check_early = !is_separated && (is_first || may_continue);
     bool solved = false;
@@ -105,20 +105,20 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     const double energy_before = solved ? energy(next_) : 0;
     const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
     if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
-      continuations = numerics.newton.patience;  // some pairs cannot be pushed apart: push_apart(attempt) decides
+      continuations = numerics.newton.slow_after;  // some pairs cannot be pushed apart: push_apart(attempt) decides
       continue;
     }
     if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.energy.doubtful_gain &&
         cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.added_strain)
       return std::nullopt;
-    continuations = collisions_->restarts_at(next_) ? numerics.newton.patience : continuations + 1;
+    continuations = collisions_->restarts_at(next_) ? numerics.newton.slow_after : continuations + 1;
     collisions_->continue_from(next_);
     problem_.limit_friction_updates();
   }
 }
 
-// Solves the step if contact.response selects the velocity constraints of the seed (the paper that README.md names).
-// After each solve, the response sets and releases constraints, and gets contacts for pairs without a separating plane.
+// Solves the step if contact.response selects velocity constraints (Etzmuß et al. 2001). After each solve, the response
+// sets and releases constraints, and gets contacts for pairs without a separating plane.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;
@@ -153,7 +153,7 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
   // Normal forces and friction depend on each other, and can increase each other without end. With fixed normal forces,
   // friction has a potential, and dissipates (measured without this: a sheet of 0.5 J with friction 10 gains 1,300 J).
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
-      added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.astray_energy) {
+      added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.diverged_energy_ratio) {
     problem_.fix_normal_forces();
     step = solve(attempt.h, Start::unchanged_velocity, check_early, report);
   }
@@ -207,19 +207,19 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
 }
 
 bool StepLoop::may_shorten(const Attempt& attempt) {
-  return !attempt.is_last && attempt.rejections < numerics.repair.halvings;
+  return !attempt.is_last && attempt.rejections < numerics.repair.max_retries;
 }
 
 // Whether a shorter step would find no more space for cloth than this one.
 bool StepLoop::is_short_enough(const Attempt& attempt) const {
-  return attempt.is_last ||
-         (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_move_little(progress_.now, next_));
+  return attempt.is_last || (attempt.rejections >= numerics.repair.max_retries &&
+                             collisions_->obstacles_move_little(progress_.now, next_));
 }
 
 // Rejects a step that stretches threads far beyond their limit and far beyond their stretch at its start.
 StepLoop::Rejection StepLoop::check_overstretch(double h) {
   const double ratio = cloth_.overstretch(next_.particles()).ratio;
-  const double most = numerics.repair.overstretch;
+  const double most = numerics.repair.max_excess_stretch;
   if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).ratio + most) return std::nullopt;
   progress_.longest = 0.5 * h;
   return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", ratio);

@@ -117,10 +117,10 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
 }
 
-// Whether one long step may replace the next `steps` steps of length h [s]: the method is implicit Euler, contacts are
-// springs, all cloth is slow and has settled in its last step, no rejection forbids the length, and everything that
-// keys move or set is the same at t and at the end of each of these steps. If something changes, the long step is not
-// even tried: contacts that only the long step needs would remain in later steps.
+// Whether one long step may replace the next `steps` steps of length h [s]. It may if the method is implicit Euler,
+// contacts are springs, all cloth is slow and has settled in its last step, and no rejection forbids the length. In
+// addition, everything that keys move or set must be the same at t and at the end of each step: a long step that fails
+// would leave its contacts to later steps.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints release and stick again from step to step.
@@ -199,11 +199,10 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
       h = (t_t1 - t) / left;
     }
     for (; obstacle_turns_too_far(t, h); h *= 0.5) left *= 2;
-    const bool is_last = rejections == model_.solver.halvings || h < numerics.steps.least;
+    const bool is_last = rejections == model_.solver.halvings || h < numerics.steps.min_step;
     const Rejection rejection = attempt(t, h, rejections, is_last, report);
     if (rejection && is_last) fail(report.frame, t, h, *rejection);
-    // In an impact, the error may ask for shorter steps without end. So the last attempt is accepted whatever its
-    // error.
+    // In an impact, the error may require ever shorter steps, so the last attempt is accepted with any error.
     if (rejection || !(is_last || control.accepts(h, local_error_))) {
       ++report.rejected_steps, ++rejections;
       rejection ? control.record_unsolved_step(h) : control.record_rejected_step(h, local_error_);
@@ -244,8 +243,8 @@ void StepLoop::accept(double h, FrameReport& report) {
 }
 
 // Measures the accepted step, whose start is in `next_`. Warns when the largest stretch rises above kMaxStretchRatio.
-// If that cloth was reported before, warns only if it exceeds the last report by half: a tight waist would otherwise be
-// reported with every breath.
+// If that cloth was reported before, warns only if the ratio exceeds the last report by half: otherwise a tight waist
+// would be reported with every breath of its wearer.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());

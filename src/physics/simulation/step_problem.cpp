@@ -206,7 +206,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
     evaluation.rate = at.rate;
     evaluation.past = at.past;
     evaluation.range = number;
-    evaluation.air = air_;
+    evaluation.air_velocity = air_;
     if (assemble) {
       if (cloth < memory_.locks.size()) evaluation.locks = &memory_.locks[cloth];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);

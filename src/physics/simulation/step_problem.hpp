@@ -66,14 +66,14 @@ class StepProblem final : public integrator::System {
   /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
   void set_air_velocity(SolveMemory::PaddedVec3s air);
 
-  /// Call it within a step if contacts have changed. Friction then follows the normal forces for the rest of the step's
-  /// numerics.newton.patience updates, but for at least half of that number.
+  /// Call it within a step if contacts have changed. Friction then follows the normal forces for the rest of the
+  /// numerics.newton.slow_after updates of the step, but for at least half of that number.
   void limit_friction_updates() {
-    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
+    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.slow_after / 2)};
   }
 
   /// Call before a step is solved again: friction then uses the normal forces at the start of the step throughout.
-  void fix_normal_forces() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
+  void fix_normal_forces() { memory_.contacts = {{}, {}, {}, numerics.newton.slow_after}; }
 
   const SolveMemory& memory() const { return memory_; }
 

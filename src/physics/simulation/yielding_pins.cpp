@@ -35,7 +35,7 @@ YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& 
     const std::size_t count = model.cloths[info.cloth].start.size();
     double weight = 0;
     for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * model.physics.largest_gravity();
-    pull_force_.push_back(numerics.pins.weights * weight);
+    pull_force_.push_back(numerics.pins.cloth_weight_factor * weight);
   }
 }
 
@@ -85,7 +85,8 @@ bool YieldingPins::are_constant_between(double t0, double t1) {
 }
 
 // A pin with a strength is a damped spring. The force on a lagging particle falls linearly with its speed, from the
-// maximum at rest to zero at the target speed: a load below the maximum slows the particle but does not stop it.
+// maximum at rest to zero at the target speed: an opposing force below the maximum slows the particle but does not stop
+// it.
 void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);

@@ -65,7 +65,7 @@ class YieldingPins {
   Pins pins_;
   const model::Model& model_;
   std::span<const double> masses_;
-  std::vector<double> pull_force_;  // per pin: `numerics.pins.weights` times the weight of its cloth [N]; see pull()
+  std::vector<double> pull_force_;  // per pin: W of Numerics::Pins [N]
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one

@@ -10,9 +10,9 @@
 namespace weft::solver {
 namespace {
 
-// Single precision, which rounds stiffness by 6e-8, is used up to this stiffness of a particle (trace of its 3×3
-// block), relative to its norm weight rate² m. (Measured: sheets that swing on threads with ratios of 8e5, 8e6 and 8e7
-// take 361, 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
+// Largest stiffness of a particle (trace of its 3×3 block), relative to its norm weight rate² m, for single precision,
+// which rounds stiffness by 6e-8. (Measured: sheets that swing on threads with ratios of 8e5, 8e6 and 8e7 take 361,
+// 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
 constexpr double kMaxSingleStiffness = 1e7;
 
 // Whether no particle exceeds kMaxSingleStiffness. False without a mass-weighted norm.

@@ -26,22 +26,22 @@ struct LinearReport {
 class ConjugateGradient {
  public:
   /// Sets the system of the following calls, which must outlive them unchanged: the preconditioner is made in the first
-  /// of them. With AggregateSums::reuse, sums
-  /// over aggregates are reused if they have been made since the last call with AggregateSums::recompute.
+  /// of them. With AggregateSums::reuse, sums over aggregates are reused if they have been made since the last call
+  /// with AggregateSums::recompute.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// Returns P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
 
-  /// Iterates from x = 0, whatever x contains, until the error meets `goal`, or for `max_iterations`.
+  /// Iterates from zero (ignores the content of x) until the error meets `goal`, or for `max_iterations`.
   ///
   /// The iteration itself gives the error e: a step of length α along a search direction, from the residual r, reduces
   /// ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these steps
   /// (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
-  /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is that
-  /// estimate times the largest ratio, over these steps, of a step's squared mass-weighted norm to its gain, at most 1.
-  /// √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and flat sheets would fold in
-  /// free fall.
+  /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is this
+  /// estimate times q, at most 1. q is the largest ratio of a step's squared mass-weighted norm to its gain, over these
+  /// steps. √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and flat sheets would
+  /// fold in free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});
   /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.

@@ -21,7 +21,7 @@ enum class AggregateSums { recompute, reuse };
 /// & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
 /// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
 /// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and of
-/// the aggregates of its neighbours. This is a step of damped Jacobi on the graph of the matrix, applied to constants
+/// the aggregates of its neighbours. Q_k is a step of damped Jacobi on the graph of the matrix, applied to constants
 /// (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
 ///
 /// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or all of it on the last level. Both are expensive, so A_l
@@ -35,8 +35,8 @@ enum class AggregateSums { recompute, reuse };
 ///
 /// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
 /// `norm_weights` over its diagonal block (small ones excepted), no level interpolates: T_l = R_lᵀ, and the factor per
-/// level is 1. Interpolated motion would stretch threads across folds, and R_l A R_lᵀ, which contains only the
-/// boundaries of aggregates, lacks the threads inside of them.
+/// level is 1. Interpolated motion would stretch threads across folds; R_l A R_lᵀ contains only threads across the
+/// boundaries of aggregates, not those inside.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>

@@ -12,8 +12,8 @@ namespace weft::solver {
 
 /// Extends a preconditioner P of the matrix without outer products to the whole matrix, by the formula of Sherman and
 /// Morrison for one outer product k d dᵀ at a time: (P + k d dᵀ)⁻¹ = P⁻¹ − w wᵀ k / (1 + k d·w) with w = P⁻¹ d. If P is
-/// spectrally equivalent to the rest of the matrix, P + k d dᵀ is so to all of it, with the same constants (if these
-/// enclose 1) for any k.
+/// spectrally equivalent to the rest of the matrix, P + k d dᵀ is spectrally equivalent to the whole matrix for any k,
+/// with the same constants if these enclose 1.
 template <class Real>
 class RankOneTerms {
  public:

@@ -39,7 +39,7 @@ double Progress::OfPart::error_norm_ratio() const {
 std::ptrdiff_t Progress::OfPart::count_recent() const {
   const std::ptrdiff_t all = std::ssize(gains);
   return std::min<std::ptrdiff_t>(
-      all, std::max<std::ptrdiff_t>(numerics.linear.least_delay, all / numerics.linear.delay_fraction));
+      all, std::max<std::ptrdiff_t>(numerics.linear.min_error_window, all / numerics.linear.error_window_divisor));
 }
 
 bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> selected) const {

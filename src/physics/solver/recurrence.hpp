@@ -17,9 +17,9 @@ namespace weft::solver {
 /// √kMaxSingleStiffness, times a safety factor of five.
 inline constexpr double kSmallestSingleGoal = 1e-3;
 
-/// Allowed error of the solution, per diagonal block. It must meet one of two bounds: in the energy norm, `relative`
-/// times the norm of the solution without its step along Directions::start; or, in the mass-weighted norm, `absolute`
-/// (in the energy norm if the system has no `norm_weights`).
+/// Allowed error of the solution, per diagonal block. One of two bounds suffices. In the energy norm: `relative` times
+/// the norm of the solution without its step along Directions::start. In the mass-weighted norm (or, without
+/// `norm_weights`, the energy norm): `absolute`.
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< per diagonal block; empty: none

@@ -25,9 +25,9 @@ std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<cons
 /// Lines of crossing cut islands off from the largest island of a mesh. Returns moves for each of these islands, the
 /// smallest first. They take an island to the side of the crossed surface on which the largest island is (similar to
 /// flood filling in Baraff, Witkin & Kass, "Untangling Cloth", 2003). An island is flattened onto the other side, or
-/// folded over the line of crossing if that costs a tenth less (see stretch_cost). If islands cut each other off, only
-/// the smallest moves. Ignores crossings with solids, floors and layers. `above`: height over the other surface, per
-/// body of cloth [m]. `only`: restricts the search to one pair; if its surfaces differ, the other one is extended
+/// folded over the line of crossing if folding costs a tenth less (see stretch_cost). If islands cut each other off,
+/// only the smallest moves. Ignores crossings with solids, floors and layers. `above`: height over the other surface,
+/// per body of cloth [m]. `only`: restricts the search to one pair; if its surfaces differ, the other one is extended
 /// beyond its border as a plane, so that a line that ends at this border still cuts the cloth. `surfaces`: the broad
 /// phase, refitted at x.
 std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> crossings,

@@ -15,7 +15,8 @@ namespace weft::untangle {
 void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
            std::span<Vec3> x);
 
-/// Raises movable particles that are lower than `above` over a solid to that height, the nearest way.
+/// Raises movable particles that are lower than `above` over a solid to the height `above`, in the direction of the
+/// nearest exit.
 void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
 
 /// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times. For

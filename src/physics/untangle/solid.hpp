@@ -12,7 +12,8 @@
 namespace weft::untangle {
 
 /// The region where cloth may not be: inside a body of closed shells, which may cross each other; below a floor; or
-/// behind worn cloth (a layer), except for points whose nearest point of the layer is on its border. Does not move.
+/// behind worn cloth (a layer). Points whose nearest point of the layer is on its border are not behind it. Does not
+/// move.
 class Solid {
  public:
   /// Body `number` of the broad phase at x [m]; both must outlive it.

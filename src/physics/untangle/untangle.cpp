@@ -33,9 +33,9 @@ constexpr int kMaxPasses = 3;
 // A region whose way out is shorter than this multiple of kHeightInThicknesses always takes it: then only strain after
 // the move locks the region.
 constexpr double kShallowDepth = 4;
-// Maximum strain of a thread after the move; beyond it the body is taken to go through the cloth: the region is locked
-// (measured: 0.44 for a tube 4 cm too small, the largest of the valid starts; 4.9 for trousers with a leg through the
-// seat).
+// Maximum strain of a thread after the move. Above, the body counts as going through the cloth, and the region is
+// locked (measured: 0.44, the largest in valid starts, for a tube 4 cm too small; 4.9 for trousers with a leg through
+// the seat).
 constexpr double kMaxStrain = 1.5;
 // Maximum fraction of a region's threads that may still go through the body after the move: relax() frees those at the
 // region's border.
@@ -122,10 +122,9 @@ class Untangling {
     return any;
   }
 
-  // Separates coincident surfaces, of which neither is on a side of the other: moves the later cloth to the front of
-  // the earlier one, and the earlier one back from particles of the later one that are held. If no particle of the
-  // later one is movable, as of obstacles, moves the earlier cloth to its front. A rope has no front: moves the cloth
-  // back.
+  // Separates coincident surfaces, where neither is on a side of the other: moves the later cloth to the front of the
+  // earlier one, and the earlier one back from held particles of the later one. If the later surface cannot move (an
+  // obstacle), moves the earlier cloth to the front of it. A rope has no front: moves the cloth back.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {

@@ -23,7 +23,7 @@ struct Outputs {
 
 /// Executes the program, in the child process. If this fails, returns with the reason in errno. Calls only
 /// async-signal-safe functions, since another thread of the parent may have held a lock at the fork.
-void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) {
+void exec_program(const std::vector<char*>& argv, Outputs outputs, pid_t parent) {
   // If the parent is killed, the child must end too: otherwise a resumed command and this child would write the same
   // files. posix_spawn has no such option.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
@@ -32,28 +32,28 @@ void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) 
   if (::pipe2(input, O_CLOEXEC) != 0 || ::dup2(input[0], STDIN_FILENO) < 0) return;
   if (outputs.out >= 0 && ::dup2(outputs.out, STDOUT_FILENO) < 0) return;
   if (outputs.err >= 0 && ::dup2(outputs.err, STDERR_FILENO) < 0) return;
-  ::execvp(arguments[0], arguments.data());
+  ::execvp(argv[0], argv.data());
 }
 
 /// Returns 0, or the errno if the process could not be started.
-int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  std::array<int, 2> answer{};
-  if (::pipe2(answer.data(), O_CLOEXEC) != 0) return errno;
+int start(std::vector<std::string> arguments, Outputs outputs, pid_t& process) {
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  std::array<int, 2> exec_error_pipe{};
+  if (::pipe2(exec_error_pipe.data(), O_CLOEXEC) != 0) return errno;
   const pid_t parent = ::getpid();
   process = ::fork();
   int problem = process < 0 ? errno : 0;
   if (process == 0) {
-    become(arguments, outputs, parent);
+    exec_program(argv, outputs, parent);
     problem = errno;
-    ::_exit(::write(answer[1], &problem, sizeof problem) < 0 ? 126 : 127);
+    ::_exit(::write(exec_error_pipe[1], &problem, sizeof problem) < 0 ? 126 : 127);
   }
-  ::close(answer[1]);
+  ::close(exec_error_pipe[1]);
   // If the program starts, the pipe is closed without data.
-  while (process > 0 && ::read(answer[0], &problem, sizeof problem) < 0 && errno == EINTR) continue;
-  ::close(answer[0]);
+  while (process > 0 && ::read(exec_error_pipe[0], &problem, sizeof problem) < 0 && errno == EINTR) continue;
+  ::close(exec_error_pipe[0]);
   if (process > 0 && problem != 0) ::waitpid(process, nullptr, 0);
   return problem;
 }
@@ -73,7 +73,7 @@ std::filesystem::path own_program() {
   return program;
 }
 
-pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log) {
+pid_t start_process(const std::vector<std::string>& arguments, const std::filesystem::path& log) {
   Outputs outputs;
   if (!log.empty()) {
     // Without O_NONBLOCK, opening a pipe would wait for a reader.
@@ -82,17 +82,17 @@ pid_t start_process(const std::vector<std::string>& words, const std::filesystem
       throw Error(ExitCode::output_failed, "{}: cannot be written: {}", log.string(), std::strerror(errno));
   }
   pid_t process = -1;
-  const int problem = start(words, outputs, process);
+  const int problem = start(arguments, outputs, process);
   if (outputs.out >= 0) ::close(outputs.out);
-  if (problem != 0) fail(words[0], problem);
+  if (problem != 0) fail(arguments[0], problem);
   return process;
 }
 
-ProcessResult run_process(const std::vector<std::string>& words) {
+ProcessResult run_process(const std::vector<std::string>& arguments) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(words[0], errno);
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(arguments[0], errno);
   pid_t process = -1;
-  const int problem = start(words, {.out = ends[1]}, process);
+  const int problem = start(arguments, {.out = ends[1]}, process);
   ::close(ends[1]);
   ProcessResult result{127, {}};
   std::array<char, 4096> bytes;

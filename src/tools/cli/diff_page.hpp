@@ -7,9 +7,9 @@
 
 namespace weft::cli {
 
-/// One self-contained HTML file without scripts. It shows each pair that differs or lacks a readable file as reference
-/// ("before"), test ("after") and, if compared, map of the differences (of videos, the worst frame), without pictures
-/// beyond about 100 MB. Other pairs are only listed.
+/// One self-contained HTML file without scripts. Of each pair that differs or lacks a readable file, it shows reference
+/// ("before"), test ("after") and, if they were compared, a map of the differences; of videos the worst frame. Beyond
+/// about 100 MB, it shows no pictures. Other pairs are only listed.
 class DiffPage {
  public:
   /// `description`: the result as a line, which begins with "NAME: ".

@@ -90,13 +90,13 @@ void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
   settings.camera = stills->settings().camera;
   const std::vector<image::SheetPicture> pictures = draw_start(start, settings, *painter);
-  const std::string said = start.places.empty() ? "nothing touches or crosses" : start.description;
+  const std::string summary = start.places.empty() ? "nothing touches or crosses" : start.description;
   const image::Image image = start.places.empty()
                                  ? pictures.front().image
-                                 : image::contact_sheet(pictures, 2, said.substr(0, said.find(':')) + ", in red");
+                                 : image::contact_sheet(pictures, 2, summary.substr(0, summary.find(':')) + ", in red");
   const Metadata about = describe_pictures(stills->scene(), settings, painter->description());
   image::write_png(file, image, describe_still(about, start.snapshot->frame, start.snapshot->time));
-  log::info(fmt::format("{}: the start: {}", file.string(), said));
+  log::info(fmt::format("{}: the start: {}", file.string(), summary));
   check_stopped(options, *stills);
 }
 
@@ -151,13 +151,13 @@ class Batch {
     std::vector<ThumbnailOptions> drawings;
     PathLedger paths;
     for (const std::filesystem::path& scene : options_.scenes) {
-      ThumbnailOptions one = options_;
-      one.common.scene = scene;
+      ThumbnailOptions scene_options = options_;
+      scene_options.common.scene = scene;
       attempt(scene, [&] {
-        const std::unique_ptr<Stills> stills = open_stills(one.common);
-        one.output = folder_ / picture_name(one, *stills);
+        const std::unique_ptr<Stills> stills = open_stills(scene_options.common);
+        scene_options.output = folder_ / picture_name(scene_options, *stills);
         stills->add_inputs(paths);
-        drawings.push_back(one);
+        drawings.push_back(scene_options);
       });
     }
     for (const ThumbnailOptions& drawing : drawings) paths.writes("-o", drawing.output);
@@ -191,9 +191,9 @@ class Batch {
 ExitCode thumbnail(const ThumbnailOptions& options) {
   set_thread_count(options.common.threads);
   if (options.scenes.size() > 1 || is_folder(options)) return Batch(options).run();
-  ThumbnailOptions one = options;
-  one.common.scene = options.scenes.front();
-  draw_thumbnail(one);
+  ThumbnailOptions scene_options = options;
+  scene_options.common.scene = options.scenes.front();
+  draw_thumbnail(scene_options);
   return ExitCode::ok;
 }
 

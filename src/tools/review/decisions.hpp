@@ -19,9 +19,9 @@ namespace weft::review {
 
 class Decisions {
  public:
-  /// The entry of a run: of the valid ones in the files from the folder of the run up to the searched folder, the one
-  /// of the latest date (of equal dates, or without dates, the nearest); null if there is none. Adds unusable files and
-  /// entries to `run.problems`.
+  /// The entry of a run; null if there is none. Files from the folder of the run up to the searched folder are read. Of
+  /// their valid entries, the one with the latest date counts; of equal dates, or without dates, the nearest. Adds
+  /// unusable files and entries to `run.problems`.
   Json of(RunFiles& run);
 
  private:

@@ -103,7 +103,7 @@ Json frame_columns(const Json& frames) {
 
 Json column_digest(const Json& columns) {
   const auto frames = columns.find("frame");
-  Json digest = Json::object();
+  Json summary = Json::object();
   for (const auto& [name, column] : columns.items()) {
     Json entry;
     for (std::size_t row = 0; row < column.size(); ++row) {
@@ -117,9 +117,9 @@ Json column_digest(const Json& columns) {
       entry["sum"] = entry["sum"].get<double>() + value;
       entry["last"] = column[row];
     }
-    if (!entry.is_null()) digest[name] = std::move(entry);
+    if (!entry.is_null()) summary[name] = std::move(entry);
   }
-  return digest;
+  return summary;
 }
 
 PictureTimes picture_times(const RunFiles& run) {
@@ -160,13 +160,13 @@ Json run_data(const RunFiles& run) {
     problems.push_back("no statistics: weft run --stats FILE.json writes them, for figures and plots");
   Json stats = run.stats_json.is_object() ? run.stats_json : Json::object();
   Json columns = frame_columns(stats.value("frames", Json::array()));
-  Json digest = column_digest(columns);
+  Json summary = column_digest(columns);
   stats.erase("frames");
   Json effective = effective_json(run, problems);
   return {{"name", run.name},
           {"problems", problems},
           {"stats", std::move(stats)},
-          {"digest", std::move(digest)},
+          {"digest", std::move(summary)},
           {"columns", std::move(columns)},
           {"effective", std::move(effective)}};
 }

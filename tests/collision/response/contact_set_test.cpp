@@ -213,7 +213,7 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
     return std::max(0.0, normal_force_at(at) + slope_at(at) * kRange * (depth - at));
   };
   EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.2), 1e-12);
-  for (int k = 2; k < numerics.newton.patience - 1; ++k) contacts.update(x, lag);
+  for (int k = 2; k < numerics.newton.slow_after - 1; ++k) contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.2),
               1e-3 * mu * normal_force_at(0.2));  // accuracy of the depth search
   // Within a step the number of updates is limited, so that normal force and slip cannot alternate for ever.
@@ -232,7 +232,7 @@ TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) 
   const VertexOnFace pair(0.4);
   ContactSet contacts = pair.set();
   ContactLag lag;
-  lag.updates = numerics.newton.patience;
+  lag.updates = numerics.newton.slow_after;
   contacts.update(pair.x, lag);
   lag.normal_forces[0] = 7;
   contacts.add(pair.contact);
@@ -392,7 +392,7 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
   for (int turn = 0; turn < 3; ++turn) {
     slip = -slip;
     pair.update(slip);
-    const bool sticks = turn < numerics.contact.returns;
+    const bool sticks = turn < numerics.contact.max_resticks;
     EXPECT_EQ(pair.lag.frictions[0].sticks, sticks) << turn;
     // Friction follows the tangent at zero slip, or slides.
     EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
@@ -408,7 +408,7 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
 TEST(ContactSet, FrictionThatIsNotFoundInManyUpdatesSlidesOn) {
   Slipping pair;
   pair.update(0);
-  for (int k = 1; k < numerics.newton.patience; ++k) pair.update(0.5 + 0.01 * k);
+  for (int k = 1; k < numerics.newton.slow_after; ++k) pair.update(0.5 + 0.01 * k);
   EXPECT_TRUE(pair.lag.frictions[0].sticks);
   const Vec3 relative_friction = pair.lag.frictions[0].relative_friction;
   pair.update(0.2).update(0.3);

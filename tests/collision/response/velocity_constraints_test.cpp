@@ -151,7 +151,7 @@ TEST(VelocityConstraints, AParticleBetweenTwoWallsSticksHoweverManyOtherWallsItH
     particle.constraints.begin_step(kStep);
     particle.wall(Vec3(1, 0, 1).normalized(), kDMin, Vec3::Zero(), kMu);
     particle.wall(Vec3(-1, 0, 1).normalized(), kDMin, Vec3::Zero(), kMu);
-    for (int k = 0; k < numerics.walls.most; ++k)
+    for (int k = 0; k < numerics.walls.max_walls; ++k)
       particle.wall(Vec3(std::cos(k), std::sin(k), 2).normalized(), 100 * kDMin, Vec3::Zero(), kMu);
     particle.x_t1[0] = Vec3(0.001, 0, -0.01);  // passes the second wall farther
     particle.prepare();

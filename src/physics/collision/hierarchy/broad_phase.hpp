@@ -6,9 +6,8 @@
 //   broad_phase.pairs(a, b, candidates);
 //
 // With any options, the pairs include every two triangles that come closer than 2 · margin on the linear trajectory
-// from x_t0 to x_t1, with three exceptions: triangles that share two corners or more; without one_shared, those that
-// share one; and, with normal_cones, pairs of one surface in which no two features without a common vertex come closer
-// than 2 · margin.
+// from x_t0 to x_t1. Exceptions: triangles that share two corners or more; without one_shared, triangles that share
+// one; with normal_cones, triangles in a region of one surface that is provably flat (NormalCones).
 #pragma once
 
 #include <cstddef>
@@ -27,7 +26,7 @@ namespace weft::collision {
 /// 8 children instead of 2 save a fifth. Separation lists save at most a tenth. Velocity and normal cones cost at least
 /// as much as they save. 18 directions take longer to refit and traverse than 6, but list a quarter fewer candidates.
 /// They save 4 to 9 % of the time of broad and narrow phase together, or a fifth if layers are slanted to the axes. 26
-/// directions, the choice of the seed (the paper that README.md names), list the fewest candidates.
+/// directions (Etzmuß et al. 2001) list the fewest candidates.
 struct BroadPhaseOptions {
   /// Directions of the bounds: 6, 18 or 26. More directions cost more and list fewer pairs. Boxes (6) list every pair
   /// that 18 or 26 directions list.
@@ -36,8 +35,8 @@ struct BroadPhaseOptions {
   int children = 8;
   /// Maximum number of triangles per leaf, 1 to 8. Changes only the order of the pairs.
   int leaf = 8;
-  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side, as the seed does, instead of both.
-  /// Changes only the order of the pairs.
+  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001), not into
+  /// both. Changes only the order of the pairs.
   bool open_longer_side = false;
   /// Resume each traversal where the last one stopped. Lists the same pairs, in an order that depends on earlier
   /// traversals.

@@ -1,10 +1,10 @@
-// Discrete oriented polytopes (k-DOPs): bounds by k fixed directions, as in the seed (the paper that README.md names;
-// "Bounding Volume Hierarchy", Eq. 3).
+// Discrete oriented polytopes (k-DOPs): bounds by k fixed directions (Etzmuß et al. 2001, "Bounding Volume Hierarchy",
+// Eq. 3).
 //
 // A set is stored as its k support values: row r holds the minimum of direction_r · x over the set. Directions come in
 // opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this sign
-// convention the hull of two sets is the row-wise minimum, and row r of set a plus row r ^ 1 of set b is the gap
-// between them along direction r, times the length of direction r. Two k-DOPs overlap if no gap is positive.
+// convention the hull of two sets is the row-wise minimum. Row r of set a plus row r ^ 1 of set b is the gap between
+// the sets along direction r, times the length of direction r. Two k-DOPs overlap if no gap is positive.
 #pragma once
 
 #include <algorithm>

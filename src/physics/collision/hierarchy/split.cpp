@@ -42,7 +42,7 @@ std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> 
   const auto middle = std::stable_partition(items.begin(), items.end(), goes_first);
   const auto first = static_cast<std::size_t>(middle - items.begin());
 
-  // If all triangles would go to one part, put half of them in each. (The seed gives each triangle its own node.)
+  // If all triangles would go to one part, put half of them in each.
   return first == 0 || first == items.size() ? items.size() / 2 : first;
 }
 

@@ -19,8 +19,8 @@ struct Regions {
 /// How to traverse. The options do not change which pairs are found, except that pairs inside `regions` are skipped,
 /// and pairs that share one vertex if `one_shared` is false.
 struct Traversal {
-  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side, as in the seed (the paper that
-  /// README.md names; "Detection Process").
+  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001, "Detection
+  /// Process").
   bool open_longer_side = false;
   /// Resume where the last traversal stopped, and record where this one stops. One list per pair of trees.
   SeparationList* list = nullptr;

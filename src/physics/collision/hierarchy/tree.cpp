@@ -31,7 +31,7 @@ void check(const Surface& surface, std::size_t positions, const TreeShape& shape
 }
 
 // Slack of lazy refits: enough for kSlackSteps steps at the present speed, plus a fraction of the margin against
-// jitter. Bounds get no slack if that exceeds kMaxSlackFraction of the margin: the extra pairs would then cost more in
+// jitter. Bounds get no slack if it would exceed kMaxSlackFraction of the margin: the extra pairs would cost more in
 // the narrow phase than the refit saves.
 constexpr double kSlackSteps = 8;
 constexpr double kMinSlackFraction = 1.0 / 64;

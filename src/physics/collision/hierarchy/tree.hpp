@@ -60,8 +60,7 @@ class Tree {
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
   /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. Triangles that come
-  /// closer than 2 · margin at any time of the motion then have overlapping bounds (as in the seed, the paper that
-  /// README.md names: "Bounding Volume Hierarchy").
+  /// closer than 2 · margin at any time of the motion then have overlapping bounds.
   void refit(const Motion& motion, double margin);
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 

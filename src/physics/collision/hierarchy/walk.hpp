@@ -153,8 +153,8 @@ class Walk {
   }
 
   /// Lists all pairs of a triangle below ref_a and one below ref_b; the bounds of ref_a and ref_b are known to overlap.
-  /// Descends into both nodes together, unless kLonger selects the seed's order, because one test against all children
-  /// costs as much as one against a single child.
+  /// Unless kLonger, descends into both nodes together, because one test against all children costs as much as one
+  /// against a single child.
   void traverse_pair(Ref ref_a, Ref ref_b) {
     if (deferred_ != nullptr) return deferred_->push_back({ref_a, ref_b, false});
     open(ref_a, ref_b);

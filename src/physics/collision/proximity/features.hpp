@@ -11,9 +11,9 @@
 
 namespace weft::collision {
 
-/// Every vertex and edge is owned by the lowest-numbered triangle that contains it, so that iterating over triangle
-/// pairs visits each pair of features once (representative triangles: Curtis, Tamstorf & Manocha, "Fast Collision
-/// Detection for Deformable Models using Representative-Triangles", 2008).
+/// The lowest-numbered triangle that contains a vertex or edge owns it. A loop over triangle pairs thus visits each
+/// pair of features once (representative triangles: Curtis, Tamstorf & Manocha, "Fast Collision Detection for
+/// Deformable Models using Representative-Triangles", 2008).
 class Features {
  public:
   Features() = default;

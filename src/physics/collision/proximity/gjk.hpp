@@ -1,6 +1,5 @@
 // Distance of two convex polytopes by the algorithm of Gilbert, Johnson & Keerthi ("A fast procedure for computing the
-// distance between complex objects in three-dimensional space", 1988), as in the seed (the paper that README.md names;
-// "Distance Computation").
+// distance between complex objects in three-dimensional space", 1988).
 #pragma once
 
 #include <array>
@@ -25,8 +24,8 @@ struct ConvexClosest {
 
 /// Each set has 1 to 8 corners in any order, for example a triangle, a convex quad (a warped one counts as the
 /// tetrahedron of its corners), an edge or a point. Let `size` be the largest coordinate difference of the corners. The
-/// distance is accurate to 5e-14 size, needles included. The lower bound is less than the distance by at most as much
-/// plus 1e-15 size² / distance (tests/collision/proximity/gjk_test.cpp).
+/// distance is accurate to 5e-14 size, needles included. The lower bound is less than the distance by at most 5e-14
+/// size + 1e-15 size² / distance (tests/collision/proximity/gjk_test.cpp).
 ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b);
 
 }  // namespace weft::collision

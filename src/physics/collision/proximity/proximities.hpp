@@ -28,12 +28,11 @@ struct Proximity : FeaturePair {
 ///   - inside the face;
 ///   - inside both edges;
 ///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. If several faces
-///   there are equally close, only one is listed.
-/// Every skipped pair is represented by a listed pair that is at least as close. Proof: let S be the edge or vertex of
-/// the face where the closest point lies. Every face around S contains that point, so the vertex is no farther from
-/// each of them. Likewise, if the closest point of an edge pair is at an end, the faces around the other edge are no
-/// farther. Going from face to face, distances never grow, and ties go to the lower number, so this ends at a listed
-/// pair. The smallest distance of all is therefore always listed.
+///   there are equally close, only one is listed. Every skipped pair is represented by a listed pair that is at least
+/// as close. Proof: let S be the edge or vertex of the face where the closest point lies. Every face around S contains
+/// that point, so the vertex is no farther from each of them. Likewise, if the closest point of an edge pair is at an
+/// end, the faces around the other edge are no farther. From face to face, distances never grow, and ties go to the
+/// lower number, so the chain ends at a listed pair. The smallest distance of all is therefore always listed.
 class ProximityFinder {
  public:
   ProximityFinder() = default;

@@ -123,7 +123,7 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
 std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
                                           std::span<const Vec3> x_t1, PlaneKinds which) {
   return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), numerics.separation.least_gap)
-      .find(which, which == PlaneKinds::all ? numerics.repair.halvings : 0);
+      .find(which, which == PlaneKinds::all ? numerics.repair.max_retries : 0);
 }
 
 ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x) {

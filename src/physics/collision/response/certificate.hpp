@@ -23,9 +23,9 @@ struct CornerPair {
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
 
 /// Whether a plane with the constant normal n, which translates with the pair, separates both sides during the linear
-/// motion from x_t0 to x_t1. The gap along n must be at least kRoundoff at the start, so that touching vertices never
-/// count as separated, and Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a
-/// minimum of linear functions, hence concave, hence positive in between.
+/// motion from x_t0 to x_t1. The gap along n must be at least kRoundoff at the start (touching vertices are not
+/// separated), and Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a minimum of
+/// linear functions, hence concave, hence positive in between.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// Which planes are tried. `constant`: those of constant direction. `turning`: also those that turn during the step.
@@ -37,7 +37,7 @@ enum class PlaneKinds { constant, turning, all };
 ///      the start (for neighbours in one plane);
 ///   2. the same directions, turning from start to end;
 ///   3. the line between the closest points, constant, then turning;
-///   4. all again in each half of the trajectory, which is halved at most Numerics::Repair::halvings times.
+///   4. all again in each half of the trajectory, which is halved at most Numerics::Repair::max_retries times.
 ///
 /// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, t from 0 to 1. For two linearly moving corners with the
 /// difference δ(t), n·δ is quadratic in time, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁; it is

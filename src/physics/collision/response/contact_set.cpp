@@ -157,7 +157,7 @@ void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag)
   } else if (slip.squaredNorm() < 1) {
     lag.relative_friction = friction_over_normal_force(contact, slip);
     lag.sticks = true;
-  } else if (turned && lag.slide_starts < numerics.contact.returns) {
+  } else if (turned && lag.slide_starts < numerics.contact.max_resticks) {
     lag.relative_friction = Vec3::Zero();
     lag.sticks = true;
   }
@@ -185,9 +185,9 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     const double depth = contact.range - contact.normal.dot(relative);
     const double force = tangent_force(normal_force_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_for_force(contact, force, std::max(depth, lag.depths[c]));
-    if (lag.updates < numerics.newton.patience) lag.normal_forces[c] = force;
+    if (lag.updates < numerics.newton.slow_after) lag.normal_forces[c] = force;
     if (!contact.against_obstacle || contact.static_friction == 0) return;
-    if (lag.updates < numerics.newton.patience)
+    if (lag.updates < numerics.newton.slow_after)
       update_friction(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
     else
       lag.frictions[c].sticks = false;
@@ -223,7 +223,7 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   }
   response.slope = normal_force.slope;
   response.force = normal_force.force * contact.normal;
-  const bool follows = law == Law::exact && lag.updates < numerics.newton.patience;
+  const bool follows = law == Law::exact && lag.updates < numerics.newton.slow_after;
   const double friction_normal_force = follows ? normal_force.force : lag.normal_forces[index];
   if (contact.static_friction == 0 || friction_normal_force == 0) return response;
 

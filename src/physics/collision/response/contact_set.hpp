@@ -54,9 +54,9 @@ Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 /// The normal force of a contact is f(d) = k d (1 + Numerics::Contact::stiffening (d / r)⁴) at depth d = `range` − n·(a
 /// − b) > 0. Beyond d = r = `full_range` it continues linearly. n = `normal` is constant, so f is convex and its
 /// Jacobian has rank one. A linear spring is too weak under sharp tips: on cotton it reaches 0.1 N before the gap is
-/// closed, but a sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane.
-/// Its maximum is the friction coefficient times the normal force, to which it grows smoothly until the slip is the
-/// stick slip ε = `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+/// closed. A sheet on the tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane. Its
+/// maximum is the friction coefficient times the normal force, to which it grows smoothly until the slip is the stick
+/// slip ε = `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
 class ContactSet {
  public:
   void clear() { contacts_.clear(); }
@@ -69,19 +69,19 @@ class ContactSet {
   /// Call before each linearisation, with the particles at the last iterate. The normal force λ is an unknown of its
   /// own besides the depth d, with f⁻¹(λ) = d at the solution (a primal–dual method; λ starts as f(`depth`)). The
   /// linear system contains the tangent of the law at f⁻¹(λ), and λ follows that tangent, but never below zero.
-  /// (Measured with the tangent at the depth of the iterate instead: 1.25 times the iterations in sphere_drape.)
-  /// Friction uses this λ as a constant within an iteration, and does not renew it after Numerics::Newton::patience
-  /// updates, so friction has a potential, too.
+  /// (Measured with the tangent at the depth of the iterate instead: 1.25 times the iterations in sphere_drape.) Within
+  /// an iteration, and after Numerics::Newton::slow_after updates, friction uses a constant λ, so that it has a
+  /// potential, too.
   ///
-  /// Up to that number of updates, sticking friction on an obstacle follows its tangent likewise. The contact starts to
+  /// Up to that number of updates, sticking friction on an obstacle also follows its tangent. The contact starts to
   /// slide if the tangent exceeds static friction. It sticks again if the slip is within the stick slip, or if the slip
-  /// has reversed (at most Numerics::Contact::returns times). Between cloths, where this brings no gain, friction does
-  /// not follow its tangent.
+  /// has reversed (at most Numerics::Contact::max_resticks times). Between cloths, where this brings no gain, friction
+  /// does not follow its tangent.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
   /// force += contact forces [N] with the particles at x_end. Friction uses the normal forces at x_end during the first
-  /// Numerics::Newton::patience updates, so that the residual contains the error of the lagged normal forces (measured:
-  /// otherwise a sheet that lands on an incline loses the friction of the impact).
+  /// Numerics::Newton::slow_after updates, so that the residual contains the error of the lagged normal forces
+  /// (measured: otherwise a sheet that lands on an incline loses the friction of the impact).
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   /// As add_forces, with the tangents instead of the laws.
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
@@ -93,12 +93,12 @@ class ContactSet {
   /// Adds the velocity jumps due to impacts, in a step that ends at x_end, as a linear system whose unknowns are the
   /// jumps: adds terms to `system` and `right_side` [N/s]. Returns false if there is no impact. A contact that closes
   /// at Numerics::Contact::impact_velocity or faster is a full impact; one that closes more slowly counts
-  /// proportionally. Of three estimates of the closing velocity, the smallest counts: from the velocity at the start of
-  /// the step; from that velocity and the last acceleration (for motion along curved obstacles); and from the last
-  /// displacement (zero at rest). The normal force of an impact enters `right_side`. Friction enters `system` as a term
-  /// that keeps the tangential jump of the points as it was in the step, because a slip of 1e-7 m would change the
-  /// friction force completely. Contacts without an impact pass the jumps on with their stiffness (measured without: a
-  /// ball that falls on cloth on a floor throws the cloth up by 9 to 105 mm instead of 1.5 mm).
+  /// proportionally. The closing velocity is the smallest of three estimates: from the velocity at the start of the
+  /// step; from this velocity and the last acceleration (for motion along curved obstacles); from the last displacement
+  /// (zero at rest). The normal force of an impact enters `right_side`. Friction enters `system` as a term that keeps
+  /// the tangential jump of the points as it was in the step, because a slip of 1e-7 m would change the friction force
+  /// completely. Contacts without an impact transmit the jumps by their stiffness (measured without: a ball that falls
+  /// on cloth on a floor throws the cloth up by 9 to 105 mm instead of 1.5 mm).
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
@@ -106,9 +106,10 @@ class ContactSet {
   /// matrix of friction is approximated so that it is positive semidefinite. Friction −λ w of a slip u = ψ(‖u‖) w is
   /// linearised with w as an unknown of its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total
   /// Variation-Based Image Restoration", 1999). If the contact sticks, the result is the tangent at the slip that
-  /// belongs to w. If it slides, w is that of unchanged velocity, or the one with which sliding began. The result is
-  /// then the exact tangent while cloth keeps sliding. Where cloth starts to slide or changes direction, the result is
-  /// the secant, force over slip, or stiffer (measured on an incline: 1.05 iterations per step; with secants 2.3).
+  /// belongs to w. If the contact slides, w is that of unchanged velocity, or the one with which sliding began. The
+  /// result is then the exact tangent while cloth keeps sliding. Where cloth starts to slide or changes direction, the
+  /// result is the secant, force over slip, or stiffer (measured on an incline: 1.05 iterations per step; with secants
+  /// 2.3).
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 

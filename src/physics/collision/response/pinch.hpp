@@ -19,9 +19,9 @@ namespace weft::collision {
 /// Set of cloth triangles, each exempt from one limb of an obstacle (an obstacle without limbs counts as one): the
 /// triangle may intersect the limb, and no separating plane is required. A triangle is removed once it is apart from
 /// the limb and back on its original side. Triangles that share a particle with an exempted one are exempt too, so that
-/// a limb moving along the cloth does not drag the cloth with it. Of these, renew() adds to the set those that meet the
-/// limb or are on the wrong side of it. If two limbs overlap, the cloth is exempt from the limb that reached it and
-/// rests on the other. When the former retreats, the cloth comes out on the side where it went in.
+/// a limb moving along the cloth does not drag the cloth with it. renew() adds those neighbours to the set that meet
+/// the limb or are on its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it and rests
+/// on the other. When the limb that reached it retreats, the cloth comes out on the side where it went in.
 class PinchedPairs {
  public:
   struct Key {

@@ -32,8 +32,8 @@ std::optional<std::size_t> find_other(const PinchedPairs& pinched, const Pinched
     if (distance < nearest) nearest = distance, other = b;
   }
   if (bodies[key.body].rigid) return other;
-  // Parts of one deforming body, such as arm and torso, can pinch too. Then it has faces on both sides of the cloth,
-  // and even the farther side is closer than any other obstacle.
+  // Parts of one deforming body, such as arm and torso, can pinch too. That body then has faces on both sides of the
+  // cloth, and even the farther side is closer than any other obstacle.
   const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
   const double far =
       std::max(distance_facing(place, up, surfaces, key.body, x), distance_facing(place, -up, surfaces, key.body, x));

@@ -14,7 +14,7 @@ namespace weft::collision {
 /// A cloth that intersects an obstacle because there is no space for it.
 struct Pinch {
   std::size_t cloth = 0, obstacle = 0;  ///< bodies
-  std::optional<std::size_t> other;     ///< nearest other obstacle, if any; `obstacle` if parts of it pinch the cloth
+  std::optional<std::size_t> other;     ///< nearest other obstacle, if any; `obstacle` if its own parts pinch
   Vec3 place;                           ///< position of a particle [m]
 };
 

@@ -30,7 +30,7 @@ struct Triangles8 {
 
 }  // namespace
 
-// Tests face normals and the direction between the centres for eight pairs at once, in float: 5 ns per pair, where the
+// Tests face normals and the direction between the centres for eight pairs at once, in float: 5 ns per pair; the
 // branching search in double takes 60. If nothing is found, find_failing() searches later.
 void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   const auto gather = [&](bool side_b) {
@@ -47,8 +47,8 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
     return result;
   };
   Triangles8 a = gather(false), b = gather(true);
-  // Coordinates are rounded twice by 2^-24 of themselves, and dot products by a few times as much if the triangles are
-  // no farther apart than the coordinates are large. Half of the minimum gap allows for the length of n. Only
+  // Coordinates are rounded twice by 2^-24 of themselves; dot products by a few times as much, while the distance of
+  // the triangles does not exceed the largest coordinate. Half of the minimum gap allows for the length of n. Only
   // coordinates of the pair enter, so other bodies do not affect the result.
   Lanes8 rounding = a.corner[0].axis[0];
   for (const Triangles8* side : {&a, &b})

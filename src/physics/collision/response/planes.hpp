@@ -16,11 +16,11 @@
 
 namespace weft::collision {
 
-/// Stores for each watched pair of triangles a direction, and the gap along it at the reference, the positions at
-/// watch(). The gap shrinks by at most the sum of the motions of both triangles since then. While that sum is less than
-/// the gap, the pair is separated without a test, so cloth resting on cloth costs one comparison per pair and step. A
-/// pair whose corners are all where they were at its last successful test is not tested again either, because pushing
-/// apart tests all pairs again after it has moved a few vertices.
+/// Stores for each watched pair of triangles a direction, and the gap along it at the reference (the positions at
+/// watch()). The gap shrinks by at most the sum of the motions of both triangles since then. While that sum is less
+/// than the gap, the pair is separated without a test, so cloth resting on cloth costs one comparison per pair and
+/// step. If no corner of a pair has moved since its last successful test, the pair is not tested again either (pushing
+/// apart moves few vertices, then tests all pairs).
 class Planes {
  public:
   Planes() = default;
@@ -28,8 +28,8 @@ class Planes {
   explicit Planes(std::span<const Triangle> triangles, Index obstacles_from = 0)
       : triangles_(triangles), obstacles_from_(obstacles_from) {}
 
-  /// Which planes are sought for a pair: `which`, but `all` instead of `turning` for pairs with an obstacle, because
-  /// obstacles move fast and turn (measured without: a ball that hits a cloth takes 1.13 times the iterations).
+  /// Which planes are sought for a pair: `which`, but for pairs with an obstacle `all` instead of `turning`. Obstacles
+  /// move fast and turn (measured without this rule: a ball that hits a cloth takes 1.13 times the iterations).
   PlaneKinds kinds_of(const CornerPair& pair, PlaneKinds which) const {
     const bool with_obstacle = pair.a[0] >= obstacles_from_ || pair.b[0] >= obstacles_from_;
     return which == PlaneKinds::turning && with_obstacle ? PlaneKinds::all : which;

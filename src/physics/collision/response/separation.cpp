@@ -92,7 +92,8 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
 }
 
 // Finds the plane n·x = c for pushing a pair apart: free corners of a move up to c + target / 2, those of b down to c −
-// target / 2, without moving their common centre of mass (measured: a plane midway lost 1e-4 of the momentum).
+// target / 2. The plane keeps their common centre of mass in place (measured: with a plane midway, 1e-4 of the momentum
+// is lost).
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
     double limit, mass;  // c above which a corner of a is pushed, or below which a corner of b is [m]; mass [kg]
@@ -200,9 +201,9 @@ const Vec3& Separation::backtrack_target(Index v, const Step& step) const {
   return carriers_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(carriers_[v]))[v] : step.x_t0[v];
 }
 
-// Chooses where the vertices of a failing pair are backtracked to. Vertices that fail with an obstacle go where it
-// carries them, and so do vertices that then fail with these. Vertices between two obstacles that would carry them to
-// different places stay at their start. Returns true if something changed; each vertex changes at most twice.
+// Chooses where the vertices of a failing pair are backtracked to. Vertices of pairs with an obstacle go where it
+// carries them, and so do vertices that then fail with these vertices. Vertices between two obstacles that would carry
+// them to different places stay at their start. Returns true if something changed; each vertex changes at most twice.
 bool Separation::choose_backtrack_targets(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
@@ -290,7 +291,7 @@ bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const 
   if (ends_at(step.x_t0)) return true;
   const int carrier = carriers_[pair.a[0]];
   if (carrier < 0) return false;
-  // Another obstacle is not carried along, and may meet what is.
+  // The carrier does not move other obstacles along: they may meet carried vertices.
   const auto obstacle = static_cast<std::size_t>(carrier);
   return (!step.carried->has_obstacle(pair) || step.carried->obstacle_of(pair) == obstacle) &&
          ends_at(step.carried->by(obstacle));

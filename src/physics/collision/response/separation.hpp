@@ -44,13 +44,13 @@ struct RigidGroup {
 /// Pairs without a common vertex are tested one by one; pairs of a surface that share one vertex are tested by vertex
 /// stars. Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
 ///
-/// If a pair has no separating plane, enforce() pushes its end positions apart along n, the direction between its
-/// closest points at the start, until a gap remains; obstacles and held particles do not move. It then tests the moved
+/// If a pair has no separating plane, enforce() pushes its end positions apart until a gap remains, along n, the
+/// direction between its closest points at the start. Obstacles and held particles do not move. It then tests the moved
 /// vertices again, until no pair fails. Particles that keep failing are backtracked, finally all the way to their start
-/// or, if they fail with an obstacle that moves rigidly, to where the obstacle would have carried them. No pair met at
-/// the start. So two triangles whose vertices all end at their start, or where one obstacle carries them, are as far
-/// apart as they were. The set of backtracked particles grows until no pair fails. A pair that still fails is forced
-/// together by obstacles that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
+/// or, if they fail with an obstacle that moves rigidly, to where the obstacle would have carried them. As no pair met
+/// at the start, two triangles do not meet if all their vertices end at their start, or if one obstacle carries all of
+/// them. The set of backtracked particles grows until no pair fails. A pair that still fails is forced together by
+/// obstacles that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
 ///
 /// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
 /// obstacles and from each other, the lighter one farther.

@@ -69,9 +69,9 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
 }
 
 // The displacement closest to u that passes no wall of the particle; `held`: the walls that limit it, with multipliers.
-// Tries the Karush-Kuhn-Tucker conditions for every set of up to three of the Numerics::Walls::most walls that u passes
-// farthest. `of_force`: uses only the walls that hold now, all through the origin; then -u is the direction of a force,
-// and the multipliers are its normal components.
+// Tries the Karush-Kuhn-Tucker conditions for every set of up to three of the Numerics::Walls::max_walls walls that u
+// passes farthest. `of_force`: uses only the walls that hold now, moved to the origin; −u is then the direction of a
+// force, and the multipliers are its normal components.
 Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& u, bool of_force,
                                   ActiveWalls& held) const {
   held = {};
@@ -84,9 +84,9 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
   }
   if (feasible(all, u, kRoundoff)) return u;
   const auto missing = [&](const HalfSpace& h) { return h.bound - h.normal.dot(u); };
-  if (std::ssize(all) > numerics.walls.most) {
+  if (std::ssize(all) > numerics.walls.max_walls) {
     std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) > missing(b); });
-    all.resize(numerics.walls.most);
+    all.resize(numerics.walls.max_walls);
   }
 
   const std::size_t n = all.size();
@@ -261,7 +261,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
 
 void VelocityConstraints::accept() {
   // If an overloaded particle was released, no particle begins to stick: the released one may have held its slow
-  // neighbours. Without this rule the halves of a patch could stick in turn, and hold the whole patch on any incline.
+  // neighbours. Without this rule two halves of touching cloth could stick in turn, and hold all of it on any incline.
   const bool any_overloaded =
       std::ranges::any_of(touched_, [](const TouchingParticle& particle) { return particle.overloaded; });
   for (Index particle : remembered_) memory_[particle] = {};
@@ -280,7 +280,7 @@ Mat3 VelocityConstraints::free_directions(const TouchingParticle& particle) cons
   for (int k = 0; k < particle.held.count; ++k) {
     const Vec3 q = free * walls_[particle.held.walls[k]].normal;
     const double size = q.norm();
-    if (size < numerics.walls.same_direction) continue;
+    if (size < numerics.walls.min_independent_sine) continue;
     free -= q * q.transpose() / (size * size);
   }
   return free;
@@ -298,7 +298,7 @@ PrescribedParticle VelocityConstraints::prescription(const TouchingParticle& par
     const Wall& wall = walls_[particle.held.walls[k]];
     const Vec3 q = free * wall.normal;
     const double size_sq = q.squaredNorm();
-    if (size_sq < numerics.walls.same_direction * numerics.walls.same_direction) continue;
+    if (size_sq < numerics.walls.min_independent_sine * numerics.walls.min_independent_sine) continue;
     result.v_end += (wall.normal.dot(wall.motion) / step_ - wall.normal.dot(result.v_end)) / size_sq * q;
     free -= q * q.transpose() / size_sq;
   }

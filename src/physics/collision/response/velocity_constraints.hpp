@@ -1,5 +1,5 @@
-// Contact response of cloth against obstacles as in the seed (the paper of Etzmuß et al., see README.md): velocities
-// prescribed in the filtered CG (Eq. 4), stiction, Coulomb friction, and release where the residual shows a pull.
+// Contact response of cloth against obstacles after Etzmuß et al. (2001): velocities prescribed in the filtered CG (Eq.
+// 4), stiction, Coulomb friction, and release where the residual shows a pull.
 #pragma once
 
 #include <algorithm>
@@ -24,21 +24,21 @@ struct PrescribedParticle {
 /// Contacts of single particles with obstacles. Each is a wall: over a step of length h the particle may move by u with
 /// n·u >= h v_n, where
 ///
-///     v_n = (γ d_min − d) / h + n·v_r,   seed Eq. (4),
+///     v_n = (γ d_min − d) / h + n·v_r (Eq. 4)
 ///
 /// with the arguments of add(): n = `normal`, d = `distance`, v_r = `motion` / h, the velocity of the obstacle there.
-/// The factor γ is illegible in our copy of the paper. We choose γ = 1 if d >= d_min, so that arriving particles stop
-/// at d_min and resting ones stay. If d < d_min, a fraction c = Numerics::Walls::correction of the missing distance is
-/// restored: γ d_min = d + c (d_min − d).
+/// As γ is illegible in our copy of the paper, we choose γ = 1 if d >= d_min, so that arriving particles stop at d_min
+/// and resting ones stay. If d < d_min, a fraction c = Numerics::Walls::correction of the missing distance is restored:
+/// γ d_min = d + c (d_min − d).
 ///
-/// A wall holds its particle while it has to push: the inequality is then an equality, and the CG has one direction
-/// less. The wall releases the particle if the residual shows that the wall would pull. Up to three walls hold a
-/// particle at once. A held particle also sticks in the tangent plane, moving with the obstacle, while the force
-/// required for that lies in the friction cone. Otherwise it slides, with friction μ times the normal force against the
-/// slip, smooth below the stick velocity as in ContactSet. If it ends a step slower than the stick velocity, with the
-/// same walls and nearly the same normal force as before, it sticks from the next step on (exception: see accept() in
-/// the .cpp). Friction is implicit: an explicit friction force would reverse the motion of neighbours that begin to
-/// slide together.
+/// A wall holds its particle while the wall has to push: the inequality is then an equality, which removes one
+/// direction from the CG. The wall releases the particle if the residual shows that the wall would pull. Up to three
+/// walls hold a particle at once. A held particle also sticks in the tangent plane, moving with the obstacle, while the
+/// force required for that lies in the friction cone. Otherwise it slides, with friction μ times the normal force
+/// against the slip, smooth below the stick velocity as in ContactSet. A particle that ends a step slower than the
+/// stick velocity, with the same walls and nearly the same normal force as before, sticks from the next step on
+/// (exception: see accept() in the .cpp). Friction is implicit: an explicit friction force would reverse the motion of
+/// neighbours that begin to slide together.
 ///
 /// The state is revised between the solves of a step (revise) and kept for the next step (accept).
 class VelocityConstraints {
@@ -61,12 +61,13 @@ class VelocityConstraints {
   /// Finds the particles that walls held at the end of the last step and that have no wall yet in this one. Until now,
   /// a wall was found only for corners of triangles that would meet an obstacle on the way to x_t1, the expected end of
   /// the step. Without a wall, the first solve would release these particles. If there are any, returns true and sets
-  /// `predicted` to x_t1, but with them moved by `by` [m] towards their former walls, so that a second search finds
-  /// these walls.
+  /// `predicted` to x_t1 with these particles moved by `by` [m] towards their former walls, so that a second search
+  /// finds these walls.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that a particle would pass on the way from x_t0, the start
-  /// of the step, to x_t1, its expected end, moved slightly towards the walls that held it at the end of the last step.
+  /// of the step, to its expected end. That end is x_t1, moved slightly towards the walls that held the particle at the
+  /// end of the last step.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// After a solve that led to x_end: lets walls that were passed hold, releases walls that pull, and lets sticking
@@ -107,7 +108,7 @@ class VelocityConstraints {
     int next;  // next wall of the same particle, or −1
   };
   /// Walls that hold a particle, as indices into walls_; −1: none. The order is that in which project() tries them; for
-  /// a particle with more than Numerics::Walls::most walls, it depends on the displacement.
+  /// a particle with more than Numerics::Walls::max_walls walls, it depends on the displacement.
   struct ActiveWalls {
     std::array<int, 3> walls{-1, -1, -1};
     std::array<double, 3> multipliers{0, 0, 0};

@@ -21,9 +21,9 @@ bool share_end(const std::array<Index, 2>& s, const std::array<Index, 2>& t) {
   return s[0] == t[0] || s[0] == t[1] || s[1] == t[0] || s[1] == t[1];
 }
 
-/// Largest distance d that all three corners of a triangle may move while its oriented area n·(e × f), now `area`,
-/// stays positive, also in the mixed products of one edge at one time and the other at another. Each edge changes by at
-/// most 2 d, so the product changes by at most 2 d (|e| + |f|) + 4 d². `lengths`: |e| + |f|. −1 if area <= 0.
+/// Largest distance d that all three corners of a triangle may move while n·(e × f), now `area`, stays positive for
+/// edges e and f taken at any two times. Each edge changes by at most 2 d, so the product changes by at most 2 d (|e| +
+/// |f|) + 4 d². `lengths`: |e| + |f|. −1 if area <= 0.
 double allowed_motion(double area, double lengths) {
   return area > 0 ? 0.25 * (std::sqrt(lengths * lengths + 4 * area) - lengths) : -1;
 }

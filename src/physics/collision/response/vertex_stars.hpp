@@ -16,15 +16,15 @@ namespace weft::collision {
 /// other triangle, or rs does. Both pairs of edge and triangle have no common vertex, so two separating planes keep the
 /// triangles apart.
 ///
-/// A vertex with six triangles has nine such pairs of triangles, so a closed star (triangles all around the vertex) is
-/// tested as a whole where possible. If all its triangles, projected along one axis n, keep their orientation during
-/// the step and go around the vertex once, they cover disjoint sectors, so no two meet outside their common edges. The
-/// oriented area n·(e × f) of a moving triangle with edges e and f from the vertex is quadratic in time, and positive
-/// if its Bernstein coefficients are (the cone test of Volino & Magnenat-Thalmann, "Efficient Self-Collision Detection
-/// on Smoothly Discretized Surface Animations using Geometrical Shape Regularity", 1994, over a time interval as in
-/// Tang et al., "ICCD: Interactive Continuous Collision Detection between Deformable Models using Connectivity-Based
-/// Culling", 2009). A star that goes around once at the start does so throughout, because the angle cannot jump. Open
-/// stars at borders have few pairs and are tested pair by pair.
+/// A vertex with six triangles has nine such pairs of triangles, so VertexStars tests a closed star (triangles all
+/// around the vertex) as a whole where possible. If all its triangles, projected along one axis n, keep their
+/// orientation during the step and go around the vertex once, they cover disjoint sectors, so no two meet outside their
+/// common edges. The oriented area n·(e × f) of a moving triangle with edges e and f from the vertex is quadratic in
+/// time, and positive if its Bernstein coefficients are (the cone test of Volino & Magnenat-Thalmann, "Efficient
+/// Self-Collision Detection on Smoothly Discretized Surface Animations using Geometrical Shape Regularity", 1994, over
+/// a time interval as in Tang et al., "ICCD: Interactive Continuous Collision Detection between Deformable Models using
+/// Connectivity-Based Culling", 2009). A star that goes around once at the start does so throughout, because the angle
+/// cannot jump. Open stars at borders have few pairs and are tested pair by pair.
 class VertexStars {
  public:
   VertexStars() = default;

@@ -1,22 +1,22 @@
-// Keeps detection results while nothing moves much relative to its neighbours, as in the seed (the paper that README.md
-// names; "Detection Process").
+// Keeps detection results while nothing moves much relative to its neighbours (Etzmuß et al. 2001, "Detection
+// Process").
 //
 //   CoherentDetection detection(surfaces, {{0, 0}, {0, 1}}, x, {.detection_distance = …, .budget = …});
 //   each step:  if (detection.update(broad_phase, finder, x_t0, x_t1) > 0) … detection.candidates() have changed
 //               detection.proximities()
 //
 // Each surface is divided into groups of triangles. A velocity cone bounds the motion of each group since a common
-// reference. For two groups, let R be the bound, by these cones, of how far a point of one has moved relative to a
-// point of the other since their pair of surfaces was last searched. Since then, the distance of any point of one group
-// from any point of the other, and the gap between their bounding volumes along any direction, have changed by at most
-// R. Let D be the detection distance. A result is valid while every two groups have R ≤ budget, or had boxes more than
-// D + R apart at that search. While a result is valid:
+// reference. For two groups, these cones give a bound R of the motion of a point of one relative to a point of the
+// other since their pair of surfaces was last searched. Since then, the distance of any point of one group from any
+// point of the other, and the gap between their bounding volumes along any direction, have changed by at most R. Let D
+// be the detection distance. A result is valid while every two groups have R ≤ budget, or had boxes more than D + R
+// apart at that search. While a result is valid:
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
 //     and never closer;
 //   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (They were within
-//     D + R at that search, and the listed pair that represented them was no farther; see ProximityFinder.)
-// A pair of surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
+//     D + R at that search, and the listed pair that represented them was no farther; see ProximityFinder.) A pair of
+// surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
 #pragma once
 
 #include <cstddef>

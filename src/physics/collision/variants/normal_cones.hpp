@@ -20,20 +20,20 @@ namespace weft::collision {
 ///      −a), all of P⁺ faces the viewer;
 ///   3. the contour of P⁺, seen against a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
 ///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
-///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.
-/// Proof: the degree of the projection is the winding number of the contour, and every triangle counts +1. By
-/// conditions 2 and 3 each point inside the contour is covered once, so P⁺ projects to a planar triangulation. In that
-/// plane, the closest points of two features of P without a common vertex include a vertex v of one of them. The
-/// segment from v to the other feature leaves the triangles around v, which surround v by condition 1, through an edge
-/// opposite to v, so it is at least an altitude long. Distances in space are no smaller than their projections.
+///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance. Proof: the degree of
+/// the projection is the winding number of the contour, and every triangle counts +1. By conditions 2 and 3 each point
+/// inside the contour is covered once, so P⁺ projects to a planar triangulation. In that plane, the closest points of
+/// two features of P without a common vertex include a vertex v of one of them. The segment from v to the other feature
+/// leaves the triangles around v, which surround v by condition 1, through an edge opposite to v, so it is at least an
+/// altitude long. Distances in space are no smaller than their projections.
 ///
 /// The normal of a triangle is quadratic in time. Over a step, the cone test and the contour test therefore use
 /// Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle does not meet condition
 /// 2.
 ///
-/// Provot (1997; the choice of the seed, the paper that README.md names) requires only condition 2, for P instead of
-/// P⁺. That would also skip near pairs of parts that overlap in projection (a spiral stair) or meet across a border or
-/// slit (measured: 0.6 to 25 % of the skipped pairs were near).
+/// Provot (1997), and with him Etzmuß et al. (2001), requires only condition 2, for P instead of P⁺. Condition 2 alone
+/// would also skip near pairs of parts that overlap in projection (a spiral stair) or meet across a border or slit
+/// (measured: 0.6 to 25 % of the skipped pairs were near).
 template <int K>
 class NormalCones {
  public:

@@ -1,5 +1,5 @@
 // Records where the last traversal of one or two hierarchies stopped (Li & Chen, "Incremental 3D collision detection
-// with hierarchical data structures", 1998), as in the seed (the paper that README.md names; "Detection Process").
+// with hierarchical data structures", 1998).
 #pragma once
 
 #include <cstdint>
@@ -7,13 +7,12 @@
 
 namespace weft::collision {
 
-/// Pairs of subtrees that together cover all pairs of triangles between two trees, or within one tree. Each entry stays
-/// valid whatever the bounds become, so a traversal may start from the entries instead of the roots. Entries only move
-/// down: if the bounds of an entry overlap now, entries for its children replace it. An entry that could move up again
-/// costs one overlap test per traversal until the list is rebuilt. A rebuild is due
+/// Pairs of subtrees that together cover all pairs of triangles between two trees, or within one tree. The pairs cover
+/// everything whatever the bounds become, so a traversal may start from the entries instead of the roots. Entries only
+/// move down: if the bounds of an entry overlap now, entries for its children replace it. An entry that is lower than
+/// necessary costs one overlap test per traversal until the list is rebuilt. A rebuild is due
 ///   - after kWalks traversals, or
-///   - once the list has grown by more than half.
-/// These limits keep the useless tests to about half of the useful ones.
+///   - once the list has grown by more than half. These limits keep the useless tests to about half of the useful ones.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree

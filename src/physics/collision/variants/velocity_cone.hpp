@@ -1,14 +1,13 @@
-// Velocity cones: bounds of the motion of a set of points, as in the seed (the paper that README.md names; "Lazy
-// Hierarchy Update", Fig. 4).
+// Velocity cones: bounds of the motion of a set of points (Etzmuß et al. 2001, "Lazy Hierarchy Update", Fig. 4).
 #pragma once
 
 #include "core/types.hpp"
 
 namespace weft::collision {
 
-/// All motions of a set lie in the ball around `mean` with `radius`. Seen from the origin, that ball is the seed's cone
-/// with its direction, opening angle and size. A ball is stored because two balls bound a relative motion without
-/// trigonometry. Motions are displacements [m] over one common time.
+/// All motions of a set lie in the ball around `mean` with `radius`. Seen from the origin, that ball is the cone of the
+/// paper. A ball is stored because two balls bound a relative motion without trigonometry. Motions are displacements
+/// [m] over one common time.
 struct VelocityCone {
   Vec3 mean = Vec3::Zero();
   double radius = 0;
