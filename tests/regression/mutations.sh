@@ -12,7 +12,10 @@ if [ "${1:-}" = --check ]; then
     status=0
     while IFS='|' read -r name file change; do
       file=$root/$(echo "$file" | tr -d ' ')
-      sed "$change" "$file" | cmp -s - "$file" && status=1 && echo "$name: changes nothing in $file"
+      if [ ! -f "$file" ] || sed "$change" "$file" | cmp -s - "$file"; then
+        status=1
+        echo "$name: changes nothing in $file"
+      fi
     done
     exit $status
   }
