@@ -12,29 +12,31 @@ namespace {
 
 using Corners = std::array<Vec3, 3>;
 
-/// Both sides of a pair at one time.
-struct Sides {
-  Corners a, b;
-};
-
-Sides sides_of(const CornerPair& pair, std::span<const Vec3> x) {
-  const auto corners = [&](const Triangle& t) { return Corners{x[t[0]], x[t[1]], x[t[2]]}; };
-  return {corners(pair.a), corners(pair.b)};
-}
-
-Sides middle_of(const Sides& x, const Sides& y) {
-  const auto middle = [](const Corners& p, const Corners& q) {
-    return Corners{0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2])};
-  };
-  return {middle(x.a, y.a), middle(x.b, y.b)};
+Corners middle_of(const Corners& p, const Corners& q) {
+  return {0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2])};
 }
 
 Vec3 normal(const Corners& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]);
 }
 
-Vec3 between_centres(const Sides& x) {
-  return x.a[0] + x.a[1] + x.a[2] - x.b[0] - x.b[1] - x.b[2];
+/// Both sides of a pair at one time. Neighbouring pieces of a trajectory share it, with the directions computed here.
+struct Sides {
+  Corners a, b;
+  Vec3 normal_a = normal(a), normal_b = normal(b);
+  Vec3 centres = a[0] + a[1] + a[2] - b[0] - b[1] - b[2];  // from b to a
+
+  /// From the closest point of b to that of a; zero if they intersect.
+  const Vec3& closest() {
+    if (!known_closest) known_closest = closest_convex(a, b).difference;
+    return *known_closest;
+  }
+  std::optional<Vec3> known_closest = std::nullopt;
+};
+
+Sides sides_of(const CornerPair& pair, std::span<const Vec3> x) {
+  const auto corners = [&](const Triangle& t) { return Corners{x[t[0]], x[t[1]], x[t[2]]}; };
+  return {corners(pair.a), corners(pair.b)};
 }
 
 // min over k of height(a, k) − max over k of height(b, k), for corners k = 0 to 2.
@@ -51,35 +53,34 @@ double gap_along(const Vec3& n, const Sides& x) {
 /// Searches for planes over a piece of the trajectory. `end_gap`: minimum gap at its end [m].
 class Search {
  public:
-  Search(const Sides& t0, const Sides& t1, double end_gap)
-      : t0_(t0), t1_(t1), end_gap_(end_gap), centres_(between_centres(t0)) {}
+  Search(Sides& t0, Sides& t1, double end_gap) : t0_(t0), t1_(t1), end_gap_(end_gap) {}
 
   std::optional<Vec3> find(PlaneKinds which, int halvings) {
-    const Vec3 of_a = orient_to_side_a(normal(t0_.a)), of_b = orient_to_side_a(normal(t0_.b));
-    const Vec3 later_of_a = normal(t1_.a), later_of_b = normal(t1_.b);
-    if (try_constant_direction(of_a) || try_constant_direction(of_b) || try_constant_direction(centres_) ||
-        try_constant_direction(orient_to_side_a(later_of_a)) || try_constant_direction(orient_to_side_a(later_of_b)))
+    const Vec3 of_a = orient_to_side_a(t0_.normal_a), of_b = orient_to_side_a(t0_.normal_b);
+    if (try_constant_direction(of_a) || try_constant_direction(of_b) || try_constant_direction(t0_.centres) ||
+        try_constant_direction(orient_to_side_a(t1_.normal_a)) ||
+        try_constant_direction(orient_to_side_a(t1_.normal_b)))
       return found_;
     const bool turning = which != PlaneKinds::constant;
-    if (turning && (try_turning_direction(of_a, orient_as_at_start(later_of_a, t0_.a)) ||
-                    try_turning_direction(of_b, orient_as_at_start(later_of_b, t0_.b)) ||
-                    try_turning_direction(centres_, between_centres(t1_))))
-      return found_;
-    const Vec3 closest = closest_convex(t0_.a, t0_.b).difference;
-    if (try_constant_direction(closest) || !turning) return found_;
     // Hulls that intersect at the end have no separating plane.
-    const Vec3 closest_later = closest_convex(t1_.a, t1_.b).difference;
-    if (closest_later == Vec3::Zero() || try_turning_direction(closest, closest_later) || halvings == 0) return found_;
-    const Sides middle = middle_of(t0_, t1_);
+    if (turning && t1_.closest() == Vec3::Zero()) return std::nullopt;
+    if (turning && (try_turning_direction(of_a, orient_as_at_start(t1_.normal_a, t0_.normal_a)) ||
+                    try_turning_direction(of_b, orient_as_at_start(t1_.normal_b, t0_.normal_b)) ||
+                    try_turning_direction(t0_.centres, t1_.centres)))
+      return found_;
+    if (try_constant_direction(t0_.closest()) || !turning || try_turning_direction(t0_.closest(), t1_.closest()) ||
+        halvings == 0)
+      return found_;
+    Sides middle{middle_of(t0_.a, t1_.a), middle_of(t0_.b, t1_.b)};
     if (!Search(t0_, middle, kRoundoff).find(which, halvings - 1)) return std::nullopt;
     return Search(middle, t1_, end_gap_).find(which, halvings - 1);
   }
 
  private:
-  Vec3 orient_to_side_a(const Vec3& n) const { return n.dot(centres_) < 0 ? Vec3(-n) : n; }
+  Vec3 orient_to_side_a(const Vec3& n) const { return n.dot(t0_.centres) < 0 ? Vec3(-n) : n; }
   // Orients a normal at the end as the normal of the same triangle was oriented at the start.
-  Vec3 orient_as_at_start(const Vec3& later, const Corners& start) const {
-    return normal(start).dot(centres_) < 0 ? Vec3(-later) : later;
+  Vec3 orient_as_at_start(const Vec3& later, const Vec3& at_start) const {
+    return at_start.dot(t0_.centres) < 0 ? Vec3(-later) : later;
   }
 
   bool try_constant_direction(const Vec3& direction) {
@@ -104,16 +105,17 @@ class Search {
 
   static Vec3 rounded(const Vec3& n) { return n.cast<float>().cast<double>(); }
 
-  const Sides &t0_, &t1_;
+  Sides &t0_, &t1_;
   double end_gap_;
-  Vec3 centres_;
   std::optional<Vec3> found_;
 };
 
 }  // namespace
 
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x) {
-  return gap_along(n, sides_of(pair, x));
+  const auto lowest = [&](const Triangle& t) { return std::min({n.dot(x[t[0]]), n.dot(x[t[1]]), n.dot(x[t[2]])}); };
+  const auto highest = [&](const Triangle& t) { return std::max({n.dot(x[t[0]]), n.dot(x[t[1]]), n.dot(x[t[2]])}); };
+  return lowest(pair.a) - highest(pair.b);
 }
 
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
@@ -122,7 +124,8 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
 
 std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
                                           std::span<const Vec3> x_t1, PlaneKinds which) {
-  return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), numerics.separation.least_gap)
+  Sides t0 = sides_of(pair, x_t0), t1 = sides_of(pair, x_t1);
+  return Search(t0, t1, numerics.separation.least_gap)
       .find(which, which == PlaneKinds::all ? numerics.repair.max_retries : 0);
 }
 
