@@ -171,6 +171,21 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
   }
 }
 
+// Bounds the work that the remaining residual does in the step. The norms of velocity errors hardly see stiff motion:
+// without this bound, an impact at 40 m/s stretched threads by 75 % where 24 % are right, and the solver did as much
+// work as there was energy. If a block exceeds the bound, its allowed error is reduced by the same ratio.
+void Stepper::bound_work(std::span<const double> masses, const State& now) {
+  for (BlockState& part : blocks_) {
+    const double work = std::abs(
+        sum_over_particles(part.rows, [&](std::size_t i) { return residual_[i].dot(x_end_[i] - now.x[i]); }));
+    const double kinetic =
+        0.5 * sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * v_[i].squaredNorm(); });
+    const double most = numerics.energy.doubtful_gain * kinetic + numerics.energy.negligible * part.mass;
+    part.work_error = work > most ? part.allowed : 0;
+    if (work > most) part.allowed = std::max(part.allowed * most / work, part.rounding);
+  }
+}
+
 bool Stepper::is_solved(int iterations) const {
   double unseen_speed =
       iterations < numerics.newton.slow_after ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity();
@@ -306,6 +321,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     residual(system, now, stage, Equation::itself);
     estimate_local_errors(masses, now, stage, h);
     update_tolerances(h, previous_iterations + report.newton_iterations);
+    bound_work(masses, now);
     estimate_remaining_velocities(solved, fraction, masses);
     estimate_sliding_errors(system, stage);
     select_unsolved(report.newton_iterations);

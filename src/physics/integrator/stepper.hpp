@@ -155,7 +155,9 @@ class Stepper {
     bool holds_sliding = false;  // a constraint holds it against sliding
     double sliding_error = 0;    // velocity error of the whole block by wrong friction, if it is about to slide [m/s]
 
-    double error() const { return std::max(left, sliding_error); }  // [m/s]
+    double work_error = 0;       // velocity error that counts if the residual does too much work, else 0 [m/s]
+
+    double error() const { return std::max({left, sliding_error, work_error}); }  // [m/s]
   };
 
   bool is_first_order(double h) const;
@@ -183,6 +185,7 @@ class Stepper {
                                      std::span<const double> masses);
   void estimate_sliding_errors(const System& system, const Stage& stage);
   void select_unsolved(int iterations);
+  void bound_work(std::span<const double> masses, const State& now);
   bool is_solved(int iterations) const;
   void report_worst(StepReport& report) const;
   void write_end_state(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
