@@ -7,6 +7,8 @@
 #include <mutex>
 #include <utility>
 
+#include "core/names.hpp"
+
 namespace weft::log {
 namespace {
 
@@ -55,14 +57,16 @@ void keep(std::string_view text, const char* kind, std::vector<std::string> Stat
 
 }  // namespace
 
-std::string without_controls(std::string_view text) {
+std::string without_controls(std::string_view text, std::string_view kept) {
   std::string plain;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F)
-      plain += fmt::format("\\x{:02x}", byte);
-    else
-      plain += c;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t size = control_size(text.substr(i));
+    if (size == 0 || kept.find(text[i]) != std::string_view::npos) {
+      plain += text[i++];
+      continue;
+    }
+    for (const std::size_t end = i + size; i < end; ++i)
+      plain += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[i]));
   }
   return plain;
 }

@@ -8,8 +8,9 @@
 
 namespace weft::log {
 
-/// `text` with escapes for what a terminal would interpret as commands, for example in the name of a file.
-std::string without_controls(std::string_view text);
+/// `text` with escapes for what a terminal would interpret as commands, for example in the name of a file. `kept`: the
+/// control characters that stay.
+std::string without_controls(std::string_view text, std::string_view kept = "\n\t");
 
 void info(std::string_view line);
 

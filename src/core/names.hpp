@@ -1,16 +1,25 @@
-// Checks names that become part of file names.
+// Control characters, and names that become part of file names.
 #pragma once
 
+#include <cstddef>
 #include <string_view>
 
 namespace weft {
 
-/// Whether a name from outside can be used in file names as it is: it leads into no other folder, and contains no ASCII
-/// control characters, which terminals, lists and logs could interpret. Bytes beyond ASCII are not checked.
+/// Number of bytes of the control character with which a UTF-8 text begins, which terminals, lists and logs could
+/// interpret: 1 for ASCII, 2 for U+0080 to U+009F, 0 for any other character.
+inline std::size_t control_size(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : ' '); };
+  if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) <= 0x9F) return 2;
+  return byte(0) < 0x20 || byte(0) == 0x7F ? 1 : 0;
+}
+
+/// Whether a name from outside can be used in file names as it is: it leads into no other folder, and contains no
+/// control characters. Other bytes beyond ASCII are not checked.
 inline bool is_plain_name(std::string_view name) {
   if (name.empty() || name == "." || name == "..") return false;
-  for (const char c : name)
-    if (c == '/' || static_cast<unsigned char>(c) < 0x20 || c == 0x7F) return false;
+  for (std::size_t i = 0; i < name.size(); ++i)
+    if (name[i] == '/' || control_size(name.substr(i)) > 0) return false;
   return true;
 }
 

@@ -9,8 +9,10 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <climits>
 #include <cstdio>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -45,6 +47,12 @@ int claim_slot(const std::string& path) {
     return static_cast<int>(i);
   }
   return -1;
+}
+
+std::string temporary_name(const std::string& final_name) {
+  std::string name = fmt::format(".{}.weft-{}.tmp", final_name, ::getpid());
+  if (name.size() <= NAME_MAX) return name;
+  return fmt::format(".{:x}.weft-{}.tmp", std::hash<std::string>()(final_name), ::getpid());
 }
 
 std::string reason(int error) {
@@ -141,7 +149,7 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
   const fs::path absolute = fs::absolute(final_name, error);
   if (error || !prepare_once(absolute.parent_path(), error))
     fail(final_name, "cannot make the folder", error.message());
-  path_ = absolute.parent_path() / fmt::format(".{}.weft-{}.tmp", absolute.filename().string(), ::getpid());
+  path_ = absolute.parent_path() / temporary_name(absolute.filename().string());
   descriptor_ = create_and_lock(path_, kind);
   if (descriptor_ < 0) fail(final_name, "cannot be written", reason(errno));
   if (kind == Kind::file) slot_ = claim_slot(path_.string());

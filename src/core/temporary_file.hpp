@@ -13,7 +13,8 @@ enum class Flush { yes, no };
 /// A temporary name for a file or folder while it is written: `.<name>.weft-<process>.tmp` in the folder of the final
 /// name, so that the rename stays within one file system. The process keeps it locked (flock); the next process that
 /// writes into the folder removes temporary files without a lock. The lock shows whether a process is alive. Process
-/// numbers would not suffice: containers that share a folder do not share process numbers.
+/// numbers would not suffice: containers that share a folder do not share process numbers. If the temporary name would
+/// exceed the limit of file systems, it contains a hash instead of the final name.
 class TemporaryName {
  public:
   enum class Kind { file, folder };
@@ -59,7 +60,7 @@ void keep_if_made_meanwhile(const std::filesystem::path& file);
 /// Whether keep_if_made_meanwhile() is not in effect for a file.
 bool may_replace(const std::filesystem::path& file);
 
-/// The final name that a temporary name contains; empty for other names.
+/// The final name that a temporary name contains, or its hash; empty for other names.
 std::string_view final_name_of(std::string_view temporary_name);
 
 /// Whether a file has exactly this content.

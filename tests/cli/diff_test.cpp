@@ -1,6 +1,7 @@
 // diff and accept as their users call them: exit codes, messages, and the files that exist afterwards.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -86,6 +87,31 @@ TEST_F(Diff, HeatMapAndJsonTellWhereAndHowMuch) {
   expect({"diff", "ref/a.png", "out/a.png", "--heatmap", "one.png"}, 7, "");
   EXPECT_EQ(image::read_png(folder_ / "one.png").height, 24);
   expect({"diff", "ref", "out", "--heatmap", "one.png"}, 2, "--heatmap: expected a folder");
+}
+
+TEST_F(Diff, HeatMapsOfAnEarlierCallInAFolderAreNoPicturesToCompare) {
+  write("ref/a.png", 100);
+  write("ref/maps/b.png", 100);
+  write("out/a.png", 130);
+  write("out/maps/b.png", 100);
+  for (const char* maps : {"out/differences", "ref/differences"}) {
+    expect({"diff", "ref", "out", "--heatmap", maps}, 7, "1 of 2 match their references");
+    expect({"diff", "ref", "out", "--heatmap", maps}, 6, "a.png: exists already");
+    expect({"diff", "ref", "out", "--heatmap", maps, "--overwrite"}, 7, "1 of 2 match their references");
+    std::filesystem::remove_all(folder_ / maps);
+  }
+  expect({"diff", "ref/a.png", "out/a.png", "--heatmap", "both/maps/a.png"}, 7, "DIFFERS");
+  expect({"diff", "both", "both", "--heatmap", "both/maps", "--overwrite"}, 8, "expected pictures or videos");
+  write("out/maps/a.png", 1);  // a picture, though where a heat map is to be
+  expect({"diff", "ref", "out", "--heatmap", "out/maps", "--overwrite"}, 2, "is a picture to test, which is read");
+}
+
+TEST_F(Diff, EachPairIsOneLineWhateverItsName) {
+  write("ref/a\nb.png: same.png", 100);
+  write("out/a\nb.png: same.png", 130);
+  expect({"diff", "ref", "out"}, 7, "a\\x0ab.png: same.png: DIFFERS");
+  EXPECT_EQ(std::ranges::count(outcome_.out, '\n'), 1) << outcome_.out;
+  expect({"accept", "ref", "out", "--reason", "why"}, 0, "now as out/a\\x0ab.png: same.png\n");
 }
 
 TEST_F(Diff, VideosOfOneNameHaveAHeatMapEach) {

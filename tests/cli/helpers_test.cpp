@@ -1,5 +1,6 @@
 // Helpers for authors of scenes and commands: templates, watching, completion, the manual, the estimate.
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <array>
@@ -106,6 +107,13 @@ TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
   EXPECT_NE(support::read_bytes(folder_ / "first.png"), support::read_bytes(folder_ / "s.png"));
 }
 
+TEST_F(Helpers, WatchOfSomeDrawingsHasTheExitCodeOfTheLast) {
+  const Outcome watched =
+      run_weft({"watch", "s.toml", "-o", "s.png", "--set", "time.step=-1", "--times", "1"}, folder_);
+  EXPECT_EQ(watched.exit_code, 3) << watched.err;
+  EXPECT_FALSE(fs::exists(folder_ / "s.png"));
+}
+
 TEST_F(Helpers, WatchOfTheStartReplacesNoForeignPicture) {
   fs::create_directories(folder_ / "output");
   support::write_bytes(folder_ / "output/s.start.png", "precious");
@@ -198,6 +206,18 @@ TEST_F(Helpers, CheckEstimatesWhatARunTakes) {
   const Outcome outcome = run_weft({"check", "--estimate", "s.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("MB of memory, estimated from 10 frames"), std::string::npos) << outcome.out;
+}
+
+// Commands that keep nothing end at once.
+TEST_F(Helpers, CheckThatIsTerminatedExitsWith75) {
+  std::string text = support::read_bytes(folder_ / "s.toml");
+  text.replace(text.find("step = 0.02"), 11, "step = 1e-7");  // millions of steps for the first frame of the estimate
+  support::write_bytes(folder_ / "long.toml", text);
+  Subprocess weft(
+      {"check", "s.toml", "long.toml", "--estimate", "--set", "render.width=64", "--set", "render.height=36"}, folder_);
+  ASSERT_TRUE(weft.wait_for_output("s.toml: about"));
+  weft.send(SIGTERM);
+  EXPECT_EQ(weft.wait().exit_code, 75);
 }
 
 }  // namespace

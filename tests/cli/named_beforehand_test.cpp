@@ -82,5 +82,17 @@ TEST_F(MidpointContact, IsSaidToBeDampedByThePlan) {
   EXPECT_FALSE(contains(plan("contact.self=false"), "BDF2"));
 }
 
+class SlowVideo : public support::TestFolder {};
+
+TEST_F(SlowVideo, IsRefusedBeforeTheSimulation) {
+  support::write_bytes(
+      folder_ / "s.toml",
+      "time = { duration = 400, fps = 0.005, step = 0.1 }\n[[obstacle]]\nname = 'b'\nshape = 'sphere'\n");
+  const Outcome outcome = run_weft({"run", "s.toml", "-o", "a.mp4", "--stats", "s.json"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+  EXPECT_EQ(outcome.err, "weft: fps: expected 0.01 to 1000 frames a second, got 0.005\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s.json"));
+}
+
 }  // namespace
 }  // namespace weft::cli

@@ -114,6 +114,15 @@ TEST_F(SweepList, OfASpreadsheetHasTheKeysWithoutItsByteOrderMark) {
                         });
 }
 
+TEST_F(SweepList, QuotedValuesMayHaveLineFeeds) {
+  EXPECT_EQ(read("l.csv", "size,\"title\"\r\n\"[1,\r\n 2]\",\"a \"\"b\"\"\n\nc\"\r\n3,\r\n"),
+            (std::vector<Changes>{{{"size", "[1,\r\n 2]"}, {"title", "a \"b\"\n\nc"}}, {{"size", "3"}}}));
+  support::expect_error(ExitCode::asset_unreadable, "l.csv:4: expected 2 values as in the first line, got 1",
+                        [&] { read("l.csv", "a,b\n\"1\n\",2\n3\n"); });
+  support::expect_error(ExitCode::asset_unreadable, "l.csv:3: expected a quote at the end of each quoted value",
+                        [&] { read("l.csv", "a,b\n1,2\n\"3,4\n5,6\n"); });
+}
+
 TEST_F(SweepList, MistakesNameTheirLine) {
   support::expect_error(ExitCode::asset_unreadable, "l.csv:3: expected 2 values as in the first line, got 1",
                         [&] { read("l.csv", "a,b\n1,2\n3\n"); });
@@ -170,6 +179,12 @@ TEST(SweepTable, EachColumnIsDocumented) {
     if (const std::size_t open = line.find('`'); open != std::string::npos)
       documented.push_back(line.substr(open + 1, line.find('`', open + 1) - open - 1));
   EXPECT_EQ(documented, columns);
+}
+
+TEST(SweepLabels, AreOneLine) {
+  SweepRun run;
+  run.difference = {{"size", "[1,\n2]"}};
+  EXPECT_EQ(label_of(run), "size=[1,\\x0a2]");
 }
 
 TEST(SweepLabels, AreNotCut) {
@@ -243,6 +258,18 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
   EXPECT_NE(other.err.find("w: holds runs with other options"), std::string::npos) << other.err;
   fs::create_directories(folder_ / "w2/mine");
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", "w2", "--set", kRadius}, folder_).exit_code, 6);
+}
+
+TEST_F(Sweeps, AFolderInThePlaceOfAVideoIsNoRunThatIsDone) {
+  const Arguments arguments{"--set", "time.duration=0.08"};
+  EXPECT_EQ(sweep(arguments).exit_code, 0);
+  fs::remove(folder_ / "w/duration=0.08/s.mp4");
+  fs::create_directories(folder_ / "w/duration=0.08/s.mp4");
+  const Outcome again = sweep(arguments);
+  EXPECT_EQ(again.exit_code, 6) << again.err;
+  EXPECT_NE(again.err.find("s.mp4: expected the name of a file to write, got a folder"), std::string::npos)
+      << again.err;
+  EXPECT_EQ(run_weft({"farm", "status", "w"}, folder_).exit_code, 9);
 }
 
 TEST_F(Sweeps, RunsThatWereToBeRepeatedAreNotDoneUntilThen) {

@@ -12,6 +12,7 @@ TEST(Table, AlignsColumnsAndLeavesNoBlanksAtTheEnd) {
 }
 
 TEST(Table, CountsCharactersAndNotBytes) {
+  EXPECT_EQ(format_table({{"a\nb", "1"}, {"c", "2"}}), "a\\x0ab  1\nc       2\n");
   EXPECT_EQ(format_table({{"µ·", "1"}, {"ab", "2"}}), "µ·  1\nab  2\n");
 }
 

@@ -1,6 +1,8 @@
 #include "tools/compare/references.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <sstream>
@@ -143,6 +145,20 @@ TEST_F(References, EachChangeIsALineOfTheLogWithHashesDifferenceAndReason) {
       << lines[0];
   EXPECT_TRUE(lines[0].ends_with(" | darker \\| by design | me |")) << lines[0];
   EXPECT_EQ(lines[1], "b.png | none | " + short_hash(folder_ / "out/b.png") + " | new | second | me |");
+}
+
+TEST_F(References, EachOfManyThatAreAcceptedAtOnceHasItsLine) {
+  constexpr int kProcesses = 4, kPictures = 6;
+  for (int i = 0; i < kProcesses * kPictures; ++i) write(fmt::format("out/{}.png", i), 20);
+  std::vector<pid_t> children;
+  for (int p = 0; p < kProcesses; ++p) {
+    children.push_back(::fork());
+    if (children.back() != 0) continue;
+    for (int i = 0; i < kPictures; ++i) accept("ref", fmt::format("out/{}.png", p * kPictures + i), "at once");
+    ::_exit(0);
+  }
+  for (const pid_t child : children) ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(log_lines("ref/accepted.md").size(), std::size_t{kProcesses * kPictures});
 }
 
 TEST_F(References, HashIsThatOfSha256sum) {

@@ -1,4 +1,4 @@
-// Handlers of warnings.
+// Handlers of warnings, and what a terminal shows.
 #include "core/log.hpp"
 
 #include <gtest/gtest.h>
@@ -19,6 +19,14 @@ TEST(Log, HandlerMayLogItself) {
   warn("of another");
   set_handler({});
   EXPECT_EQ(texts, (std::vector<std::string>{"of another", "of the handler"}));
+}
+
+TEST(Log, EscapesWhatTerminalsInterpret) {
+  EXPECT_EQ(without_controls("a\x1b[2J\x7f\n\tb"), "a\\x1b[2J\\x7f\n\tb");
+  EXPECT_EQ(without_controls("a\n\tb", ""), "a\\x0a\\x09b");
+  // U+009B begins a command as ESC [ does; U+00A0 and é are no control characters, and neither is half a character.
+  EXPECT_EQ(without_controls("\xC2\x9B 2J \xC2\x85 \xC2\xA0 \xC3\xA9 \xC2"),
+            "\\xc2\\x9b 2J \\xc2\\x85 \xC2\xA0 \xC3\xA9 \xC2");
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft {
 namespace {
@@ -228,6 +229,20 @@ TEST_F(TemporaryFileTest, WaitsForAProcessThatCleansUp) {
   EXPECT_NO_THROW(write_file(folder_ / "a.txt", "whole"));
   cleaner.join();
   EXPECT_EQ(content(folder_ / "a.txt"), "whole");
+}
+
+TEST_F(TemporaryFileTest, NamesMayBeAsLongAsTheFileSystemAllows) {
+  for (const std::size_t size : {230, 244, 255}) {
+    write_file(folder_ / std::string(size, 'a'), "whole");
+    EXPECT_EQ(content(folder_ / std::string(size, 'a')), "whole") << size;
+  }
+  EXPECT_EQ(entries(), 3u);
+  const fs::path one = folder_ / std::string(255, 'b'), other = folder_ / (std::string(254, 'b') + "c");
+  const TemporaryFile first(one), second(other);
+  EXPECT_FALSE(final_name_of(first.path().filename().string()).empty()) << first.path();
+  EXPECT_THROW(TemporaryFile again(one), Error);
+  support::expect_error(ExitCode::output_failed, "File name too long",
+                        [&] { write_file(folder_ / std::string(256, 'a'), "whole"); });
 }
 
 TEST_F(TemporaryFileTest, IsOneForEachFinalNameAtATime) {

@@ -321,5 +321,43 @@ TEST(LibraryWarnings, GoToTheHandlerInsteadOfStandardError) {
   EXPECT_NE(warnings[0].find("cloth.b.pin.0"), std::string::npos) << warnings[0];
 }
 
+TEST(LibraryWarnings, SayWhatTheStartOfASimulationChanges) {
+  std::vector<std::string> notes;
+  set_warning_handler([&](std::string_view text) { notes.emplace_back(text); });
+  ::testing::internal::CaptureStderr();
+  Simulation(Scene::parse(R"(
+[[cloth]]
+name = "a"
+size = [0.2, 0.2]
+particles = [9, 9]
+position = [0, 0, 1]
+start = "untangle"
+
+[[cloth]]
+name = "b"
+size = [0.2, 0.2]
+particles = [9, 9]
+position = [0, 0, 1]
+rotation = [2, 0, 0]
+start = "untangle"
+
+[[obstacle]]
+name = "floor"
+shape = "plane"
+
+[[obstacle]]
+name = "box"
+shape = "box"
+size = [0.1, 0.1, 0.1]
+position = [1, 0, 0.05]
+mass = 1
+)"));
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  set_warning_handler({});
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_TRUE(notes[0].starts_with("lifted bodies by up to ")) << notes[0];
+  EXPECT_TRUE(notes[1].starts_with("untangled the start: ")) << notes[1];
+}
+
 }  // namespace
 }  // namespace weft::library

@@ -171,6 +171,9 @@ class Module(unittest.TestCase):
         run("simulate", "drape.toml", "--frames", "0:2", "--cache", "cache", folder=self.folder)
         cache = weft.Cache(self.folder / "cache")
         self.assertEqual([1 in cache, 2 in cache], [True, False])
+        for number in (-1, 2, 99):
+            with self.assertRaisesRegex(KeyError, f"cache: holds no frame {number}"):
+                cache[number]
         self.assertEqual(["ball" in cache[1], "bell" in cache[1]], [True, False])
 
     def test_mistakes_survive_the_way_from_another_process(self):

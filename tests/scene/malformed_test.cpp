@@ -428,7 +428,7 @@ TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {
 }
 
 TEST(Mistakes, OfANameThatCannotNameOutputsAreSaidBeforeAnythingElse) {
-  for (const char* name : {"", "a\nb.toml", "a\x1b[2J.toml", "...toml", "a\x7f.toml", "\t.toml"})
+  for (const char* name : {"", "a\nb.toml", "a\x1b[2J.toml", "...toml", "a\x7f.toml", "\t.toml", "a\xC2\x9Bm.toml"})
     EXPECT_NE(load_text(kFloor, name).describe().find("expected a file whose name without its ending can name outputs"),
               std::string::npos)
         << name;

@@ -70,7 +70,10 @@ class Cache {
     return Scene::parse(with_public_errors([&] { return reader_->scene_text(); }), {},
                         reader_->folder() / "scene.toml");
   }
+  bool has(int number) const { return reader_->has(number); }
+  /// Throws KeyError if the cache does not contain the frame.
   Frame frame(int number) const {
+    if (!has(number)) throw py::key_error(fmt::format("{}: holds no frame {}", reader_->folder().string(), number));
     return with_public_errors([&] {
       cache::CachedFrame frame = reader_->read(number);
       Frame::Data data = library::view(std::move(frame.snapshot));
@@ -161,10 +164,9 @@ void bind_tools(py::module_& module) {
       .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that the cache contains now.")
       .def_property_readonly("fps", &Cache::fps)
       .def_property_readonly("scene", &Cache::scene)
-      .def("__getitem__", &Cache::frame, py::arg("number"), ReleaseGil())
-      .def(
-          "__contains__", [](const Cache& self, int number) { return std::ranges::count(self.frames(), number) > 0; },
-          py::arg("number"), "Whether the cache contains the frame of this number now.")
+      .def("__getitem__", &Cache::frame, py::arg("number"), ReleaseGil(),
+           "The frame of this number. Raises KeyError if the cache does not contain it now.")
+      .def("__contains__", &Cache::has, py::arg("number"), "Whether the cache contains the frame of this number now.")
       .def(
           "__iter__",
           [](const py::object& self) {

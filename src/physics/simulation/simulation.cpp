@@ -153,7 +153,7 @@ void Simulation::Impl::put_on_next() {
 // Error(scene_invalid) if surfaces still touch or cross.
 void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
-    log::info(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
+    log::note(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
   if (dressed().may_be_untangled()) steps->untangle();
   check_start(dressed(), *steps);
 }

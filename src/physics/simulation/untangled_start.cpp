@@ -91,7 +91,7 @@ void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, st
                 model_.source, report.pairs_before, regions);
   }
   if (report.pairs_before > 0 || report.farthest > 0)
-    log::info(
+    log::note(
         fmt::format("untangled the start: {} pairs of triangles crossed, {} do after {} rounds; particles moved by "
                     "up to {:.3g} m, threads are up to {:.3g} % longer",
                     report.pairs_before, report.pairs_after, report.rounds, report.farthest, 100 * report.stretch));

@@ -76,8 +76,10 @@ ExitCode accept(const AcceptOptions& options) {
   paths.check_absent(true);  // the user named them in order to replace them
   for (const compare::Acceptance& plan : plans) {
     const bool changed = plan.carry_out();
-    log::info(fmt::format("{}: {}", plan.reference.string(),
-                          changed ? fmt::format("now as {}", plan.test.string()) : "is the same already"));
+    log::info(log::without_controls(
+        fmt::format("{}: {}", plan.reference.string(),
+                    changed ? fmt::format("now as {}", plan.test.string()) : "is the same already"),
+        ""));
   }
   return ExitCode::ok;
 }

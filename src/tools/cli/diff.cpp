@@ -25,6 +25,9 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
+// Metadata of a heat map, by which a later comparison of the folder around it recognises it.
+const image::Metadata kHeatMap{{"weft_picture", "heat map of weft diff"}};
+
 FileComparison only_one(const std::string& name, const fs::path& reference, const fs::path& test, Outcome outcome) {
   FileComparison result;
   result.name = name;
@@ -57,21 +60,38 @@ struct Pair {
   }
 };
 
+// Whether a file is a heat map below the folder of --heatmap. Such a map is no picture to compare: an earlier call with
+// the same options has written it, and this call replaces it.
+bool is_earlier_heat_map(const DiffOptions& options, const fs::path& file) {
+  if (options.heatmap.empty()) return false;
+  const fs::path inside = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(options.heatmap));
+  if (inside.empty() || *inside.begin() == ".." || compare::is_video(file)) return false;
+  try {
+    return image::read_png_metadata(file) == kHeatMap;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
   // Assumes that the pictures of one folder come from one machine.
   const std::string machine = names.empty() ? "" : compare::machine_class_of(options.test / names.front());
   const std::vector<std::string> references = compare::reference_names(options.reference, machine);
-  if (names.empty() && references.empty()) {
-    throw Error(ExitCode::reference_missing, "{}: expected pictures or videos, there are none",
-                options.reference.string());
-  }
   names.insert(names.end(), references.begin(), references.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
   std::vector<Pair> pairs;
-  for (const std::string& name : names)
-    pairs.push_back({name, compare::find_reference(options.reference, name, machine), options.test / name});
+  for (const std::string& name : names) {
+    const std::optional<fs::path> reference = compare::find_reference(options.reference, name, machine);
+    if (is_earlier_heat_map(options, options.test / name) || (reference && is_earlier_heat_map(options, *reference)))
+      continue;
+    pairs.push_back({name, reference, options.test / name});
+  }
+  if (pairs.empty()) {
+    throw Error(ExitCode::reference_missing, "{}: expected pictures or videos, there are none",
+                options.reference.string());
+  }
   return pairs;
 }
 
@@ -171,7 +191,7 @@ ExitCode diff(const DiffOptions& options) {
   for (const Pair& pair : pairs) {
     FileComparison result = pair.compare(options);
     const fs::path heatmap = result.frames > 0 ? heatmap_file(options, pairs, pair.name) : fs::path();
-    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip));
+    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip), kHeatMap);
     json["results"].push_back(describe_json(result, pair.rules.limits, heatmap));
     lines.push_back(describe(result, pair.rules.limits));
     if (result.outcome == Outcome::differs || result.outcome == Outcome::size || result.outcome == Outcome::frame_count)
@@ -189,7 +209,8 @@ ExitCode diff(const DiffOptions& options) {
   json["exit_code"] = static_cast<int>(code);
   if (!options.junit.empty()) write_file(options.junit, junit_xml(results, lines));
   if (!options.html.empty()) write_file(options.html, page.html(summary(results)));
-  std::string text = fmt::format("{}\n", fmt::join(lines, "\n"));
+  std::string text;  // a line for each pair, even if its name contains a line feed
+  for (const std::string& line : lines) text += log::without_controls(line, "") + "\n";
   if (results.size() > 1) text += summary(results) + "\n";
   std::string annotations;
   for (std::size_t i = 0; is_annotated(options) && i < results.size(); ++i)

@@ -86,7 +86,7 @@ State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
   const std::string scene = value_or(run, "scene", std::string());
   const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
   const bool simulated = value_or(stats, "exit_code", -1) == 0;
-  if (simulated && fs::exists(folder / (scene + ".mp4"))) return {"done", true};
+  if (simulated && fs::is_regular_file(folder / (scene + ".mp4"))) return {"done", true};
   const auto progress = [&](std::size_t count, const char* all, const char* done) {
     return State{fmt::format("{} of {} frames {}", count, value_or(run, all, 0), done), false};
   };

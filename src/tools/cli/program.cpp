@@ -21,6 +21,7 @@
 #include "tools/cli/commands.hpp"
 #include "tools/cli/failure.hpp"
 #include "tools/cli/main.hpp"
+#include "tools/cli/signals.hpp"
 #include "tools/cli/standard_output.hpp"
 
 namespace weft::cli {
@@ -56,7 +57,7 @@ struct Dispatch {
 };
 
 // A process inherits closed streams and ignored signals from its caller.
-void restore_inherited_state() {
+void prepare_streams_and_signals() {
   // The next opened file would get the number of a closed stream, and messages would be written into this file. Every
   // machine has "/"; opened for reading, each write to it fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
@@ -67,6 +68,7 @@ void restore_inherited_state() {
   // kill the process and leave half a file.
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
+  end_on_signals();
 }
 
 // Throws if the working folder is gone, since relative paths start there.
@@ -89,7 +91,7 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
 
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
-    restore_inherited_state();
+    prepare_streams_and_signals();
     // A program from an archive is started by the dynamic loader. Without this call, the process would have the name of
     // the loader.
     if (const Installation own = own_installation(); !own.libraries.empty())

@@ -10,6 +10,7 @@
 #include "core/temporary_file.hpp"
 #include "film/cache/reader.hpp"
 #include "film/video/encoder.hpp"
+#include "film/video/frame_rate.hpp"
 #include "tools/cli/cached_frames.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/failure.hpp"
@@ -76,7 +77,8 @@ void warn_of_odd_size(const FilmPlan& plan, video::Codec codec) {
                   width, height, width + width % 2, height + height % 2));
 }
 
-/// Sets the target and how it is written. Throws Error(usage) if options do not suit it.
+/// Sets the target and how it is written. Throws Error(usage) if options do not suit it, and Error(output_failed) if no
+/// video can have the frame rate.
 void take_output(FilmPlan& plan, const RunOptions& options) {
   plan.target = parse_output(options.output, plan.scene.scene);
   plan.settings.layers = plan.target.layered();
@@ -86,6 +88,7 @@ void take_output(FilmPlan& plan, const RunOptions& options) {
     throw Error(ExitCode::usage, "--depth: expected pictures (.png), got {}", plan.target.text);
   if (!video && options.video.any())
     throw Error(ExitCode::usage, "--codec, --crf: expected a video, got {}", plan.target.text);
+  if (video) video::frame_rate(plan.scene.fps / plan.wanted.step);
   if (video) warn_of_odd_size(plan, codec_of(plan.target.text, options.video));
 }
 

@@ -21,12 +21,18 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only
 std::string_view g_promise;  // set before any handler is installed
 std::array<struct sigaction, kSignals.size()> g_previous;
 
+// Signal handlers make only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
+
 void say(std::string_view text) {
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // standard error may be closed: no remedy
 }
 
-// Makes only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
-void on_signal(int) {
+[[noreturn]] void end_at_once(int) {
+  remove_temporary_files();
+  ::_exit(static_cast<int>(ExitCode::interrupted));
+}
+
+void on_signal(int signal) {
   const long long now = monotonic_ns();
   long long first = 0;
   if (stop_requested_at.compare_exchange_strong(first, now)) {
@@ -35,27 +41,36 @@ void on_signal(int) {
     say(g_promise);
     say("; press again to quit at once\n");
   } else if (now - first > kRepeatWindow) {
-    remove_temporary_files();
     say("\nquit at once; unfinished files are removed\n");
-    ::_exit(static_cast<int>(ExitCode::interrupted));
+    end_at_once(signal);
+  }
+}
+
+/// Installs a handler for all signals that are not ignored, and keeps the previous ones.
+void install(void (*handler)(int), std::array<struct sigaction, kSignals.size()>& previous) {
+  struct sigaction action {};
+  action.sa_handler = handler;
+  action.sa_flags = SA_RESTART;  // interrupted system calls are restarted
+  sigemptyset(&action.sa_mask);
+  for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], nullptr, &previous[i]);
+    if (previous[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
   }
 }
 
 }  // namespace
 
+void end_on_signals() {
+  std::array<struct sigaction, kSignals.size()> ignored;
+  install(end_at_once, ignored);
+}
+
 StopSignals::StopSignals(std::string_view promise) {
   g_promise = promise;
   g_requested = false;
   stop_requested_at = 0;
-  struct sigaction action {};
-  action.sa_handler = on_signal;
-  action.sa_flags = SA_RESTART;  // interrupted system calls are restarted
-  sigemptyset(&action.sa_mask);
-  for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);
-  for (std::size_t i = 0; i < kSignals.size(); ++i) {
-    sigaction(kSignals[i], nullptr, &g_previous[i]);
-    if (g_previous[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
-  }
+  install(on_signal, g_previous);
 }
 
 StopSignals::~StopSignals() {

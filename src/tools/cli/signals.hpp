@@ -6,6 +6,10 @@
 
 namespace weft::cli {
 
+/// Lets SIGINT, SIGTERM and SIGHUP remove temporary files and end the process with code 75, unless the parent process
+/// ignores them. Commands that do more have a StopSignals object.
+void end_on_signals();
+
 /// While an object lives, a first SIGINT, SIGTERM or SIGHUP only prints the promise and sets `requested()`. A
 /// simulation step that still runs kStopGrace (core/stop.hpp) after the signal throws Error(interrupted). A second
 /// signal removes temporary files and exits at once with code 75. Signals within a second count as one, since terminals

@@ -153,7 +153,7 @@ class Sweep {
     write_file(folder / "table.md", bench::markdown(table));
     write_sweep_sheet(folder / "sheet.png", results, fmt::format("{}   {} runs", jobs_.front().scene, results.size()),
                       options_.frame);
-    const auto is_shown = [](const SweepResult& r) { return r.stats.is_object() || fs::exists(r.video); };
+    const auto is_shown = [](const SweepResult& r) { return r.stats.is_object() || fs::is_regular_file(r.video); };
     if (stop_.requested() || !std::ranges::any_of(results, is_shown)) return;
     review::write_review({.folders = {folder}, .reference = {}, .output = folder / "page", .overwrite = true});
   }
@@ -168,7 +168,7 @@ class Sweep {
     }
     std::vector<std::string> made;  // there is no sheet if no run has a picture
     for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
-      if (fs::exists(options_.output / file)) made.emplace_back(file);
+      if (fs::is_regular_file(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));
     if (failed == results.end()) return ExitCode::ok;
     log::info(

@@ -25,7 +25,7 @@ std::vector<std::string> SweepJob::overrides() const {
 
 bool SweepJob::is_done() const {
   const Json json = read_json_or_null(stats());
-  return fs::exists(video()) && value_or(json, "exit_code", -1) == 0 &&
+  return fs::is_regular_file(video()) && value_or(json, "exit_code", -1) == 0 &&
          value_or(json, "scene_hash", std::string()) == fmt::format("{:016x}", scene_hash);
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
@@ -57,14 +58,14 @@ std::string without_byte_order_mark(const fs::path& file, const std::string& tex
   return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
 }
 
-// Fields of one line. Quoted fields may contain commas; a doubled quote in them is a quote (RFC 4180).
-std::vector<std::string> csv_fields(const std::string& line) {
+// Fields of one row. Quoted fields may contain commas and line feeds; a doubled quote in them is a quote (RFC 4180).
+std::vector<std::string> csv_fields(const std::string& row) {
   std::vector<std::string> fields(1);
   bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') {
-      fields.back() += line[++i];
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const char c = row[i];
+    if (c == '"' && quoted && i + 1 < row.size() && row[i + 1] == '"') {
+      fields.back() += row[++i];
     } else if (c == '"') {
       quoted = !quoted;
     } else if (c == ',' && !quoted) {
@@ -81,22 +82,35 @@ std::vector<Changes> read_csv(const fs::path& file, const std::string& text) {
   std::vector<std::string> keys;
   std::vector<Changes> rows;
   std::istringstream in(text);
-  int number = 0;
+  std::string whole;          // the row as far as it is read: several lines if quotes contain line feeds
+  int number = 0, first = 1;  // of the line, and of the first line of the row
+  bool quoted = false;        // a doubled quote changes nothing
   for (std::string line; std::getline(in, line);) {
     ++number;
-    if (trimmed(line).empty()) continue;
-    const std::vector<std::string> fields = csv_fields(line);
+    whole += line;
+    if (std::ranges::count(line, '"') % 2 != 0) quoted = !quoted;
+    if (quoted) {
+      whole += '\n';
+      continue;
+    }
+    const std::string row_text = std::exchange(whole, {});
+    const int row_line = std::exchange(first, number + 1);
+    if (trimmed(row_text).empty()) continue;
+    const std::vector<std::string> fields = csv_fields(row_text);
     if (keys.empty()) {
       keys = fields;
       continue;
     }
     if (fields.size() != keys.size())
       throw Error(ExitCode::asset_unreadable, "{}:{}: expected {} values as in the first line, got {}", file.string(),
-                  number, keys.size(), fields.size());
+                  row_line, keys.size(), fields.size());
     Changes& row = rows.emplace_back();
     for (std::size_t k = 0; k < keys.size(); ++k)
       if (!fields[k].empty()) row.emplace_back(keys[k], fields[k]);  // an empty field keeps the value of the scene
   }
+  if (quoted)
+    throw Error(ExitCode::asset_unreadable, "{}:{}: expected a quote at the end of each quoted value, got none",
+                file.string(), first);
   return rows;
 }
 

@@ -114,7 +114,7 @@ std::string label_of(const SweepRun& run) {
   std::string label;
   for (const auto& [key, value] : run.difference)
     label += fmt::format("{}{}={}", label.empty() ? "" : "  ", key, value);
-  return label.empty() ? "as it is" : label;
+  return label.empty() ? "as it is" : log::without_controls(label, "");
 }
 
 bench::Table sweep_table(const std::vector<SweepResult>& results) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/log.hpp"
+
 namespace weft::cli {
 namespace {
 
@@ -13,12 +15,12 @@ std::size_t width(std::string_view text) {
 
 }  // namespace
 
-std::string format_table(const std::vector<std::vector<std::string>>& rows, std::string_view alignment,
-                         std::size_t indent) {
+std::string format_table(std::vector<std::vector<std::string>> rows, std::string_view alignment, std::size_t indent) {
   std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
+  for (auto& row : rows) {
     widths.resize(std::max(widths.size(), row.size()));
     for (std::size_t column = 0; column < row.size(); ++column) {
+      row[column] = log::without_controls(row[column], "");
       widths[column] = std::max(widths[column], width(row[column]));
     }
   }

@@ -52,6 +52,7 @@ class Watch {
                   output.string(), scene);
   }
 
+  /// Exit code of the last drawing, if their number is limited.
   ExitCode draw_repeatedly() {
     for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {
       // The list of files of an invalid scene is incomplete, so the scene file is always added.
@@ -59,8 +60,8 @@ class Watch {
       files_ = {options_.scene};
       files_.insert(files_.end(), loaded.scene.files.begin(), loaded.scene.files.end());
       drawn_ = stamps_of(files_);
-      draw();
-      if (options_.times != 0 && times + 1 == options_.times) break;
+      const ExitCode code = draw();
+      if (options_.times != 0 && times + 1 == options_.times) return code;
       while (!stop_.requested() && !changed()) ::usleep(kFilePollPause);
     }
     return ExitCode::ok;
@@ -70,8 +71,8 @@ class Watch {
   bool changed() const { return stamps_of(files_) != drawn_; }
 
   /// Draws in a separate process, which reports its own errors. Kills it if a file changes or a stop is requested in
-  /// the meantime.
-  void draw() const {
+  /// the meantime. Returns its exit code.
+  ExitCode draw() const {
     std::vector<std::string> words{own_program().string(),
                                    options_.film ? "run" : "thumbnail",
                                    options_.scene.string(),
@@ -90,6 +91,8 @@ class Watch {
       }
       ::usleep(kFilePollPause);
     }
+    if (is_killed) return ExitCode::interrupted;
+    return WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
   }
 
   const WatchOptions& options_;

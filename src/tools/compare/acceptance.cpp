@@ -1,5 +1,9 @@
 #include "tools/compare/acceptance.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 extern "C" {
 #include <libavutil/mem.h>
 #include <libavutil/sha.h>
@@ -77,6 +81,26 @@ std::string now() {
   return text.data();
 }
 
+/// Creates a folder, and keeps other processes that make an object for the same folder waiting until this one is
+/// destroyed. File systems without locks let them go on.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) {
+    std::error_code ignored;  // what is written to the folder reports the error
+    fs::create_directories(folder, ignored);
+    descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) continue;
+  }
+  ~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+  }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
 void add_line(const fs::path& log, const std::string& line) {
   std::string text = fs::exists(log) ? read_file(log) : kLogHead;
   if (!text.empty() && text.back() != '\n') text += '\n';
@@ -124,6 +148,8 @@ Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test, con
 }
 
 bool Acceptance::carry_out() const {
+  const fs::path folder = log.parent_path().empty() ? "." : log.parent_path();
+  const FolderLock lock(folder);  // otherwise the log loses lines if several processes add some at once
   const std::string bytes = read_file(test);
   std::string old_hash = "none", difference = "new";
   if (fs::exists(reference)) {
@@ -132,7 +158,7 @@ bool Acceptance::carry_out() const {
     old_hash = short_hash(reference);
     difference = describe(result);
   }
-  const fs::path name = reference.lexically_proximate(log.parent_path().empty() ? "." : log.parent_path());
+  const fs::path name = reference.lexically_proximate(folder);
   add_line(log, fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", now(), cell(name.generic_string()), old_hash,
                             short_hash_of(bytes), cell(difference), cell(reason), cell(user)));
   write_file(reference, bytes);

@@ -19,8 +19,8 @@ struct Acceptance {
                          const std::string& name);
 
   /// Adds a line to the log, then replaces the reference, so that every replaced reference has its line. Each of the
-  /// two files is replaced atomically. Returns false without any change if test and reference are equal in every pixel.
-  /// Throws Error(output_failed).
+  /// two files is replaced atomically. Other processes that accept into the same folder wait meanwhile. Returns false
+  /// without any change if test and reference are equal in every pixel. Throws Error(output_failed).
   bool carry_out() const;
 };
 
