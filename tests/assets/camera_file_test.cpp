@@ -57,6 +57,13 @@ TEST_F(CameraFile, GoesAroundWithTheRigThatItIsOn) {
   EXPECT_NEAR(load().field_of_view, 28.6478898, 1e-5);
 }
 
+TEST_F(CameraFile, MayHaveIntegersAsKeys) {
+  document_ = nlohmann::json::parse(gltf_camera(true));
+  const LoadedCamera camera = load();
+  EXPECT_LT((camera.positions.front() - Vec3(0, 1, 3)).norm(), 1e-3);
+  EXPECT_LT((camera.positions.back() - Vec3(3, 1, 0)).norm(), 1e-3);
+}
+
 TEST_F(CameraFile, StandsStillWithoutAnAnimation) {
   document_.erase("animations");
   const LoadedCamera camera = load("eye");

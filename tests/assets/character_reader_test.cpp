@@ -3,6 +3,7 @@
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -15,6 +16,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "assets/small_files.hpp"
+#include "film/assets/character_file.hpp"
 #include "film/character/pose.hpp"
 
 namespace weft::assets {
@@ -191,6 +194,17 @@ TEST_F(Scenes, WithABindPoseElsewhereStandWhereTheirMostImportantBoneHoldsThem) 
   EXPECT_EQ(x[3], Vec3(2, 0, 0)) << "held by the knee alone, which has not moved";
 }
 
+// In FBX and glTF, the node of a mesh can have the name of a bone; assimp names bones and channels by nodes.
+TEST_F(Scenes, WithMeshesThatHaveTheNameOfABoneAreHeldByTheBone) {
+  box_node_->mName = "knee";
+  std::swap(root_->mChildren[1], root_->mChildren[2]);
+  const ReadCharacter got = read();
+  EXPECT_TRUE(got.warnings.empty()) << got.warnings.front();
+  std::vector<Vec3> x(got.character.mesh.positions.size());
+  character::skin(got.character, character::pose_at(got.character, got.character.clips[0], 1), x);
+  EXPECT_EQ(x[3], Vec3(2, 0, 1.5));
+}
+
 TEST_F(Scenes, WithSeamsAreJoinedWhereCopiesMoveTogether) {
   // A third triangle uses copies of vertices 1 and 2; the copy of 2 has other weights.
   delete[] leg_->mVertices;
@@ -260,6 +274,15 @@ TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {
       "long");
   EXPECT_EQ(read().character.clips[0].duration, 2.5);
   channel_->mPositionKeys[1].mTime = 20;
+  for (const double rate : {std::numeric_limits<double>::infinity(), -25.0}) {
+    clip_->mTicksPerSecond = rate;
+    EXPECT_EQ(warning(),
+              fmt::format("clip \"walk\": expected a time > 0 s for each frame, got {:g} s; 25 frames a second "
+                          "are assumed",
+                          1 / rate));
+  }
+  clip_->mTicksPerSecond = 0;  // not stated
+  EXPECT_TRUE(read().warnings.empty());
   channel_->mNodeName = "tail";
   EXPECT_EQ(warning(), "clip \"walk\": 1 channel left out, which name no part of the file: \"tail\"");
 }
@@ -327,6 +350,12 @@ TEST_F(Scenes, WithMorphTargetsAreBlendedByTheirChannels) {
   character::skin(body, character::pose_at(body, body.clips[0], 0.5), x);
   EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 0, 0.5)), x.end()) << "at the root";
   EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 5, 0.5)), x.end()) << "at the crate";
+  // assimp 5.2 puts the targets of FBX to 1.
+  target->mWeight = 1;
+  EXPECT_EQ(read().character.morphs.at(0).weight, 1);
+  scene_.mMetaData = aiMetadata::Alloc(1);
+  scene_.mMetaData->Set(0, "UnitScaleFactor", 1.0F);
+  EXPECT_EQ(read().character.morphs.at(0).weight, 0);
   channel->mKeys[1].mValues[0] = 1;
   EXPECT_EQ(refusal(), "clip \"walk\", channel \"box*0\": expected one of 1 morph targets, got number 1");
 }
@@ -370,6 +399,29 @@ TEST_F(Scenes, ColorsAndPicturesComeWithTheirPlacesForEachTriangle) {
   for (const std::size_t t : {2, 3})
     EXPECT_EQ(coloring.uv[t], (std::array<Vec2, 3>{Vec2(0.25, 0), Vec2(1, 0), Vec2(0, 1)}));
   EXPECT_TRUE(read().character.coloring.materials.empty()) << "of a motion nothing is read";
+}
+
+TEST_F(Scenes, TextureCoordinatesAreTransformedAsGltfStates) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("weft_placed_" + std::to_string(::getpid()) + ".gltf");
+  for (const bool turned : {false, true}) {  // by 90 degrees
+    std::ofstream(file) << gltf_tetrahedron_of_integers(
+        R"(,"material":0)", std::string(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":
+{"index":0,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25],"scale":[0.25,0.5])") +
+                                (turned ? R"(,"rotation":1.5707963267948966)" : "") +
+                                R"(}}}}}],"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],
+"images":[{"uri":"absent.png"}])");
+    const character::Character body = load_character(file, {}, "here").character;
+    ASSERT_EQ(body.coloring.uv.size(), 4U);
+    for (std::size_t t = 0; t < 4; ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Vec3& x = body.mesh.positions[body.mesh.topology.triangles[t][k]];  // y of the file is z here
+        const double u = 0.25 * x.x(), v = 0.5 * x.z();
+        const Vec2 placed = turned ? Vec2(0.5 + v, 1 - (0.25 - u)) : Vec2(0.5 + u, 1 - (0.25 + v));
+        EXPECT_LT((body.coloring.uv[t][k] - placed).norm(), 1e-6);
+      }
+  }
+  std::filesystem::remove(file);
 }
 
 TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {

@@ -95,11 +95,40 @@ std::string glb_tetrahedron() {
   return bytes + std::string("BIN\0", 4) + buffer;
 }
 
-std::string gltf_camera() {
+std::string gltf_tetrahedron_of_integers(const std::string& of_primitive, const std::string& of_file) {
+  std::string buffer;
+  for (const auto& corner : kCorners) {
+    const bool replaced = &corner == &kCorners.back();
+    for (const float x : corner) append(buffer, static_cast<std::int16_t>(replaced ? -1 : 32767 * x));
+    buffer.append(2, '\0');  // to the stride of 8
+  }
+  for (const auto& face : kFaces) append(buffer, face);
+  for (const auto& corner : kCorners)
+    for (const float x : {corner[0], corner[1], 0.0F, 0.0F}) append(buffer, static_cast<std::uint8_t>(255 * x));
+  append(buffer, std::uint32_t{3});  // which the sparse part replaces
+  for (const float x : kCorners.back()) append(buffer, static_cast<std::int16_t>(32767 * x));
+  buffer.append(2, '\0');  // to a multiple of three
+  return R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1)" +
+         of_primitive + R"(}]}],
+"buffers":[{"byteLength":84,"uri":"data:application/octet-stream;base64,)" +
+         base64(buffer) + R"("}],
+"bufferViews":[{"buffer":0,"byteLength":32,"byteStride":8},{"buffer":0,"byteOffset":32,"byteLength":24},
+{"buffer":0,"byteOffset":56,"byteLength":16,"byteStride":4},{"buffer":0,"byteOffset":72,"byteLength":4},
+{"buffer":0,"byteOffset":76,"byteLength":6}],
+"accessors":[{"bufferView":0,"componentType":5122,"normalized":true,"count":4,"type":"VEC3",
+"sparse":{"count":1,"indices":{"bufferView":3,"componentType":5125},"values":{"bufferView":4}}},
+{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"},
+{"bufferView":2,"componentType":5121,"normalized":true,"count":4,"type":"VEC2"}])" +
+         of_file + "}";
+}
+
+std::string gltf_camera(bool integers) {
   std::string keys;
   for (const float time : {0.0F, 2.0F}) append(keys, time);
-  for (const float part : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.70710678F, 0.0F, 0.70710678F}) append(keys, part);
-  keys.append(2, '\0');  // pad to a multiple of three
+  for (const float part : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.70710678F, 0.0F, 0.70710678F})
+    integers ? append(keys, static_cast<std::int16_t>(32767 * part)) : append(keys, part);
+  keys.resize(42, '\0');  // a multiple of three
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"name":"rig","children":[1]},{"name":"eye","camera":0,"translation":[0,1,3]}],
 "cameras":[{"name":"lens","type":"perspective","perspective":{"yfov":0.5,"aspectRatio":1.6,"znear":0.1,"zfar":100}}],
@@ -107,7 +136,8 @@ std::string gltf_camera() {
 "buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,)" +
          base64(keys) + R"("}],"bufferViews":[{"buffer":0,"byteLength":8},{"buffer":0,"byteOffset":8,"byteLength":32}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[2]},
-{"bufferView":1,"componentType":5126,"count":2,"type":"VEC4"}]})";
+{"bufferView":1,"componentType":)" +
+         (integers ? R"(5122,"normalized":true)" : "5126") + R"(,"count":2,"type":"VEC4"}]})";
 }
 
 std::string fbx_square() {

@@ -19,8 +19,14 @@ std::string gltf_tetrahedron();
 /// The same as binary glTF.
 std::string glb_tetrahedron();
 
+/// The same, not mirrored, as glTF with integers for floats: positions as shorts, of which a sparse part replaces the
+/// last, and texture coordinates as bytes, equal to x and y. `of_primitive`,
+/// `of_file`: more members.
+std::string gltf_tetrahedron_of_integers(const std::string& of_primitive = {}, const std::string& of_file = {});
+
 /// A camera "eye" 1 m above and 3 m along z from a rig that turns by 90 degrees about y in two seconds, as glTF.
-std::string gltf_camera();
+/// `integers`: with shorts as keys of the rotation.
+std::string gltf_camera(bool integers = false);
 
 /// A square of 1 m as FBX in centimetres, and as Collada in inches, each with texture coordinates.
 std::string fbx_square();

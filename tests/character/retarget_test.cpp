@@ -231,6 +231,12 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
   }
 }
 
+TEST(Joints, AreNoMeshesOfTheSameName) {
+  const std::vector<Node> nodes{{"Head", -1, Affine::Identity()}, {"mixamorig:Head", -1, Affine::Identity()}};
+  EXPECT_EQ(find_named_joints(nodes)[place_of(Joint::head)], 0);
+  EXPECT_EQ(find_named_joints(nodes, {false, true})[place_of(Joint::head)], 1);
+}
+
 TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   // A skeleton as in 100STYLE: four chests and no spine.
   std::vector<Node> nodes;

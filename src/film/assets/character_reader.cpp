@@ -131,7 +131,11 @@ class CharacterReader {
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
-      targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
+      // In FBX and glTF, a mesh can have the name of a bone: of nodes with the same name, the first without a mesh
+      // counts.
+      const auto [named, is_new] = targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
+      if (!is_new && nodes_[named->second]->mNumMeshes > 0 && node->mNumMeshes == 0)
+        named->second = static_cast<Index>(nodes_.size());
       nodes_.push_back(node);
       character_.nodes.push_back({name, parent, to_affine(node->mTransformation)});
       const Affine& local = character_.nodes.back().local;
@@ -304,7 +308,8 @@ class CharacterReader {
     const std::string name = mesh.mName.C_Str();
     const ClipTargets::Morphs group{static_cast<Index>(morphs_.size()), static_cast<Index>(mesh.mNumAnimMeshes)};
     for (const aiAnimMesh* target : std::span(mesh.mAnimMeshes, mesh.mNumAnimMeshes)) {
-      Morph morph{.name = target->mName.C_Str(), .weight = target->mWeight, .first = base, .displacements = {}};
+      Morph morph{
+          .name = target->mName.C_Str(), .weight = rest_weight(scene_, *target), .first = base, .displacements = {}};
       if (!std::isfinite(target->mWeight) || (target->HasPositions() && target->mNumVertices != mesh.mNumVertices))
         throw std::runtime_error(
             fmt::format("mesh \"{}\", morph target \"{}\": expected {} vertices and a finite weight, got {} and {:g}",
@@ -392,7 +397,7 @@ class CharacterReader {
     if (mesh.mTextureCoords[channel] == nullptr) channel = 0;
     if (mesh.mTextureCoords[channel] == nullptr) return Vec2::Zero();
     const Vec2 uv(mesh.mTextureCoords[channel][v].x, mesh.mTextureCoords[channel][v].y);
-    return uv.allFinite() ? uv : Vec2(Vec2::Zero());
+    return uv.allFinite() ? placed_uv(*scene_.mMaterials[mesh.mMaterialIndex], uv) : Vec2(Vec2::Zero());
   }
 
   /// Copies materials and texture coordinates from the soup before its vertices were merged. The list of triangles is

@@ -141,6 +141,11 @@ character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets
   clip.name = reader.name;
   if (std::isfinite(animation.mTicksPerSecond) && animation.mTicksPerSecond > 0)
     reader.ticks_per_second = animation.mTicksPerSecond;
+  else if (animation.mTicksPerSecond != 0)  // 0: not stated
+    warnings.push_back(
+        fmt::format("clip \"{}\": expected a time > 0 s for each frame, got {:g} s; {:g} frames a second "
+                    "are assumed",
+                    clip.name, 1 / animation.mTicksPerSecond, kDefaultTicksPerSecond));
 
   std::vector<std::string> unknown_nodes;
   std::set<Index> moved;

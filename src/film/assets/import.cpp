@@ -1,6 +1,7 @@
 #include "film/assets/import.hpp"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -20,20 +21,26 @@
 #include <utility>
 
 #include "core/input_file.hpp"
-#include "core/json.hpp"
-#include "core/nesting.hpp"
+#include "film/assets/gltf_file.hpp"
 
 namespace weft::assets {
 namespace {
 
 /// Opens only regular files, also among those that a file refers to (materials, buffers): pipes and devices may never
-/// end. assimp 5.2 passes the names in glTF files on as they are there: percent-encoded.
+/// end. assimp 5.2 passes the names in glTF files on as they are there: percent-encoded. Texts begin after their byte
+/// order mark: assimp 5.2 takes it for a part of the first line of OBJ and BVH.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override { return !find(file).empty(); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     const std::string found = find(file);
-    return found.empty() ? nullptr : DefaultIOSystem::Open(found.c_str(), mode);
+    if (found.empty()) return nullptr;
+    constexpr std::string_view kMark = "\xef\xbb\xbf";
+    if (read_start(found, kMark.size()) != kMark) return DefaultIOSystem::Open(found.c_str(), mode);
+    const std::string text = read_bytes(found).substr(kMark.size());
+    auto* bytes = new std::uint8_t[text.size()];
+    std::ranges::copy(text, bytes);
+    return new Assimp::MemoryIOStream(bytes, text.size(), true);  // it owns the bytes
   }
 
  private:
@@ -59,85 +66,6 @@ std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path&
   return bytes;
 }
 
-/// The bytes of a binary glTF file with an extension such as .vrm, which assimp would read as OBJ; else nullopt.
-std::optional<std::string> renamed_gltf(const std::filesystem::path& file) {
-  constexpr std::string_view kStart = "glTF";
-  if (read_start(file, kStart.size()) != kStart || file.extension() == ".glb") return std::nullopt;
-  return read_bytes(file);
-}
-
-/// The start of the JSON text of a glTF file; empty for all other files.
-std::string gltf_text(const std::filesystem::path& file) {
-  constexpr std::size_t kBeginning = 16 << 20;
-  // Binary layout: "glTF", version, length; then the length of the JSON text, "JSON", the text.
-  constexpr std::size_t kLengthAt = 12, kTextAt = 20;
-  std::string bytes = read_start(file, kBeginning);
-  if (bytes.starts_with("glTF") && bytes.size() > kTextAt) {
-    std::uint32_t length = 0;
-    std::memcpy(&length, &bytes[kLengthAt], sizeof length);
-    return bytes.substr(kTextAt, length);
-  }
-  return file.extension() == ".gltf" ? bytes : std::string();
-}
-
-/// Name of the compression that a glTF file requires; empty for all other files. The packaged assimp 5.2 does not
-/// support compression: it would read compressed data as vertices.
-std::string_view compression_of(std::string_view gltf) {
-  const std::size_t begin = gltf.find("\"extensionsRequired\"");
-  if (begin == std::string_view::npos) return {};
-  const std::string_view required = gltf.substr(begin, gltf.find(']', begin) - begin);
-  for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
-    if (required.find(name) != std::string_view::npos) return name;
-  return {};
-}
-
-/// The value of a key; null if there is none.
-const nlohmann::json& part_of(const nlohmann::json& json, const char* key) {
-  static const nlohmann::json kNone;
-  return json.is_object() && json.contains(key) ? json[key] : kNone;
-}
-
-/// Name of an attribute of a mesh that glTF has as integers; empty if there is none. assimp 5.2 copies their bytes into
-/// its floats. Texture coordinates count only if there are textures.
-std::string integer_attribute(const nlohmann::json& gltf) {
-  constexpr int kFloat = 5126;
-  const nlohmann::json& accessors = part_of(gltf, "accessors");
-  for (const nlohmann::json& mesh : part_of(gltf, "meshes"))
-    for (const nlohmann::json& primitive : part_of(mesh, "primitives")) {
-      const nlohmann::json& attributes = part_of(primitive, "attributes");
-      if (!attributes.is_object()) continue;
-      for (const auto& [name, accessor] : attributes.items()) {
-        const bool read = name == "POSITION" || name.starts_with("WEIGHTS_") ||
-                          (name.starts_with("TEXCOORD_") && !part_of(gltf, "textures").empty());
-        const int number = value_or<int>(attributes, name.c_str(), -1);
-        if (!read || !accessors.is_array() || number < 0 || std::cmp_greater_equal(number, accessors.size())) continue;
-        if (value_or<int>(accessors[static_cast<std::size_t>(number)], "componentType", kFloat) != kFloat) return name;
-      }
-    }
-  return {};
-}
-
-/// Throws std::runtime_error for glTF with compressed meshes, with attributes that are read wrongly, or JSON that is
-/// nested too deeply.
-void check_gltf(const std::filesystem::path& file) {
-  const std::string text = gltf_text(file);
-  if (const std::string_view compression = compression_of(text); !compression.empty())
-    throw std::runtime_error("expected meshes without compression, got " + std::string(compression) +
-                             ", which is not read; export the file without it");
-  if (nests_too_deep(text))
-    throw std::runtime_error(
-        fmt::format("expected JSON of at most {} levels of lists and objects, got more", kMaxDepth));
-  nlohmann::json gltf;
-  try {
-    if (!text.empty()) gltf = parse_json<nlohmann::json>(text);
-  } catch (const std::exception&) {
-    return;  // assimp says what is wrong
-  }
-  if (const std::string name = integer_attribute(gltf); !name.empty())
-    throw std::runtime_error("expected " + name + " as floats, got integers, which are not read; export the file " +
-                             "without quantisation");
-}
-
 }  // namespace
 
 std::string percent_decoded(const std::string& name) {
@@ -156,12 +84,11 @@ std::string percent_decoded(const std::string& name) {
 }
 
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
-  check_gltf(file);
   importer.SetIOHandler(new RegularFiles);  // owned by the importer
   const aiScene* scene = nullptr;
   if (const auto ply = ply_with_spare_line_feed(file))
     scene = importer.ReadFileFromMemory(ply->data(), ply->size(), steps, "ply");
-  else if (const auto gltf = renamed_gltf(file))
+  else if (const auto gltf = readable_gltf(file))
     scene = importer.ReadFileFromMemory(gltf->data(), gltf->size(), steps, "glb");
   else
     scene = importer.ReadFile(file.string(), steps);
@@ -184,6 +111,10 @@ std::optional<double> metres_per_unit(const aiScene& scene) {
     return std::nullopt;
   if (!std::isfinite(centimetres) || !(centimetres > 0)) return std::nullopt;
   return 0.01 * centimetres;
+}
+
+double rest_weight(const aiScene& scene, const aiAnimMesh& target) {
+  return metres_per_unit(scene) && target.mWeight == 1 ? 0 : static_cast<double>(target.mWeight);
 }
 
 std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scene) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+struct aiAnimMesh;
 struct aiScene;
 namespace Assimp {
 class Importer;
@@ -22,6 +23,10 @@ std::string percent_decoded(const std::string& name);
 
 /// The unit that an FBX file states [m]. For other formats, assimp itself converts to metres if it knows the unit.
 std::optional<double> metres_per_unit(const aiScene& scene);
+
+/// The weight of a morph target without a clip: as the file states it; 0 in FBX, where assimp 5.2 puts all targets
+/// to 1.
+double rest_weight(const aiScene& scene, const aiAnimMesh& target);
 
 /// The up axis (0 x, 1 y, 2 z): as an FBX file states it; y for glTF and for Collada, which assimp rotates; nullopt for
 /// other formats.

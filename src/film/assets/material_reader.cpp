@@ -168,6 +168,21 @@ unsigned uv_channel(const aiMaterial& material) {
   return channel < 0 || channel >= AI_MAX_NUMBER_OF_TEXTURECOORDS ? 0 : static_cast<unsigned>(channel);
 }
 
+Vec2 placed_uv(const aiMaterial& material, const Vec2& uv) {
+  const auto type = picture_type(material);
+  aiString mode;
+  aiUVTransform placing;
+  const bool is_gltf = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS;
+  if (!type || !is_gltf || material.Get(AI_MATKEY_UVTRANSFORM(*type, 0), placing) != AI_SUCCESS) return uv;
+  // assimp has turned the offset into one for v upward and a rotation about the middle of the picture, by -angle.
+  const double cos = std::cos(placing.mRotation), sin = -std::sin(placing.mRotation);
+  const Vec2 scale(placing.mScaling.x, placing.mScaling.y),
+      offset(placing.mTranslation.x - scale.x() / 2 * (1 - cos + sin),
+             1 - scale.y() + scale.y() / 2 * (sin + cos - 1) - placing.mTranslation.y);
+  const double u = scale.x() * uv.x(), v = scale.y() * (1 - uv.y());
+  return {offset.x() + cos * u + sin * v, 1 - (offset.y() - sin * u + cos * v)};
+}
+
 std::vector<Material> read_materials(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings) {
   std::vector<Material> materials;
   std::vector<LeftOut> left_out;

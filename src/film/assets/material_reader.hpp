@@ -20,4 +20,8 @@ std::vector<character::Material> read_materials(const aiScene& scene, const std:
 /// The set of texture coordinates that the picture of a material uses.
 unsigned uv_channel(const aiMaterial& material);
 
+/// Texture coordinates, v upward, where the texture transform of glTF (KHR_texture_transform) places them in the
+/// picture.
+Vec2 placed_uv(const aiMaterial& material, const Vec2& uv);
+
 }  // namespace weft::assets

@@ -56,13 +56,16 @@ void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
   }
 }
 
-/// Appends one mesh, transformed to the world.
-void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
+/// Appends one mesh, transformed to the world, with its morph targets at the weights that the file states.
+void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Transform& to_world) {
   const std::size_t base = soup.positions.size();
   if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
     throw std::runtime_error("expected fewer than 2^31 vertices");
   for (unsigned v = 0; v < part.mNumVertices; ++v) {
-    const aiVector3D& x = part.mVertices[v];
+    aiVector3D x = part.mVertices[v];
+    for (const aiAnimMesh* target : std::span(part.mAnimMeshes, part.mNumAnimMeshes))
+      if (target->HasPositions() && v < target->mNumVertices)
+        x += (target->mVertices[v] - part.mVertices[v]) * static_cast<ai_real>(rest_weight(scene, *target));
     const Eigen::Vector4d world = to_world * Eigen::Vector4d(x.x, x.y, x.z, 1);
     soup.positions.push_back(world.head<3>());
     soup.uv.emplace_back(kNone, kNone);
@@ -169,14 +172,16 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Soup soup;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
-  std::unordered_map<std::string, Transform> placed;  // by name; of nodes with the same name, the first
-  for (const auto& [node, to_world] : nodes) placed.emplace(node->mName.C_Str(), to_world);
+  std::unordered_map<std::string, Transform> placed;  // by name; of nodes with the same name, the first without a mesh
+  for (const bool has_mesh : {false, true})
+    for (const auto& [node, to_world] : nodes)
+      if ((node->mNumMeshes > 0) == has_mesh) placed.emplace(node->mName.C_Str(), to_world);
   for (const auto& [node, to_world] : nodes)
     for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
       const aiMesh& part = *scene->mMeshes[m];
       names.insert({node->mName.C_Str(), part.mName.C_Str()});
       if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
-        append_mesh(soup, part, placement_of(part, to_world, placed));
+        append_mesh(soup, *scene, part, placement_of(part, to_world, placed));
     }
   if (!object.empty() && soup.positions.empty()) {
     names.erase("");

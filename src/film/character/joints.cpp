@@ -254,9 +254,12 @@ Index joint_number(const std::string& name) {
   return found == names.end() ? -1 : static_cast<Index>(found - names.begin());
 }
 
-std::vector<Index> find_named_joints(std::span<const Node> nodes) {
-  std::map<std::pair<std::string, std::string>, Index> known;  // the first node of each name counts
-  for (std::size_t n = 0; n < nodes.size(); ++n) known.emplace(side_and_part(nodes[n].name), static_cast<Index>(n));
+std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vector<bool>& is_active) {
+  std::map<std::pair<std::string, std::string>, Index> known;
+  for (const bool active : {true, false})
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      if (active == (is_active.empty() || is_active[n]))
+        known.emplace(side_and_part(nodes[n].name), static_cast<Index>(n));
   std::vector<Index> joints;
   const auto find = [&](const std::string& side, const BodyPart& part) {
     for (const std::string& alias : part.aliases)
@@ -307,19 +310,19 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
 /// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). Of several rigs, selects the one with most joints that influence
 /// skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
-  std::vector<Index> best = find_named_joints(character.nodes);
-  if (has_all_limbs(best)) return best;
-  const std::vector<Node> plain = without_numbers(character.nodes);
-  if (std::vector<Index> joints = find_named_joints(plain); has_all_limbs(joints)) return joints;
   std::vector<bool> is_active(character.nodes.size(), false);
   for (const Bone& bone : character.bones) is_active[bone.node] = true;
   for (const Clip& clip : character.clips)
     for (const Channel& channel : clip.channels) is_active[channel.node] = true;
+  std::vector<Index> best = find_named_joints(character.nodes, is_active);
+  if (has_all_limbs(best)) return best;
+  const std::vector<Node> plain = without_numbers(character.nodes);
+  if (std::vector<Index> joints = find_named_joints(plain, is_active); has_all_limbs(joints)) return joints;
   std::size_t best_count = 0;
   for (const Affixes& affixes : shared_affixes(plain)) {
     std::vector<Node> nodes = plain;
     for (Node& node : nodes) node.name = affixes.strip(node.name);
-    std::vector<Index> joints = find_named_joints(nodes);
+    std::vector<Index> joints = find_named_joints(nodes, is_active);
     const auto count = static_cast<std::size_t>(
         std::ranges::count_if(joints, [&](Index node) { return node >= 0 && is_active[node]; }));
     if (!has_all_limbs(joints) || count <= best_count) continue;

@@ -60,8 +60,9 @@ Index joint_number(const std::string& name);
 
 /// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if
 /// there is none. Case, separators, a rig's name before a colon and words such as Bip01 or bone are ignored. The places
-/// at which limbs branch off determine hips, spine and chest.
-std::vector<Index> find_named_joints(std::span<const Node> nodes);
+/// at which limbs branch off determine hips, spine and chest. Of nodes with the same name, the first counts that
+/// `is_active`, if there is one: meshes can have the names of bones.
+std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vector<bool>& is_active = {});
 
 /// Like find_named_joints(), but also handles rigs whose node names have a prefix or suffix in common, such as the name
 /// of the rig. If upper or lower arms or legs are not found by name, the tree determines the missing joints
