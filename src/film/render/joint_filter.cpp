@@ -9,11 +9,10 @@ namespace weft::render {
 namespace {
 
 constexpr int kFilterReach = 2;      // points to either side
-constexpr float kNarrow = 1.5f;      // like kWide below, but in smooth_where(), for edges of shadows [steps]
+constexpr float kNarrow = 1.5f;      // distance in space that halves a weight in smooth_where() [steps]
 constexpr float kAny = 1e9f;         // value of `wide` for which the distance does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
-constexpr float kWide = 6;           // distance in space that halves a weight [steps]; large for oblique floors
 
 /// Data of one row of points.
 struct Rows {
@@ -60,7 +59,6 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
   constexpr std::size_t kMaxPlanes = 4;
   assert(from.size() <= kMaxPlanes && to.size() == from.size() && kFilterReach * step <= Plane::kBorder);
   const int width = points.width(), height = points.height();
-  const float wide = kWide * static_cast<float>(step);
   drawing_for(static_cast<std::size_t>(height), std::size_t{8}, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const Rows here(points, y);
@@ -71,7 +69,7 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
         for (int k = -kFilterReach; k <= kFilterReach; ++k) {
           const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
           if (y + dy < 0 || y + dy >= height) continue;
-          Lanes weights = likeness<kLanes>(here, x, Rows(points, y + dy), x + dx, wide);
+          Lanes weights = likeness<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
           if (step > 1 && k != 0) {
             // After the pass with step 1, a difference larger than the remaining noise is a feature, to be kept.
             Lanes differences = Lanes::Zero();

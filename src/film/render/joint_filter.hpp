@@ -9,13 +9,14 @@
 namespace weft::render {
 
 /// Averages each of the planes over 5 x 5 points, first along rows, then along columns. `step`: distance between these
-/// points, in points of the plane. A neighbour on the same surface has more weight if it is near, above all near the
-/// tangent plane, if its normal is similar and, if `step` exceeds 1, if its value is similar.
-/// `scratch`: as many planes as `planes`; their content is overwritten.
+/// points, in points of the plane. A neighbour on the same surface has more weight if it is near the tangent plane, if
+/// its normal is similar and, if `step` exceeds 1, if its value is similar. Its distance along the plane does not
+/// count: floors seen at an angle would be averaged along rows alone, which shows as streaks. `scratch`: as many planes
+/// as `planes`; their content is overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
 /// Averages one plane over 5 x 5 points in a single pass, only at points whose `wanted` is above 0, and only over
-/// neighbours whose `known` is above 0. The weights are as in smooth(), but decrease over shorter distances. `scratch`
+/// neighbours whose `known` is above 0. The weights are as in smooth(), but also decrease with the distance. `scratch`
 /// is overwritten.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);

@@ -214,7 +214,8 @@ Shading::Features Renderer::Impl::features(const Plan& plan) const {
           .painted = passes->geometry.painted() && !plan.lighting.style.plain,
           .trimmed = passes->geometry.trimmed(),
           .shiny = floor_roughness(plan.lighting.style, plan.floor) < kLampMirrorRoughness,
-          .reflecting = reflects(plan)};
+          .reflecting = reflects(plan),
+          .steep = fades_steeply(plan.view, plan.floor, plan.surroundings, settings.height, Shading::kGridCell)};
 }
 
 std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const {
@@ -248,8 +249,7 @@ ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
-  const std::vector<PixelArea> shaded_floor = passes->traced.shaded_floor();
-  passes->shading.draw(materials(plan), heat, features(plan), subjects, shaded_floor);
+  passes->shading.draw(materials(plan), heat, features(plan), subjects, passes->traced.shaded_floor());
 }
 
 /// Draws the geometry buffer, traces light, then draws colours and smooth outlines.

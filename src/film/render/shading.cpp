@@ -49,14 +49,14 @@ void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corn
   gl.VertexArrayAttribBinding(array.name(), 0, 0);
 }
 
-/// Cells of 16x16 pixels with two triangles each. Interpolating the light of the floor, even towards the horizon, has
-/// an error below half a level of 255.
+/// Cells with two triangles each. Interpolating the light of the floor has an error below half a level of 255, except
+/// where fades_steeply().
 struct Grid {
   std::vector<Eigen::Vector2f> corners;
   std::vector<GLuint> triangles;
 
   Grid(int width, int height) {
-    constexpr int kCell = 16;
+    constexpr int kCell = Shading::kGridCell;
     const int columns = (width + kCell - 1) / kCell, rows = (height + kCell - 1) / kCell;
     for (int row = 0; row <= rows; ++row) {
       for (int column = 0; column <= columns; ++column) {
@@ -132,11 +132,11 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 }
 
 // The light of a sun on open floor, and the fading of the floor into the backdrop, vary so slowly over the picture that
-// they can be interpolated on a grid. The edges of checkers, pictures and reflections cannot, nor can those of spots,
-// except in qualities with spots_on_grid.
+// they can be interpolated on a grid. The edges of checkers, pictures and reflections cannot, nor can steep fading and
+// the edges of spots, except, in qualities with spots_on_grid, the latter.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
-                    !features.reflecting) {
+                    !features.reflecting && !features.steep) {
   const LightSet& lights = features.lights;
   const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");
   std::vector<const char*> of_cloth = paint;

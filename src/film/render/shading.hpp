@@ -17,6 +17,9 @@ namespace weft::render {
 
 class Shading {
  public:
+  /// Side of the cells of the grid on which the colours of open floor and backdrop are interpolated [pixels].
+  static constexpr int kGridCell = 16;
+
   Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry);
 
   struct Material {
@@ -34,6 +37,7 @@ class Shading {
     bool trimmed = false;     ///< the geometry buffer has hems and seams
     bool shiny = false;       ///< the floor mirrors lamps
     bool reflecting = false;  ///< the whole floor shows the picture of a Mirror
+    bool steep = false;       ///< the floor fades too steeply for the grid: fades_steeply() over kGridCell
     bool sheer = false;       ///< cloth writes its opacity
     bool glossy = false;      ///< some cloth has shiny threads; set by draw(), as are the next three
     bool metal = false;       ///< something other than cloth is metal or has a clear coat

@@ -98,6 +98,25 @@ PixelArea visible_area(const View& view, std::span<const Vec3> points, int width
   return area;
 }
 
+bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Box3& surroundings, int height,
+                   int cell) {
+  if (!floor) return false;
+  // The floor is seen at height / slope, if a ray descends by `slope` per metre. It fades from 1.5 radii on.
+  const double radius = 0.5 * surroundings.diagonal().norm();
+  const double eye_height = floor->normal.dot(view.eye - floor->point);
+  if (eye_height <= 0) return false;
+  double least_slope = 1;
+  for (const double x : {-view.tan_half_width, view.tan_half_width})
+    for (const double y : {-view.tan_half_height, view.tan_half_height})
+      least_slope =
+          std::min(least_slope, -floor->normal.dot(view.axes.forward + x * view.axes.right + y * view.axes.up));
+  if (least_slope > eye_height / (1.5 * radius)) return false;
+  // Over a change of slope * radius / height by 0.06, linear interpolation of the fraction of backdrop errs by 0.025:
+  // one level of 255 if floor and backdrop differ by 40.
+  constexpr double kMaxChange = 0.06;
+  return cell * 2 * view.tan_half_height / height * radius > kMaxChange * eye_height;
+}
+
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights) {
   const double share = 1 - style.sky_intensity;
   const Vec3 sky = style.sky_intensity * style.sky_color;

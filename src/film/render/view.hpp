@@ -45,6 +45,10 @@ struct PixelArea {
 /// than the near plane; empty without points.
 PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
 
+/// Whether the floor fades into the backdrop (fade_out() in shaders/open_floor.glsl) within so few pixels that colours
+/// cannot be interpolated over `cell` pixels: at the horizon, if the eye is low beside the size of the surroundings.
+bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Box3& surroundings, int height, int cell);
+
 /// The frame block of shaders/frame.glsl, in the layout std140.
 struct FrameUniform {
   // Matrices first: Eigen aligns them to 16 or 32 bytes, depending on the CPU level; std140 aligns to 16.
