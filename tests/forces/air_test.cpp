@@ -78,9 +78,9 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   air.attach(assembly);
   testing::Place place(x, v);
   Evaluation at = place.evaluation(rate);
-  at.assembly = assembly;
+  at.assembly = {assembly, matrix};
   air.add(at);
-  assembly.write_rows(0, matrix.rows(), matrix);
+  testing::complete(assembly, matrix);
   const auto force_at = [&](const Positions& velocities) { return testing::force_of(air, x, velocities); };
   constexpr double kEpsilon = 1e-6;
   for (unsigned trial = 0; trial < 6; ++trial) {

@@ -252,7 +252,7 @@ TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
   force->attach(assembly);
   testing::Place place(x, v);
   Evaluation at = place.evaluation(kRate);
-  at.assembly = assembly;
+  at.assembly = {assembly, matrix};
   force->add(at);
   const Positions alone = testing::force_of(*force, x, v, kRate);
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(solver::vec3_of(place.force[i]), alone[i]);

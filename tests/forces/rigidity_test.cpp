@@ -139,10 +139,11 @@ TEST(Rigidity, IsLinearisedAsItChanges) {
   const PaddedVec3s positions = quads_of(x), velocities(4, solver::PaddedVec3<double>{});
   PaddedVec3s force(4, solver::PaddedVec3<double>{});
   Evaluation at{positions, velocities, force};
-  assembly.start(0, 4);
-  at.assembly = solver::AssemblyRows(assembly);
+  assembly.start(0, 4, matrix);
+  at.assembly = {assembly, matrix};
   rigidity.add(at);
-  assembly.write_rows(0, 4, matrix);
+  assembly.complete_pairs(0, 4, matrix);
+  assembly.complete_rows(0, 4, matrix);
   // Without strain the tangent is exact.
   for (std::size_t k = 0; k < 4; ++k)
     for (int axis = 0; axis < 3; ++axis) {

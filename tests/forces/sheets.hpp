@@ -102,6 +102,11 @@ inline Eigen::MatrixXd dense(const solver::BlockMatrix& matrix) {
   return dense;
 }
 
+inline void complete(const solver::Assembly& assembly, solver::BlockMatrix& matrix) {
+  assembly.complete_pairs(0, matrix.rows(), matrix);
+  assembly.complete_rows(0, matrix.rows(), matrix);
+}
+
 /// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, including its constant part.
 inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
@@ -112,9 +117,9 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
   force.add_constant_stiffness(assembly);
   Place place(x, v);
   Evaluation at = place.evaluation(rate);
-  at.assembly = assembly;
+  at.assembly = {assembly, matrix};
   force.add(at);
-  assembly.write_rows(0, matrix.rows(), matrix);
+  complete(assembly, matrix);
   return dense(matrix);
 }
 
@@ -131,14 +136,14 @@ inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const P
   force.partition(bounds);
   Place all(x, v), parts(x, v);
   Evaluation at = all.evaluation(rate);
-  at.assembly = assembly;
+  at.assembly = {assembly, at_once};
   force.add(at);
-  assembly.write_rows(0, count, at_once);
+  complete(assembly, at_once);
   assembly.clear();
   for (std::size_t range = bounds.size() - 1; range-- > 0;) {
     const auto before = parts.force;
     Evaluation of_range{parts.x, parts.v, ForceRows(parts.force, bounds[range], bounds[range + 1])};
-    of_range.assembly = solver::AssemblyRows(assembly, bounds[range], bounds[range + 1]);
+    of_range.assembly = solver::AssemblyRows(assembly, in_ranges, bounds[range], bounds[range + 1]);
     of_range.rate = rate;
     of_range.range = range;
     force.add(of_range);
@@ -147,7 +152,7 @@ inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const P
       EXPECT_EQ(solver::vec3_of(parts.force[i]), solver::vec3_of(before[i]));
     }
   }
-  assembly.write_rows(0, count, in_ranges);
+  complete(assembly, in_ranges);
   for (Index i = 0; i < count; ++i) EXPECT_EQ(solver::vec3_of(parts.force[i]), solver::vec3_of(all.force[i])) << i;
   EXPECT_EQ(dense(in_ranges), dense(at_once));
 }

@@ -1,5 +1,6 @@
 // The whole step loop: pins, contact, failures, and the same bits with any number of threads.
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cstring>
 #include <numbers>
@@ -42,6 +43,23 @@ TEST(Simulation, FrameZeroIsTheSheetAsTheSceneLaysIt) {
     for (int i = 0; i < 5; ++i) EXPECT_LT((x[i + 5 * j] - Vec3(-0.2 + 0.1 * i, -0.2 + 0.1 * j, 1.5)).norm(), 1e-15);
   EXPECT_NEAR(simulation.initial_report().elastic_energy, 0, 1e-20);
   EXPECT_EQ(simulation.initial_report().kinetic_energy, 0);
+}
+
+// In the frame in which the sheet meets the sphere.
+TEST(Simulation, TakesLessThanFiveKilobytesAParticle) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizer has its own malloc";
+#endif
+  const auto bytes_in_use = [] {
+    const auto info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
+  };
+  const scene::Scene scene = support::scene_of(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/sphere_drape.toml",
+                                               {"cloth.sheet.position=[0.003,0.002,0.413]"});
+  const double before = bytes_in_use();
+  production::SceneSimulation simulation(scene);
+  for (int k = 0; k < 3; ++k) simulation.advance();
+  EXPECT_LT((bytes_in_use() - before) / static_cast<double>(simulation.particles()), 4800);
 }
 
 TEST(Simulation, FrameTimesAreThoseOfTheRateAndNoSums) {

@@ -16,6 +16,11 @@ Mat3 random_block(testing::Random& random) {
   return block;
 }
 
+void complete(const Assembly& assembly, BlockMatrix& matrix, const std::vector<Index>& bounds) {
+  for (std::size_t k = 1; k < bounds.size(); ++k) assembly.complete_pairs(bounds[k - 1], bounds[k], matrix);
+  for (std::size_t k = 1; k < bounds.size(); ++k) assembly.complete_rows(bounds[k - 1], bounds[k], matrix);
+}
+
 TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
   constexpr Index kRows = 7;
   testing::Random random(3);
@@ -40,22 +45,22 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
   assembly.keep_constant();
   // Rows are assembled twice: start() clears what the first time added, except for the constant part.
   for (int time = 0; time < 2; ++time) {
-    assembly.start(0, 4);
-    assembly.start(4, kRows);
+    assembly.start(0, 4, matrix);
+    assembly.start(4, kRows, matrix);
+    const AssemblyRows rows(assembly, matrix);
     for (auto [i, j] : kFull) {
       if (i > j) std::swap(i, j);
       const Mat3 block = random_block(random);
       const double scalar = random.vector().x();
-      assembly.add(assembly.block(i, j), block);
-      assembly.add_scalar(assembly.scalar(j, i), scalar);
+      rows.add(rows.block(i, j), block);
+      rows.add_scalar(assembly.scalar(j, i), scalar);
       if (time == 1) expect(i, j, block + scalar * Mat3::Identity());
     }
     const Vec3 n = random.vector();
-    assembly.add_to_own_block(3, packed_outer(n, n));
+    rows.add_to_own_block(3, packed_outer(n, n));
     if (time == 1) expected.block<3, 3>(9, 9) += n * n.transpose();
+    complete(assembly, matrix, {0, 2, kRows});
   }
-  assembly.write_rows(0, 2, matrix);
-  assembly.write_rows(2, kRows, matrix);
   Eigen::MatrixXd written = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
   matrix.for_each_block(0, kRows,
                         [&](Index i, Index j, const auto& block) { written.block<3, 3>(3 * i, 3 * j) = block; });
@@ -66,14 +71,15 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
 TEST(Assembly, StartsNoOtherRows) {
   BlockMatrix matrix(4, {{0, 1}, {2, 3}});
   Assembly assembly(matrix);
-  assembly.add(assembly.block(0, 1), Mat3(-Mat3::Identity()));
-  assembly.add(assembly.block(2, 3), Mat3(-2 * Mat3::Identity()));
-  assembly.start(0, 2);
-  assembly.write_rows(0, 4, matrix);
+  const AssemblyRows rows(assembly, matrix);
+  rows.add(rows.block(0, 1), Mat3(-Mat3::Identity()));
+  rows.add(rows.block(2, 3), Mat3(-2 * Mat3::Identity()));
+  assembly.start(0, 2, matrix);
+  complete(assembly, matrix, {0, 4});
   EXPECT_TRUE(matrix.block(matrix.diagonal(1)).isZero(0));
   EXPECT_EQ(matrix.block(matrix.diagonal(2)), Mat3(2 * Mat3::Identity()));
-  assembly.clear();
-  assembly.write_rows(0, 4, matrix);
+  assembly.start(0, 4, matrix);
+  complete(assembly, matrix, {0, 4});
   EXPECT_TRUE(matrix.block(matrix.slot(3, 2)).isZero(0));
 }
 

@@ -2,6 +2,7 @@
 #include "physics/solver/conjugate_gradient.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <array>
 #include <cmath>
@@ -351,6 +352,29 @@ TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
       EXPECT_LT((testing::flat(x) - expected).norm(), 1e-7) << stiffness;
     }
   }
+}
+
+TEST(ConjugateGradient, FreesAPrecisionThatManySolvesHaveNotUsed) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizer has its own malloc";
+#endif
+  Random random(53);
+  const LinearSystem system = sheet(1e3, random);
+  const auto b = random.vectors(system.matrix.rows());
+  std::vector<Vec3> x(b.size());
+  ConjugateGradient cg;
+  const auto bytes_after_solve = [&](double relative_error) {
+    cg.prepare(system);
+    cg.precondition(b);  // in single precision
+    cg.solve(b, {relative_error}, 1000, x);
+    return static_cast<double>(mallinfo2().uordblks);
+  };
+  bytes_after_solve(0.1);
+  const double of_single = bytes_after_solve(0.1), of_both = bytes_after_solve(1e-10);
+  EXPECT_GT(of_both, of_single + 100 * static_cast<double>(b.size()));
+  EXPECT_GT(bytes_after_solve(0.1), 0.5 * (of_single + of_both)) << "the next solve may need it again";
+  for (int solve = 0; solve < 20; ++solve) bytes_after_solve(0.1);
+  EXPECT_LT(bytes_after_solve(0.1), 0.9 * of_single + 0.1 * of_both);
 }
 
 TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTheThreads) {

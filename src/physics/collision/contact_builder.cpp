@@ -13,6 +13,8 @@ namespace weft::collision {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+// Near pairs that become contacts at a time: enough for many threads, few enough that the memory does not count.
+constexpr std::size_t kPairsAtOnce = 16 * kFineGrainSize;
 
 double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
@@ -83,6 +85,11 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
     double fraction;
     std::optional<Contact> contact;
   };
+  if (proximities.size() > kPairsAtOnce) {
+    for (; !proximities.empty(); proximities = proximities.subspan(std::min(kPairsAtOnce, proximities.size())))
+      add(proximities.first(std::min(kPairsAtOnce, proximities.size())), pinched, motion, response);
+    return;
+  }
   std::vector<Built> all;
   parallel_append(proximities.size(), kFineGrainSize, all, [&](std::size_t begin, std::size_t end, auto& list) {
     for (const Proximity& proximity : proximities.subspan(begin, end - begin)) {

@@ -102,13 +102,17 @@ void Engine::gather(std::span<const Vec3> x) {
   };
   if (!gathered_at_.empty() && is_near()) return;
   const double radius = candidates_.detection_distance() + 2 * verlet_margin;
-  near_candidates_.clear();
-  separation_.append_closer(radius, x, near_candidates_);
+  separation_.measure_motion(x);
+  const auto append_closer = [&](std::size_t begin, std::size_t end, PairList& pairs) {
+    separation_.append_closer(radius, begin, end, pairs);
+  };
+  const auto gather_from = [&](std::span<const Surface> deformable, std::span<const std::uint8_t> clear) {
+    finder_.gather(separation_.pair_count(), append_closer, deformable, x, radius, numerics.contact.flat_fold(), clear);
+  };
   if (has_self_collision_)
-    finder_.gather(near_candidates_, bodies_.deformable(), x, radius, numerics.contact.flat_fold(),
-                   separation_.find_clear_triangles(radius, x));
+    gather_from(bodies_.deformable(), separation_.find_clear_triangles(radius, x));
   else
-    finder_.gather(near_candidates_, {}, x, radius, numerics.contact.flat_fold(), {});
+    gather_from({}, {});
   gathered_at_.assign(x.begin(), x.end());
 }
 
@@ -206,8 +210,9 @@ void Engine::continue_from(std::span<const Vec3> x) {
   carried_.begin_step(x, x, {});
   if (coherence_) candidates_.drop();  // kept closest points belong to the start of the step
   begin_contacts(x, x);
-  find_near(x, near_continuation_);
-  add_contacts(near_continuation_, motion);
+  std::vector<Proximity> near;
+  find_near(x, near);
+  add_contacts(near, motion);
   add_failing(pushed_pairs_, motion);
 }
 

@@ -135,7 +135,6 @@ class Engine {
   Separation separation_;
   ProximityFinder finder_;
   std::vector<Vec3> gathered_at_;               // where the near features were gathered [m]; empty: not gathered
-  PairList near_candidates_;                    // scratch: candidate pairs that are near at gathered_at_
   std::optional<CoherentDetection> coherence_;  // if enabled, keeps pairs and closest points instead of the cache
   ContactBuilder builder_;
   ContactResponse response_;
@@ -148,7 +147,6 @@ class Engine {
   std::vector<PinchedPairs::Push> pinched_pushes_;  // contacts that push pinched cloth out, in this step
   std::vector<CornerPair> pushed_pairs_;            // pairs for which push_apart() was called since begin_step()
   std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
-  std::vector<Proximity> near_continuation_;        // near pairs at the positions of continue_from()
   std::span<const CornerPair> failing_;             // of the last call of find_failing()
 };
 

@@ -26,6 +26,8 @@ void add_pairs(const Differences& d, const Lanes& size, const solver::AssemblyRo
 Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters)
     : grid_(grid), first_(first), rigidity_(parameters.rigidity), damping_(parameters) {
   create_differences({});
+  lines_.packs.shrink_to_fit();
+  cells_.packs.shrink_to_fit();
 }
 
 void Bend::set_held(std::span<const char> held) {

@@ -13,20 +13,23 @@ constexpr std::array<double, 4> kAcross{-1, -1, 1, 1};
 
 Shear::Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters)
     : viscous_(parameters.viscosity > 0) {
+  std::vector<Cell> cells;
   for (int j = 0; j + 1 < grid.nv; ++j)
     for (int i = 0; i + 1 < grid.nu; ++i) {
       const double lu = grid.du(i), lv = grid.dv(j), area = lu * lv;
-      cells_.push_back({{first + grid.index(i, j), first + grid.index(i + 1, j), first + grid.index(i, j + 1),
-                         first + grid.index(i + 1, j + 1)},
-                        lu,
-                        lv,
-                        0.5 * parameters.modulus * area,
-                        0.5 * parameters.viscosity * area});
+      cells.push_back({{first + grid.index(i, j), first + grid.index(i + 1, j), first + grid.index(i, j + 1),
+                        first + grid.index(i + 1, j + 1)},
+                       lu,
+                       lv,
+                       0.5 * parameters.modulus * area,
+                       0.5 * parameters.viscosity * area});
     }
-  packs_.resize(packs_of(cells_.size()));
+  sizes_.reserve(cells.size());
+  for (const Cell& cell : cells) sizes_.push_back({cell.lu, cell.lv});
+  packs_.resize(packs_of(cells.size()));
   for (std::size_t p = 0; p < packs_.size(); ++p)
-    for_each_lane(cells_.size(), p, [&](std::size_t c, std::size_t lane, bool counts) {
-      const Cell& cell = cells_[c];
+    for_each_lane(cells.size(), p, [&](std::size_t c, std::size_t lane, bool counts) {
+      const Cell& cell = cells[c];
       for (std::size_t k = 0; k < 4; ++k) packs_[p].corners[k][lane] = cell.corners[k];
       packs_[p].half_u[lane] = 0.5 / cell.lu;
       packs_[p].half_v[lane] = 0.5 / cell.lv;
@@ -35,10 +38,25 @@ Shear::Shear(const mesh::Grid& grid, Index first, const ShearParameters& paramet
     });
 }
 
+template <class Body>
+void Shear::for_each_cell(const Body& body) const {
+  for (std::size_t c = 0; c < sizes_.size(); ++c) {
+    const Cells& pack = packs_[c / 4];
+    const std::size_t lane = c % 4;
+    const auto& [lu, lv] = sizes_[c];
+    body(Cell{{pack.corners[0][lane], pack.corners[1][lane], pack.corners[2][lane], pack.corners[3][lane]},
+              lu,
+              lv,
+              pack.elasticity[lane],
+              pack.viscosity[lane]});
+  }
+}
+
 void Shear::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Cell& cell : cells_)
+  for_each_cell([&](const Cell& cell) {
     for (int a = 0; a < 4; ++a)
       for (int b = a + 1; b < 4; ++b) pairs.emplace_back(cell.corners[a], cell.corners[b]);
+  });
 }
 
 void Shear::attach(const solver::Assembly& assembly) {
@@ -129,7 +147,7 @@ void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes&
 
 void Shear::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                          solver::BlockMatrix& jacobian) const {
-  for (const Cell& cell : cells_) {
+  for_each_cell([&](const Cell& cell) {
     const Strain s = strain(cell, x), w = strain(cell, v);
     std::array<Vec3, 4> gradient, rate_gradient;  // ∂c/∂x_k, ∂ċ/∂x_k
     for (std::size_t k = 0; k < 4; ++k) {
@@ -148,15 +166,15 @@ void Shear::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, doubl
                          stress * second * Mat3::Identity());
       }
     }
-  }
+  });
 }
 
 double Shear::energy(std::span<const Vec3> x) const {
   double sum = 0;
-  for (const Cell& cell : cells_) {
+  for_each_cell([&](const Cell& cell) {
     const double c = strain(cell, x).c;
     sum += 0.5 * cell.elasticity * c * c;
-  }
+  });
   return sum;
 }
 

@@ -61,8 +61,12 @@ class Shear final : public Force {
   static StrainLanes strain(const Cells& cells, Points x);
   static void add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at);
 
+  /// Calls body(cell) for all cells, in order.
+  template <class Body>
+  void for_each_cell(const Body& body) const;
+
   bool viscous_;
-  std::vector<Cell> cells_;
+  std::vector<std::array<double, 2>> sizes_;  // lu, lv of each cell
   std::vector<Cells> packs_;
   Ranges ranges_;  // of packs
 };

@@ -7,9 +7,10 @@ namespace weft::forces {
 
 Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters)
     : first_(first), viscous_(parameters.viscosity > 0) {
+  std::vector<Edge> edges;
   const auto add_edge = [&](Index i, Index j, double l, double width, double k) {
     const double per_length_sq = width * l / (l * l);  // A / l²
-    edges_.push_back({first + i, first + j, l, k * per_length_sq, parameters.viscosity * per_length_sq});
+    edges.push_back({first + i, first + j, l, k * per_length_sq, parameters.viscosity * per_length_sq});
   };
   for (int j = 0; j < grid.nv; ++j) {
     for (int i = 0; i < grid.nu; ++i) {
@@ -19,10 +20,11 @@ Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& p
         add_edge(grid.index(i, j), grid.index(i, j + 1), grid.dv(j), grid.width_u(i), parameters.warp);
     }
   }
-  packs_.resize(packs_of(edges_.size()));
+  count_ = edges.size();
+  packs_.resize(packs_of(count_));
   for (std::size_t p = 0; p < packs_.size(); ++p)
-    for_each_lane(edges_.size(), p, [&](std::size_t e, std::size_t lane, bool counts) {
-      const Edge& edge = edges_[e];
+    for_each_lane(count_, p, [&](std::size_t e, std::size_t lane, bool counts) {
+      const Edge& edge = edges[e];
       packs_[p].i[lane] = edge.i;
       packs_[p].j[lane] = edge.j;
       packs_[p].rest_length[lane] = edge.rest_length;
@@ -31,15 +33,22 @@ Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& p
     });
 }
 
+template <class Body>
+void Stretch::for_each_edge(const Body& body) const {
+  for (std::size_t e = 0; e < count_; ++e) {
+    const Edges& pack = packs_[e / 4];
+    const std::size_t lane = e % 4;
+    body(Edge{pack.i[lane], pack.j[lane], pack.rest_length[lane], pack.elasticity[lane], pack.viscosity[lane]});
+  }
+}
+
 void Stretch::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Edge& edge : edges_) pairs.emplace_back(edge.i, edge.j);
+  for_each_edge([&](const Edge& edge) { pairs.emplace_back(edge.i, edge.j); });
 }
 
 void Stretch::attach(const solver::Assembly& assembly) {
-  for (std::size_t p = 0; p < packs_.size(); ++p)
-    for_each_lane(edges_.size(), p, [&](std::size_t e, std::size_t lane, bool) {
-      packs_[p].block[lane] = assembly.block(edges_[e].i, edges_[e].j);
-    });
+  for (Edges& pack : packs_)
+    for (std::size_t lane = 0; lane < 4; ++lane) pack.block[lane] = assembly.block(pack.i[lane], pack.j[lane]);
 }
 
 void Stretch::partition(std::span<const Index> bounds) {
@@ -85,7 +94,7 @@ void Stretch::add(const Evaluation& at) const {
 // converges only linearly.
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
-  for (const Edge& edge : edges_) {
+  for_each_edge([&](const Edge& edge) {
     const Vec3 d = x[edge.j] - x[edge.i], w = v[edge.j] - v[edge.i];
     const double length = std::max(d.norm(), 1e-12 * edge.rest_length);
     const Vec3 n = d / length;
@@ -97,36 +106,36 @@ void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, dou
     jacobian.add(jacobian.diagonal(edge.j), k);
     jacobian.subtract(jacobian.slot(edge.i, edge.j), k);
     jacobian.subtract(jacobian.slot(edge.j, edge.i), k);
-  }
+  });
 }
 
 double Stretch::energy(std::span<const Vec3> x) const {
   double sum = 0;
-  for (const Edge& e : edges_) {
+  for_each_edge([&](const Edge& e) {
     const double extension = (x[e.j] - x[e.i]).norm() - e.rest_length;
     sum += 0.5 * e.elasticity * extension * extension;
-  }
+  });
   return sum;
 }
 
 double Stretch::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
-  for (const Edge& e : edges_) {
+  for_each_edge([&](const Edge& e) {
     const double length = (x[e.j] - x[e.i]).norm();
     largest = std::max(largest, std::abs(length / e.rest_length - 1));
-  }
+  });
   return largest;
 }
 
 void Stretch::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
-  for (const Edge& e : edges_) {
+  for_each_edge([&](const Edge& e) {
     const double length = (x[e.j] - x[e.i]).norm();
     const auto strain = static_cast<float>(std::abs(length / e.rest_length - 1));
     for (Index p : {e.i, e.j}) {
       float& value = strains[p - first_];
       value = std::max(value, strain);
     }
-  }
+  });
 }
 
 }  // namespace weft::forces

@@ -50,9 +50,13 @@ class Stretch final : public Membrane {
     Lanes rest_length{}, elasticity{}, viscosity{};
   };
 
+  /// Calls body(edge) for all edges, in order.
+  template <class Body>
+  void for_each_edge(const Body& body) const;
+
   Index first_;
   bool viscous_;
-  std::vector<Edge> edges_;
+  std::size_t count_ = 0;  // of edges
   std::vector<Edges> packs_;
   Ranges ranges_;  // of packs
 };

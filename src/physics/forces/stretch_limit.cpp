@@ -52,6 +52,8 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchPar
                             first + grid.index(i + 1, j + 1)};
       crossings_.push_back({4, corners, {-u, u, -u, u}, {-v, -v, v, v}, grid.du(i) * grid.dv(j)});
     }
+  threads_.shrink_to_fit();
+  crossings_.shrink_to_fit();
 }
 
 StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
@@ -65,13 +67,13 @@ void StretchLimit::follow(const TriangleMembrane& membrane) {
   for (const TriangleMembrane::Element& element : membrane.elements()) {
     const auto& [a, b, c] = element.particles;
     const auto& g = element.gradients;
-    const Corners corners{a, b, c};
-    const Weights weft{g[0].x(), g[1].x(), g[2].x()}, warp{g[0].y(), g[1].y(), g[2].y()};
     if (!std::isinf(stretch_)) {
-      threads_.push_back({3, corners, weft, element.area, below_.weft});
-      threads_.push_back({3, corners, warp, element.area, below_.warp});
+      threads_.push_back({3, {a, b, c}, {g[0].x(), g[1].x(), g[2].x()}, element.area, below_.weft});
+      threads_.push_back({3, {a, b, c}, {g[0].y(), g[1].y(), g[2].y()}, element.area, below_.warp});
     }
-    if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
+    if (!std::isinf(shear_))
+      crossings_.push_back(
+          {3, {a, b, c}, {g[0].x(), g[1].x(), g[2].x()}, {g[0].y(), g[1].y(), g[2].y()}, element.area});
   }
 }
 
@@ -85,15 +87,15 @@ void StretchLimit::append_couplings(std::vector<std::pair<Index, Index>>& pairs)
   couple_all(crossings_);
 }
 
-template <class Piece>
-Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x) {
+template <class Piece, class OfCorners>
+Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights, std::span<const Vec3> x) {
   Vec3 s = Vec3::Zero();
   for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];
   return s;
 }
 
-template <class Piece>
-Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights,
+template <class Piece, class OfCorners>
+Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights,
                               std::span<const solver::PaddedVec3<double>> x) {
   solver::PaddedVec3<double> s{};
   for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];

@@ -98,20 +98,20 @@ class StretchLimit final : public Force {
   double limit() const { return stretch_; }
 
  private:
-  static constexpr std::size_t kMaxCorners = 4;
+  static constexpr std::size_t kMaxCorners = 4, kMaxThreadCorners = 3;
   using Corners = std::array<Index, kMaxCorners>;
   using Weights = std::array<double, kMaxCorners>;  // of the corners, in a derivative [1/m]
   /// A piece of a thread, s = Σ along[k] x_k over its corners.
   struct Thread {
-    std::size_t corners;
-    Corners particles;
-    Weights along;
+    std::uint32_t corners;
+    std::array<Index, kMaxThreadCorners> particles;
+    std::array<double, kMaxThreadCorners> along;
     double area;       // covered area [m²]
     double stiffness;  // below the onset [N/m]
   };
   /// A crossing of threads, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
   struct Crossing {
-    std::size_t corners;
+    std::uint32_t corners;
     Corners particles;
     Weights weft, warp;
     double area;  // [m²]
@@ -124,10 +124,10 @@ class StretchLimit final : public Force {
     double stress, stiffness;
   };
 
-  template <class Piece>
-  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x);
-  template <class Piece>
-  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::PaddedVec3<double>> x);
+  template <class Piece, class OfCorners>
+  static Vec3 derivative(const Piece& piece, const OfCorners& weights, std::span<const Vec3> x);
+  template <class Piece, class OfCorners>
+  static Vec3 derivative(const Piece& piece, const OfCorners& weights, std::span<const solver::PaddedVec3<double>> x);
   template <class Points, class Body>
   void for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag, const Body& body) const;
   template <class Body>

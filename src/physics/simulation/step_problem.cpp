@@ -209,8 +209,8 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
     evaluation.air_velocity = air_;
     if (assemble) {
       if (cloth < memory_.locks.size()) evaluation.locks = &memory_.locks[cloth];
-      evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
-      memory_.assembly.start(begin, end);
+      evaluation.assembly = solver::AssemblyRows(memory_.assembly, memory_.system.matrix, begin, end);
+      memory_.assembly.start(begin, end, memory_.system.matrix);
     }
     std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::PaddedVec3<double>{});
     cloth_.add_forces(cloth, evaluation);
@@ -238,10 +238,13 @@ void StepProblem::assemble_rows(const integrator::StagePoint& at) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
     const solver::DiagonalBlock& part = memory_.system.parts[c];
-    parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-      memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),
-                                  memory_.system.matrix);
-    });
+    const auto for_rows = [&](const auto& complete) {
+      parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+        complete(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end));
+      });
+    };
+    for_rows([&](Index begin, Index end) { memory_.assembly.complete_pairs(begin, end, memory_.system.matrix); });
+    for_rows([&](Index begin, Index end) { memory_.assembly.complete_rows(begin, end, memory_.system.matrix); });
   }
 }
 

@@ -21,7 +21,7 @@ struct SolveMemory {
   // Linearisations change the following members. A cloth that has hardly moved since its rows of the matrix were
   // assembled keeps these rows.
   solver::LinearSystem system;
-  solver::Assembly assembly;        ///< from which the matrix is written
+  solver::Assembly assembly;        ///< of the matrix in `system`
   double rate = 0;                  ///< StagePoint::rate for which system and assembly were filled [1/s]; 0: not set
   std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
   collision::ContactLag contacts;

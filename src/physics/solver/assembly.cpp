@@ -11,43 +11,49 @@ PackedBlock transposed(const PackedBlock& m) {
           m.last};
 }
 
+PackedBlock load_block(const double* values) {
+  return {load_lanes(values), load_lanes(values + 4), Lanes{values[8], 0, 0, 0}};
+}
+
+void store_block(double* values, const PackedBlock& block) {
+  store_lanes(values, block.low);
+  store_lanes(values + 4, block.high);
+  values[8] = block.last[0];
+}
+
 }  // namespace
 
-Assembly::Assembly(const BlockMatrix& matrix) {
-  BlockMatrix::Couplings full, pairs;
-  const auto list = [](const BlockMatrix::Pattern& pattern, BlockMatrix::Couplings& into) {
-    for (Index row = 0; row + 1 < std::ssize(pattern.start); ++row)
-      for (Index s = pattern.start[at(row)]; s < pattern.start[at(row) + 1]; ++s)
-        if (pattern.columns[at(s)] > row) into.emplace_back(row, pattern.columns[at(s)]);
-  };
-  list(matrix.full(), full);
-  list(matrix.full(), pairs);
-  list(matrix.isotropic(), pairs);
+Assembly::Assembly(const BlockMatrix& matrix) : layout_(matrix.layout()) {
+  const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
+  BlockMatrix::Couplings pairs;
+  for (const BlockMatrix::Pattern* pattern : {&full, &isotropic})
+    for (Index row = 0; row < matrix.rows(); ++row)
+      for (Index s = pattern->start[at(row)]; s < pattern->start[at(row) + 1]; ++s)
+        if (pattern->columns[at(s)] > row) pairs.emplace_back(row, pattern->columns[at(s)]);
   std::ranges::sort(pairs);
-  full_ = BlockMatrix::Pattern::of(matrix.rows(), full);
   pairs_ = BlockMatrix::Pattern::of(matrix.rows(), pairs);
-  blocks_.assign(9 * full.size(), 0);
   scalars_.assign(pairs.size(), 0);
-  own_.assign(9 * at(matrix.rows()), 0);
-  constant_own_.assign(at(matrix.rows()), 0);
   constant_scalars_ = scalars_;
-  block_of_.reserve(matrix.full().columns.size());
-  scalar_of_full_.reserve(matrix.full().columns.size());
-  scalar_of_isotropic_.reserve(matrix.isotropic().columns.size());
+  constant_own_.assign(at(matrix.rows()), 0);
+  const std::size_t full_pairs = (full.columns.size() - at(matrix.rows())) / 2;
+  scalar_of_pair_.reserve(full_pairs);
+  pair_of_.reserve(full_pairs);
+  first_of_row_.reserve(at(matrix.rows()));
+  scalar_of_isotropic_.reserve(isotropic.columns.size());
   for (Index row = 0; row < matrix.rows(); ++row) {
-    for (Index s = matrix.full().start[at(row)]; s < matrix.full().start[at(row) + 1]; ++s) {
-      const auto [i, j] = std::minmax(row, matrix.full().columns[at(s)]);
-      block_of_.push_back(i == j ? -1 : full_.find(i, j));
-      scalar_of_full_.push_back(i == j ? -1 : pairs_.find(i, j));
-    }
-    for (Index s = matrix.isotropic().start[at(row)]; s < matrix.isotropic().start[at(row) + 1]; ++s)
-      scalar_of_isotropic_.push_back(scalar(row, matrix.isotropic().columns[at(s)]));
+    first_of_row_.push_back(static_cast<Index>(pair_of_.size()));
+    for (Index s = full.start[at(row)]; s < matrix.diagonal(row); ++s)
+      pair_of_.push_back(block(full.columns[at(s)], row));
+    for (Index s = matrix.diagonal(row) + 1; s < full.start[at(row) + 1]; ++s)
+      scalar_of_pair_.push_back(scalar(row, full.columns[at(s)]));
+    for (Index s = isotropic.start[at(row)]; s < isotropic.start[at(row) + 1]; ++s)
+      scalar_of_isotropic_.push_back(scalar(row, isotropic.columns[at(s)]));
   }
 }
 
 Index Assembly::block(Index i, Index j) const {
   assert(i < j);
-  const Index found = full_.find(i, j);
+  const Index found = layout_->full.find(i, j);
   assert(found >= 0);
   return found;
 }
@@ -59,55 +65,54 @@ Index Assembly::scalar(Index i, Index j) const {
 }
 
 void Assembly::clear() {
-  for (auto* values : {&blocks_, &scalars_, &constant_scalars_, &own_, &constant_own_}) std::ranges::fill(*values, 0);
+  for (auto* values : {&scalars_, &constant_scalars_, &constant_own_}) std::ranges::fill(*values, 0);
 }
 
 void Assembly::keep_constant() {
   constant_scalars_ = scalars_;
 }
 
-void Assembly::start(Index begin, Index end) {
-  std::fill(blocks_.begin() + 9 * std::ptrdiff_t{full_.start[at(begin)]},
-            blocks_.begin() + 9 * std::ptrdiff_t{full_.start[at(end)]}, 0);
-  std::fill(own_.begin() + 9 * std::ptrdiff_t{begin}, own_.begin() + 9 * std::ptrdiff_t{end}, 0);
+void Assembly::start(Index begin, Index end, BlockMatrix& matrix) {
+  double* const values = matrix.values().data();
+  for (Index row = begin; row < end; ++row)
+    std::fill(values + 9 * at(matrix.diagonal(row)), values + 9 * at(matrix.full().start[at(row) + 1]), 0.0);
   const auto from = pairs_.start[at(begin)], to = pairs_.start[at(end)];
   std::copy(constant_scalars_.begin() + from, constant_scalars_.begin() + to, scalars_.begin() + from);
 }
 
-void Assembly::write_rows(Index begin, Index end, BlockMatrix& matrix) const {
+void Assembly::complete_pairs(Index begin, Index end, BlockMatrix& matrix) const {
+  const BlockMatrix::Pattern& full = matrix.full();
+  for (Index row = begin; row < end; ++row) {
+    const Index* scalar = scalar_of_pair_.data() + (full.start[at(row)] - row - first_of_row_[at(row)]);
+    double* value = matrix.values().data() + 9 * at(matrix.diagonal(row));
+    for (Index s = matrix.diagonal(row) + 1; s < full.start[at(row) + 1]; ++s) {
+      value += 9;
+      store_block(value, load_block(value) + packed_scalar(scalars_[at(*scalar++)]));
+    }
+  }
+}
+
+void Assembly::complete_rows(Index begin, Index end, BlockMatrix& matrix) const {
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
   double* const values = matrix.values().data();
   for (Index row = begin; row < end; ++row) {
-    PackedBlock sum = packed_scalar(constant_own_[at(row)]);
-    const double* own = own_.data() + 9 * at(row);
-    sum = sum + PackedBlock{load_lanes(own), load_lanes(own + 4), Lanes{own[8], 0, 0, 0}};
+    const Index diagonal = matrix.diagonal(row);
+    PackedBlock sum = packed_scalar(constant_own_[at(row)]) + load_block(values + 9 * at(diagonal));
     double scalars = 0;
     for (Index s = isotropic.start[at(row)]; s < isotropic.start[at(row) + 1]; ++s) {
       const double value = scalars_[at(scalar_of_isotropic_[at(s)])];
       matrix.scalars()[at(s)] = value;
       scalars += value;
     }
-    double* diagonal = nullptr;
+    const Index* pair = pair_of_.data() + first_of_row_[at(row)];
     double* to = values + 9 * at(full.start[at(row)]);
-    for (Index s = full.start[at(row)]; s < full.start[at(row) + 1]; ++s, to += 9) {
-      const Index from = block_of_[at(s)];
-      if (from < 0) {
-        diagonal = to;
-        continue;
-      }
-      const double* value = blocks_.data() + 9 * at(from);
-      PackedBlock block{load_lanes(value), load_lanes(value + 4), Lanes{value[8], 0, 0, 0}};
-      if (diagonal == nullptr) block = transposed(block);  // (row, column) with column < row
-      block = block + packed_scalar(scalars_[at(scalar_of_full_[at(s)])]);
+    for (Index s = full.start[at(row)]; s < diagonal; ++s, to += 9) {
+      const PackedBlock block = transposed(load_block(values + 9 * at(*pair++)));
       sum = sum + -block;
-      store_lanes(to, block.low);
-      store_lanes(to + 4, block.high);
-      to[8] = block.last[0];
+      store_block(to, block);
     }
-    sum = sum + packed_scalar(-scalars);
-    store_lanes(diagonal, sum.low);
-    store_lanes(diagonal + 4, sum.high);
-    diagonal[8] = sum.last[0];
+    for (Index s = diagonal + 1; s < full.start[at(row) + 1]; ++s) sum = sum + -load_block(values + 9 * at(s));
+    store_block(to, sum + packed_scalar(-scalars));
   }
 }
 

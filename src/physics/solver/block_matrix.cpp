@@ -5,6 +5,7 @@
 #include <iterator>
 #include <numeric>
 #include <type_traits>
+#include <utility>
 
 namespace weft::solver {
 
@@ -47,19 +48,20 @@ BlockMatrix::BlockMatrix(Index rows, Couplings couplings, Couplings isotropic) {
   add_transposes(isotropic);
   Couplings others;
   std::ranges::set_difference(isotropic, couplings, std::back_inserter(others));
-  blocks_ = Pattern::of(rows, couplings);
-  isotropic_ = Pattern::of(rows, others);
-  for (Index i = 0; i < rows; ++i) diagonal_.push_back(blocks_.find(i, i));
+  Layout layout{Pattern::of(rows, couplings), Pattern::of(rows, others), {}};
+  layout.diagonal.reserve(static_cast<std::size_t>(rows));
+  for (Index i = 0; i < rows; ++i) layout.diagonal.push_back(layout.full.find(i, i));
+  layout_ = std::make_shared<const Layout>(std::move(layout));
   values_.assign(9 * couplings.size() + 3, 0.0);
   scalars_.assign(others.size(), 0.0);
 }
 
 Slot BlockMatrix::slot(Index row, Index column) const {
-  const Index full = blocks_.find(row, column);
-  if (full >= 0) return full;
-  const Index isotropic = isotropic_.find(row, column);
-  assert(isotropic >= 0);
-  return ~isotropic;
+  const Index in_full = full().find(row, column);
+  if (in_full >= 0) return in_full;
+  const Index in_isotropic = isotropic().find(row, column);
+  assert(in_isotropic >= 0);
+  return ~in_isotropic;
 }
 
 void BlockMatrix::set_zero() {
@@ -69,21 +71,22 @@ void BlockMatrix::set_zero() {
 
 template <class Vector>
 void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const {
-  const double* value = values_.data() + 9 * static_cast<std::size_t>(blocks_.start[begin]);
+  const auto& [full, isotropic, diagonal] = *layout_;
+  const double* value = values_.data() + 9 * static_cast<std::size_t>(full.start[begin]);
   const auto entry = [&](Index column) -> const Vector& { return x[static_cast<std::size_t>(column)]; };
   for (std::size_t row = begin; row < end; ++row) {
     // Lane 3 holds the first entry of the next column and is ignored.
     Lanes sum0{}, sum1{}, sum2{};
-    for (Index s = blocks_.start[row]; s < blocks_.start[row + 1]; ++s, value += 9) {
-      const Vector& xj = entry(blocks_.columns[s]);
+    for (Index s = full.start[row]; s < full.start[row + 1]; ++s, value += 9) {
+      const Vector& xj = entry(full.columns[s]);
       sum0 += load_lanes(value) * xj[0];
       sum1 += load_lanes(value + 3) * xj[1];
       sum2 += load_lanes(value + 6) * xj[2];
     }
     const Lanes sum = sum0 + sum1 + sum2;
     double y0 = sum[0], y1 = sum[1], y2 = sum[2];
-    for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s) {
-      const Vector& xj = entry(isotropic_.columns[s]);
+    for (Index s = isotropic.start[row]; s < isotropic.start[row + 1]; ++s) {
+      const Vector& xj = entry(isotropic.columns[s]);
       const double factor = scalars_[s];
       y0 += factor * xj[0];
       y1 += factor * xj[1];

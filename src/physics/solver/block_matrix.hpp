@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -60,12 +61,12 @@ class BlockMatrix {
   /// `isotropic` that are not in `couplings` hold multiples of the identity only. Pairs may repeat.
   BlockMatrix(Index rows, Couplings couplings, Couplings isotropic = {});
 
-  Index rows() const { return static_cast<Index>(diagonal_.size()); }
-  std::size_t blocks() const { return blocks_.columns.size() + isotropic_.columns.size(); }
+  Index rows() const { return static_cast<Index>(layout_->diagonal.size()); }
+  std::size_t blocks() const { return full().columns.size() + isotropic().columns.size(); }
 
   /// Slot of block (row, column), which the pattern must hold.
   Slot slot(Index row, Index column) const;
-  Slot diagonal(Index row) const { return diagonal_[row]; }
+  Slot diagonal(Index row) const { return layout_->diagonal[row]; }
 
   void set_zero();
 
@@ -103,16 +104,17 @@ class BlockMatrix {
   /// Calls body(row, column, block) for every block of the rows [begin, end), row by row in ascending columns.
   template <class Body>
   void for_each_block(Index begin, Index end, const Body& body) const {
+    const auto& [full, isotropic, diagonal] = *layout_;
     for (Index row = begin; row < end; ++row) {
-      Index s = blocks_.start[row], t = isotropic_.start[row];
-      const Index s_end = blocks_.start[static_cast<std::size_t>(row) + 1],
-                  t_end = isotropic_.start[static_cast<std::size_t>(row) + 1];
+      Index s = full.start[row], t = isotropic.start[row];
+      const Index s_end = full.start[static_cast<std::size_t>(row) + 1],
+                  t_end = isotropic.start[static_cast<std::size_t>(row) + 1];
       while (s < s_end || t < t_end) {
-        const bool full = t == t_end || (s < s_end && blocks_.columns[s] < isotropic_.columns[t]);
-        if (full)
-          body(row, blocks_.columns[s], block(s)), ++s;
+        const bool is_full = t == t_end || (s < s_end && full.columns[s] < isotropic.columns[t]);
+        if (is_full)
+          body(row, full.columns[s], block(s)), ++s;
         else
-          body(row, isotropic_.columns[t], block(~t)), ++t;
+          body(row, isotropic.columns[t], block(~t)), ++t;
       }
     }
   }
@@ -131,19 +133,25 @@ class BlockMatrix {
     /// Index of (row, column); −1 if the pattern does not hold it.
     Index find(Index row, Index column) const;
   };
+  /// Which blocks a matrix has.
+  struct Layout {
+    Pattern full, isotropic;     ///< of the full blocks, and of the multiples of the identity
+    std::vector<Slot> diagonal;  ///< per row
+  };
+  /// Shared by the matrix, its copies, and what reads or assembles it.
+  const std::shared_ptr<const Layout>& layout() const { return layout_; }
   /// Pattern of the full blocks. values() holds nine numbers for each, column by column, and three more after the last,
   /// so that every column can be loaded as four numbers.
-  const Pattern& full() const { return blocks_; }
+  const Pattern& full() const { return layout_->full; }
   std::span<const double> values() const { return values_; }
   std::span<double> values() { return values_; }
   /// Pattern of the multiples of the identity, which scalars() holds.
-  const Pattern& isotropic() const { return isotropic_; }
+  const Pattern& isotropic() const { return layout_->isotropic; }
   std::span<const double> scalars() const { return scalars_; }
   std::span<double> scalars() { return scalars_; }
 
  private:
-  Pattern blocks_, isotropic_;
-  std::vector<Slot> diagonal_;   // per row
+  std::shared_ptr<const Layout> layout_ = std::make_shared<const Layout>();
   std::vector<double> values_;   // 9 per block, and 3 of padding
   std::vector<double> scalars_;  // per isotropic block
 };

@@ -15,6 +15,10 @@ namespace {
 // 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
 constexpr double kMaxSingleStiffness = 1e7;
 
+// The memory of a precision that so many solves have not used is freed. Making it anew costs a few iterations
+// (measured: a ring that cloth is pulled through uses double precision in 40 of 356 iterations, of 95 solves).
+constexpr int kSolvesUnused = 16;
+
 // Whether no particle exceeds kMaxSingleStiffness. False without a mass-weighted norm.
 bool allows_single_precision(const LinearSystem& system) {
   if (system.norm_weights.empty()) return false;
@@ -60,11 +64,19 @@ void ConjugateGradient::filter(std::span<Vec3> b) const {
 }
 
 template <class Real>
+void ConjugateGradient::PrecisionState<Real>::begin_sums() {
+  unused = has_aggregate_sums ? 0 : unused + 1;
+  if (unused > kSolvesUnused) recurrence.reset();
+  has_aggregate_sums = false;
+}
+
+template <class Real>
 Recurrence<Real>& ConjugateGradient::prepare_recurrence(PrecisionState<Real>& in) {
+  if (!in.recurrence) in.recurrence.emplace();
   if (!in.is_prepared)
-    in.recurrence.prepare(*system_, in.has_aggregate_sums ? AggregateSums::reuse : AggregateSums::recompute);
+    in.recurrence->prepare(*system_, in.has_aggregate_sums ? AggregateSums::reuse : AggregateSums::recompute);
   in.is_prepared = in.has_aggregate_sums = true;
-  return in.recurrence;
+  return *in.recurrence;
 }
 
 void ConjugateGradient::prepare(const LinearSystem& system, AggregateSums sums) {
@@ -73,7 +85,9 @@ void ConjugateGradient::prepare(const LinearSystem& system, AggregateSums sums) 
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
   allows_single_ = allows_single_precision(system);
   single_.is_prepared = double_.is_prepared = false;
-  if (sums == AggregateSums::recompute) single_.has_aggregate_sums = double_.has_aggregate_sums = false;
+  if (sums == AggregateSums::reuse) return;
+  single_.begin_sums();
+  double_.begin_sums();
 }
 
 std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
@@ -99,11 +113,11 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   if (allows_single_ && goal.relative >= kSmallestSingleGoal) {
     end = prepare_recurrence(single_).solve(b, goal, max_iterations, x, directions, parts, progress);
     filter(x);
-    copy_as_vec3(single_.recurrence.residual(), residual_);
+    copy_as_vec3(single_.recurrence->residual(), residual_);
   }
   if (end == End::needs_double) {
     end = prepare_recurrence(double_).solve(b, goal, max_iterations, x, directions, parts, progress);
-    copy_as_vec3(double_.recurrence.residual(), residual_);
+    copy_as_vec3(double_.recurrence->residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
   // Without an iteration, or with a residual of zero, there is no error to estimate.

@@ -1,6 +1,7 @@
 // Filtered, preconditioned conjugate gradients.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,7 @@ class ConjugateGradient {
  public:
   /// Sets the system of the following calls, which must outlive them unchanged: the preconditioner is made in the first
   /// of them. With AggregateSums::reuse, sums over aggregates are reused if they have been made since the last call
-  /// with AggregateSums::recompute.
+  /// with AggregateSums::recompute. Frees the memory of a precision that no call has used for some solves.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// Returns P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
@@ -56,12 +57,14 @@ class ConjugateGradient {
  private:
   const LinearSystem* system_ = nullptr;
   bool allows_single_ = false;  // for the prepared system
-  /// Recurrence in one precision, and whether it is prepared.
+  /// Recurrence in one precision, if it is in use, and whether it is prepared.
   template <class Real>
   struct PrecisionState {
-    Recurrence<Real> recurrence;
+    std::optional<Recurrence<Real>> recurrence;
     bool has_aggregate_sums = false;  // made since the last AggregateSums::recompute
     bool is_prepared = false;         // for the current system
+    int unused = 0;                   // number of times that sums were made anew since it was used
+    void begin_sums();
   };
   template <class Real>
   Recurrence<Real>& prepare_recurrence(PrecisionState<Real>& in);

@@ -171,17 +171,17 @@ void Preconditioner<Real>::compute_weights() {
       if (full.columns[s] != static_cast<Index>(i) && is_small[i] == 0) neighbours[i].push_back(full.columns[s]);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const Aggregates& grouping = system_->aggregate_levels[l];
-    Weights<Real> weights = Weights<Real>::make_interpolation(grouping, smoothing, neighbours);
+    Weights<Real>& weights = levels_[l].interpolation =
+        Weights<Real>::make_interpolation(grouping, smoothing, neighbours);
     coarse_weights_ = l == 0 ? weights : coarse_weights_.times(weights);
     levels_[l].restriction = weights.transposed(at(grouping.count));
-    levels_[l].interpolation = std::move(weights);
   }
 }
 
 template <class Real>
 void Preconditioner<Real>::find_common_levels() {
   const auto find = [&](const BlockMatrix::Pattern& pattern, std::vector<std::uint8_t>& shared) {
-    shared.clear();
+    shared.clear(), shared.reserve(pattern.columns.size());
     for (std::size_t i = 0; i + 1 < pattern.start.size(); ++i)
       for (Index s = pattern.start[i]; s < pattern.start[i + 1]; ++s) {
         // Aggregates are nested: particles that share one on some level do so on all coarser levels.
@@ -261,7 +261,8 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
     std::array<double, kMaxLevels> own_scalars{};
     std::fill_n(own.begin(), depth, Mat3::Zero());
     std::fill_n(own_scalars.begin(), depth, 0.0);
-    if (!system_->norm_weights.empty()) own[0] -= filtered(i, system_->norm_weights[i] * Mat3::Identity(), i);
+    const double weight = system_->norm_weights.empty() ? 0 : system_->norm_weights[i];
+    own[0] -= is_free(i) ? Mat3(weight * Mat3::Identity()) : filtered(i, weight * Mat3::Identity(), i);
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s) {
       const Index j = full.columns[s];
       const Eigen::Map<const Mat3> block(matrix.values().data() + 9 * at(s));
@@ -275,8 +276,8 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
       const Index j = isotropic.columns[s];
       const double scalar = matrix.scalars()[s];
       const std::size_t level = common_level_isotropic_[s];
-      if (is_free(i) && is_free(j) && level < depth) {
-        own_scalars[level] += scalar;
+      if (is_free(i) && is_free(j)) {
+        level < depth ? void(own_scalars[level] += scalar) : add_to_coarse(i, j, scalar * Mat3::Identity());
         continue;
       }
       const Mat3 block = filtered(i, scalar * Mat3::Identity(), j);
@@ -442,8 +443,7 @@ template <class Real>
 void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    const std::span<const PaddedVec3<Real>> members =
-        l == 0 ? r : std::span<const PaddedVec3<Real>>(levels_[l - 1].residual);
+    const auto members = l == 0 ? r : std::span<const PaddedVec3<Real>>(levels_[l - 1].residual);
     level.chunks.for_each([&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) level.residual[g] = level.restriction.sum(g, members);
     });

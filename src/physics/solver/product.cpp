@@ -12,8 +12,9 @@ namespace {
 // The pattern without its diagonal.
 BlockMatrix::Pattern without_diagonal(const BlockMatrix::Pattern& pattern) {
   BlockMatrix::Pattern result;
+  result.start.reserve(pattern.start.size());
   result.start.assign(1, 0);
-  result.columns.reserve(pattern.columns.size());
+  result.columns.reserve(pattern.columns.size() + 1 - pattern.start.size());
   for (std::size_t row = 0; row + 1 < pattern.start.size(); ++row) {
     for (Index s = pattern.start[row]; s < pattern.start[row + 1]; ++s)
       if (pattern.columns[s] != static_cast<Index>(row)) result.columns.push_back(pattern.columns[s]);
@@ -37,13 +38,13 @@ Octet repeat_per_column(const PaddedVec3<float>& v) {
 }  // namespace
 
 void DifferenceMatrix::copy_pattern(const BlockMatrix& matrix) {
+  layout_ = matrix.layout();
   full_ = without_diagonal(matrix.full());
-  isotropic_ = without_diagonal(matrix.isotropic());
   octets_.assign(full_.columns.size(), Octet{});
   ninths_.assign(full_.columns.size(), 0);
   octets_of_sum_.assign(static_cast<std::size_t>(matrix.rows()), Octet{});
   ninths_of_sum_.assign(static_cast<std::size_t>(matrix.rows()), 0);
-  scalars_.assign(isotropic_.columns.size(), 0);
+  scalars_.assign(matrix.isotropic().columns.size(), 0);
 }
 
 void DifferenceMatrix::copy_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end) {
@@ -62,7 +63,6 @@ void DifferenceMatrix::copy_rows(const BlockMatrix& matrix, std::size_t begin, s
       octets_[to] = to_octet(low_of_block, high_of_block);
       ninths_[to++] = static_cast<float>(from[8]);
     }
-    // A row's own block is always full, never isotropic.
     for (Index s = isotropic.start[row]; s < isotropic.start[row + 1]; ++s) {
       scalars += matrix.scalars()[s];
       scalars_[s] = static_cast<float>(matrix.scalars()[s]);
@@ -75,6 +75,7 @@ void DifferenceMatrix::copy_rows(const BlockMatrix& matrix, std::size_t begin, s
 
 void DifferenceMatrix::multiply(std::span<const PaddedVec3<float>> x, std::span<PaddedVec3<float>> y, std::size_t begin,
                                 std::size_t end) const {
+  const BlockMatrix::Pattern& isotropic_pattern = layout_->isotropic;
   for (std::size_t row = begin; row < end; ++row) {
     const PaddedVec3<float> own = x[row];
     // Products with the three columns, side by side; only lane 2 of `ninth` is used.
@@ -85,8 +86,9 @@ void DifferenceMatrix::multiply(std::span<const PaddedVec3<float>> x, std::span<
       sum += octets_[s] * repeat_per_column(difference);
       ninth += ninths_[s] * difference;
     }
-    for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s)
-      isotropic += scalars_[s] * (x[isotropic_.columns[s]] - own);
+    // A row's own block is always full, never isotropic.
+    for (Index s = isotropic_pattern.start[row]; s < isotropic_pattern.start[row + 1]; ++s)
+      isotropic += scalars_[s] * (x[isotropic_pattern.columns[s]] - own);
     const PaddedVec3<float> of_first = __builtin_shufflevector(sum, sum, 0, 1, 2, 3),
                             of_second = __builtin_shufflevector(sum, sum, 3, 4, 5, 6),
                             of_third = __builtin_shufflevector(sum, sum, 6, 7, 6, 7);

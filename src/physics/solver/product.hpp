@@ -1,6 +1,7 @@
 // Product of a system's matrix and terms with a vector, in double or in single precision.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -23,7 +24,8 @@ class DifferenceMatrix {
   Mat3 sum_of_row(std::size_t row) const;
 
  private:
-  BlockMatrix::Pattern full_, isotropic_;  // without the diagonal
+  std::shared_ptr<const BlockMatrix::Layout> layout_;
+  BlockMatrix::Pattern full_;  // without the diagonal
   /// The first eight numbers of a block, column by column, which load at once; the ninth is stored apart.
   using Octet = float __attribute__((vector_size(32)));
   std::vector<Octet> octets_;  // of full blocks

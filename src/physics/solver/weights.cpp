@@ -27,6 +27,7 @@ Weights<Real> Weights<Real>::transposed(std::size_t rows) const {
 template <class Real>
 Weights<Real> Weights<Real>::times(const Weights& next) const {
   Weights result;
+  result.start.reserve(start.size());
   result.start.assign(1, 0);
   for (std::size_t row = 0; row + 1 < start.size(); ++row) {
     const auto first = static_cast<std::size_t>(result.start.back());
@@ -42,6 +43,8 @@ Weights<Real> Weights<Real>::times(const Weights& next) const {
       }
     result.start.push_back(static_cast<Index>(result.columns.size()));
   }
+  result.columns.shrink_to_fit();
+  result.values.shrink_to_fit();
   return result;
 }
 
@@ -50,6 +53,7 @@ Weights<Real> Weights<Real>::make_interpolation(const Aggregates& grouping, doub
                                                 std::vector<std::vector<Index>>& neighbours) {
   std::vector<std::vector<Index>> next(static_cast<std::size_t>(grouping.count));
   Weights weights;
+  weights.start.reserve(neighbours.size() + 1);
   weights.start.assign(1, 0);
   for (std::size_t m = 0; m < neighbours.size(); ++m) {
     const Index own = grouping.of[m];
@@ -78,6 +82,8 @@ Weights<Real> Weights<Real>::make_interpolation(const Aggregates& grouping, doub
     of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
   }
   neighbours = std::move(next);
+  weights.columns.shrink_to_fit();
+  weights.values.shrink_to_fit();
   return weights;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -27,10 +28,11 @@ class BeforeATurningBlade : public ::testing::TestWithParam<double> {
     blade_.shift = Vec3(0.02, 0, 0);
     x_t1_ = x_t0_;
     for (int v = 6; v < 9; ++v) x_t1_[v] = blade_.turn * x_t0_[v] + blade_.shift;
-    carried_ = CarriedStarts(6, {0, 0, 0, 1, 1, 1, 2, 2, 2});
+    carried_ = CarriedStarts(6, kBodyOf);
     carried_.begin_step(x_t0_, x_t1_, std::vector<RigidMotion>{{}, {}, blade_});
   }
 
+  static constexpr std::array<std::size_t, 9> kBodyOf{0, 0, 0, 1, 1, 1, 2, 2, 2};
   static constexpr CornerPair kInner{{0, 1, 2}, {6, 7, 8}}, kOuter{{3, 4, 5}, {6, 7, 8}};
   std::vector<Vec3> x_t0_, x_t1_;
   RigidMotion blade_;
@@ -51,7 +53,8 @@ TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
   Separation separation(triangles, {});
   separation.watch(std::vector<TrianglePair>{{0, 1}, {0, 2}, {1, 2}}, x_t0_);
-  PinchedPairs pinched(6, {0, 0, 0, 1, 1, 1, 2, 2, 2}, std::vector<Index>(9, 0));
+  const std::vector<Index> limb_of(9, 0);
+  PinchedPairs pinched(6, kBodyOf, limb_of);
   const std::vector<std::uint8_t> movable{1, 1, 1, 1, 1, 1, 0, 0, 0};
   ASSERT_FALSE(separation.find_failing(x_t0_, x_t1_, nullptr, &carried_).empty());
   const SeparationReport report = separation.enforce(x_t0_, x_t1_, movable, &pinched, &carried_);
@@ -73,7 +76,8 @@ TEST(CarriedStarts, ClothIsNotCarriedThroughAnObstacleThatStands) {
   const std::vector<std::size_t> body_of{0, 0, 0, 1, 1, 1, 2, 2, 2};
   CarriedStarts carried(3, body_of);
   carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, down, {}});
-  PinchedPairs pinched(3, body_of, std::vector<Index>(9, 0));
+  const std::vector<Index> limb_of(9, 0);
+  PinchedPairs pinched(3, body_of, limb_of);
 
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
   const CornerPair on_press{{0, 1, 2}, {3, 4, 5}}, on_floor{{0, 1, 2}, {6, 7, 8}};
@@ -88,7 +92,8 @@ TEST(CarriedStarts, ClothIsNotCarriedThroughAnObstacleThatStands) {
 
 TEST(CarriedStarts, AreLookedAtOnlyForWhatTurns) {
   const std::vector<Vec3> x_t0(6, Vec3(1, 2, 3)), x_t1(6, Vec3(1, 2, 4));
-  CarriedStarts carried(3, {0, 0, 0, 1, 1, 1});
+  const std::vector<std::size_t> body_of{0, 0, 0, 1, 1, 1};
+  CarriedStarts carried(3, body_of);
   const CornerPair pair{{0, 1, 2}, {3, 4, 5}};
   EXPECT_FALSE(carried.carries(1));
   carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.shift = Vec3(0, 0, 1)}});

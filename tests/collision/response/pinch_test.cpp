@@ -27,9 +27,9 @@ class PinchedTriangle : public ::testing::Test {
     x_.insert(x_.begin(), {Vec3(0, 0, 0.11), Vec3(0.02, 0, 0.11), Vec3(0, 0.02, 0.11)});
     surfaces_ = scene_.surfaces();
     broad_phase_ = BroadPhase(surfaces_, x_);
-    std::vector<std::size_t> body_of;
-    for (std::size_t b = 0; b < surfaces_.size(); ++b) body_of.insert(body_of.end(), surfaces_[b].vertex_count, b);
-    pinched_ = PinchedPairs(3, body_of, std::vector<Index>(body_of.size(), 0));
+    for (std::size_t b = 0; b < surfaces_.size(); ++b) body_of_.insert(body_of_.end(), surfaces_[b].vertex_count, b);
+    limb_of_.assign(body_of_.size(), 0);
+    pinched_ = PinchedPairs(3, body_of_, limb_of_);
   }
 
   /// The cloth triangle paired with the nearest face of a box.
@@ -46,6 +46,8 @@ class PinchedTriangle : public ::testing::Test {
   std::vector<Surface> surfaces_;
   Bodies bodies_;
   BroadPhase broad_phase_;
+  std::vector<std::size_t> body_of_;
+  std::vector<Index> limb_of_;
   PinchedPairs pinched_;
 };
 

@@ -60,7 +60,8 @@ TEST(Planes, APlaneThatIsKnownIsTriedBeforeAnyIsSearchedFor) {
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
   PairList near;  // for some of these the first check knows no plane
-  planes.append_closer(1e-4, std::vector<float>(pairs.x.size(), 0.0F), near);
+  planes.set_moved(std::vector<float>(pairs.x.size(), 0.0F));
+  planes.append_closer(1e-4, 0, planes.size(), near);
   std::erase_if(pairs.pairs, [&](const TrianglePair& pair) { return std::ranges::find(near, pair) != near.end(); });
   planes.watch(pairs.pairs, pairs.x);
   const std::string of_watching = saved(planes, pairs);
@@ -142,9 +143,11 @@ TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
   RandomPairs pairs(500);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
+  planes.set_moved(std::vector<float>(pairs.x.size(), 0.0F));
   for (double radius : {0.005, 0.02, 0.05}) {
     PairList closer;
-    planes.append_closer(radius, std::vector<float>(pairs.x.size(), 0.0F), closer);
+    planes.append_closer(radius, 0, 100, closer);
+    planes.append_closer(radius, 100, planes.size(), closer);
     std::size_t within = 0;
     for (const TrianglePair& pair : pairs.pairs) {
       const CornerPair corners{pairs.triangles[pair.a], pairs.triangles[pair.b]};

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
-#include <vector>
 
 #include "core/types.hpp"
 
@@ -29,29 +29,35 @@ struct TrianglePair {
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
-/// A growing list of pairs. Keeps its memory when cleared; pairs are written without a capacity check for each.
+/// A growing list of pairs. Keeps its memory when cleared; pairs are written without a capacity check for each. Does
+/// not touch the memory behind the last pair, so that the system need not provide it.
 class PairList {
  public:
   void clear() { size_ = 0; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  std::span<const TrianglePair> view() const { return {storage_.data(), size_}; }
-  const TrianglePair* begin() const { return storage_.data(); }
-  const TrianglePair* end() const { return storage_.data() + size_; }
+  std::span<const TrianglePair> view() const { return {storage_.get(), size_}; }
+  const TrianglePair* begin() const { return storage_.get(); }
+  const TrianglePair* end() const { return storage_.get() + size_; }
 
   /// Makes room for `count` more pairs. Write them to the returned place, then call grow() with their end.
   TrianglePair* reserve_more(std::size_t count) {
-    if (size_ + count > storage_.size()) storage_.resize(size_ + count + (size_ + count) / 2);
-    return storage_.data() + size_;
+    if (size_ + count > capacity_) {
+      capacity_ = size_ + count + (size_ + count) / 2;
+      auto larger = std::make_unique_for_overwrite<TrianglePair[]>(capacity_);
+      std::ranges::copy(*this, larger.get());
+      storage_ = std::move(larger);
+    }
+    return storage_.get() + size_;
   }
   void append(std::span<const TrianglePair> more) {
     grow(std::copy(more.begin(), more.end(), reserve_more(more.size())));
   }
-  void grow(const TrianglePair* end) { size_ = static_cast<std::size_t>(end - storage_.data()); }
+  void grow(const TrianglePair* end) { size_ = static_cast<std::size_t>(end - storage_.get()); }
 
  private:
-  std::vector<TrianglePair> storage_;
-  std::size_t size_ = 0;
+  std::unique_ptr<TrianglePair[]> storage_;
+  std::size_t size_ = 0, capacity_ = 0;
 };
 
 /// Triangle pairs whose bounds overlap. Pairs that share an edge or all corners are in neither list.

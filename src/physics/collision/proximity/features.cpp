@@ -24,11 +24,11 @@ void Features::collect_triangles_at_vertices(Index vertex_count) {
       [&](std::size_t t, std::size_t c) { ++around_begin_[static_cast<std::size_t>(triangles_[t][c]) + 1]; });
   for (std::size_t v = 1; v < around_begin_.size(); ++v) around_begin_[v] += around_begin_[v - 1];
   around_.resize(around_begin_.back());
-  std::vector<std::size_t> next(around_begin_.begin(), around_begin_.end() - 1);
+  std::vector<Index> next(around_begin_.begin(), around_begin_.end() - 1);
   for_each_corner([&](std::size_t t, std::size_t c) {
     const auto v = static_cast<std::size_t>(triangles_[t][c]);
     if (next[v] == around_begin_[v]) owned_[t] |= static_cast<std::uint8_t>(1U << c);
-    around_[next[v]++] = static_cast<Index>(t);
+    around_[at(next[v]++)] = static_cast<Index>(t);
   });
 }
 
@@ -49,7 +49,7 @@ void Features::own_edges() {
     return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
   });
 
-  // The first triangle of a run of equal edges owns the edge. Each two triangles of the run form a hinge.
+  // The first triangle of a run of equal edges owns the edge.
   edge_.resize(triangles_.size());
   across_.assign(triangles_.size(), {-1, -1, -1});
   apexes_begin_ = {0};
@@ -63,21 +63,23 @@ void Features::own_edges() {
       across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)
       apexes_.push_back(triangles_[sides[i].triangle][static_cast<std::size_t>(sides[i].corner + 2) % 3]);
-    apexes_begin_.push_back(apexes_.size());
-    for (std::size_t i = begin; i < end; ++i)
-      for (std::size_t j = i + 1; j < end; ++j)
-        if (sides[i].triangle != sides[j].triangle) hinges_.push_back({sides[i].triangle, sides[j].triangle});
+    apexes_begin_.push_back(static_cast<Index>(apexes_.size()));
   }
-  std::sort(hinges_.begin(), hinges_.end());
-  hinges_.erase(std::unique(hinges_.begin(), hinges_.end()), hinges_.end());
-  hinges_.shrink_to_fit();
   apexes_.shrink_to_fit();
   apexes_begin_.shrink_to_fit();
 }
 
-std::span<const TrianglePair> Features::hinges(Index first, Index count) const {
-  const auto from = [&](Index t) { return std::lower_bound(hinges_.begin(), hinges_.end(), TrianglePair{t, 0}); };
-  return {from(first), from(first + count)};
+std::vector<TrianglePair> Features::hinges(Index first, Index count) const {
+  std::vector<TrianglePair> pairs;
+  for (Index a = first; a < first + count; ++a)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index from = triangle(a)[c], to = triangle(a)[(c + 1) % 3];
+      for (const Index b : triangles_at(from))
+        if (b > a && from != to && has_vertex(triangle(b), to)) pairs.push_back({a, b});
+    }
+  std::ranges::sort(pairs);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
 }
 
 }  // namespace weft::collision

@@ -30,7 +30,7 @@ class Features {
   /// Vertices opposite to the edge from corner c to c + 1 that triangle t owns, one for each triangle at that edge.
   std::span<const Index> apexes(Index t, std::size_t c) const {
     const auto edge = static_cast<std::size_t>(edge_[t][c]);
-    return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
+    return std::span(apexes_).subspan(at(apexes_begin_[edge]), at(apexes_begin_[edge + 1] - apexes_begin_[edge]));
   }
 
   /// The other triangle at the edge from corner c to corner c + 1 that triangle t owns; −1 unless exactly two triangles
@@ -40,11 +40,11 @@ class Features {
   /// Triangles at a vertex, lowest number first.
   std::span<const Index> triangles_at(Index vertex) const {
     const auto v = static_cast<std::size_t>(vertex);
-    return std::span(around_).subspan(around_begin_[v], around_begin_[v + 1] - around_begin_[v]);
+    return std::span(around_).subspan(at(around_begin_[v]), at(around_begin_[v + 1] - around_begin_[v]));
   }
 
   /// Pairs of triangles a < b with a common edge and a in [first, first + count), sorted.
-  std::span<const TrianglePair> hinges(Index first, Index count) const;
+  std::vector<TrianglePair> hinges(Index first, Index count) const;
 
  private:
   void collect_triangles_at_vertices(Index vertex_count);
@@ -54,11 +54,10 @@ class Features {
   std::vector<std::uint8_t> owned_;
   std::vector<std::array<Index, 3>> edge_;  // number of the edge, if owned
   std::vector<std::array<Index, 3>> across_;
-  std::vector<std::size_t> apexes_begin_;  // by edge
+  std::vector<Index> apexes_begin_;  // by edge
   std::vector<Index> apexes_;
-  std::vector<std::size_t> around_begin_;
+  std::vector<Index> around_begin_;
   std::vector<Index> around_;
-  std::vector<TrianglePair> hinges_;
 };
 
 inline bool has_vertex(const Triangle& triangle, Index vertex) {

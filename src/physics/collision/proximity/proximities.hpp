@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -46,10 +47,13 @@ class ProximityFinder {
   /// `min_fold`. Between two smooth layers, four of five pairs are edge pairs, but vertices and faces suffice there.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
               double radius, double min_fold = 0);
-  /// As above, with candidates without a common vertex only. Pairs that share one or two vertices are added here, for
-  /// each surface of `deformable`. `clear`: result of Separation::find_clear_triangles for `radius`.
-  void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
-              double min_fold, std::span<const std::uint8_t> clear);
+  /// Appends the candidates among the pairs [begin, end) of a list; called from several threads.
+  using AppendPairs = std::function<void(std::size_t begin, std::size_t end, PairList& pairs)>;
+  /// As above, with candidates without a common vertex only, from a list of `count` pairs. Pairs that share one or two
+  /// vertices are added here, for each surface of `deformable`. `clear`: result of Separation::find_clear_triangles for
+  /// `radius`.
+  void gather(std::size_t count, const AppendPairs& append_apart, std::span<const Surface> deformable,
+              std::span<const Vec3> x, double radius, double min_fold, std::span<const std::uint8_t> clear);
 
   /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], ordered by kind and by
   /// the numbers of their vertices, whatever the order of the candidates. The list is complete as long as no vertex is

@@ -26,9 +26,9 @@ struct RigidMotion {
 class CarriedStarts {
  public:
   CarriedStarts() = default;
-  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`: body of each vertex.
-  CarriedStarts(Index first_obstacle, std::vector<std::size_t> body_of)
-      : first_obstacle_(first_obstacle), body_of_(std::move(body_of)) {}
+  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`: body of each vertex; must outlive it.
+  CarriedStarts(Index first_obstacle, std::span<const std::size_t> body_of)
+      : first_obstacle_(first_obstacle), body_of_(body_of) {}
 
   /// Begins a step from x_t0 to x_t1, which holds the ends of the obstacles [m]; both must outlive the step. `motions`:
   /// one for each body; empty: nothing is carried.
@@ -56,7 +56,7 @@ class CarriedStarts {
 
  private:
   Index first_obstacle_ = 0;
-  std::vector<std::size_t> body_of_;
+  std::span<const std::size_t> body_of_;
   std::vector<RigidMotion> motions_;
   bool any_turns_ = false;
   std::span<const Vec3> x_t0_, x_t1_;

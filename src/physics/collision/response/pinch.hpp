@@ -44,9 +44,9 @@ class PinchedPairs {
   };
 
   PinchedPairs() = default;
-  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`, `limb_of`: per vertex.
-  PinchedPairs(Index first_obstacle, std::vector<std::size_t> body_of, std::vector<Index> limb_of)
-      : first_obstacle_(first_obstacle), body_of_(std::move(body_of)), limb_of_(std::move(limb_of)) {}
+  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`, `limb_of`: per vertex; must outlive it.
+  PinchedPairs(Index first_obstacle, std::span<const std::size_t> body_of, std::span<const Index> limb_of)
+      : first_obstacle_(first_obstacle), body_of_(body_of), limb_of_(limb_of) {}
 
   /// Whether side a is cloth and side b an obstacle. Other pairs are never exempt.
   bool is_cloth_and_obstacle(const CornerPair& pair) const {
@@ -106,8 +106,8 @@ class PinchedPairs {
   bool is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces, std::span<const Vec3> x) const;
 
   Index first_obstacle_ = 0;
-  std::vector<std::size_t> body_of_;
-  std::vector<Index> limb_of_;
+  std::span<const std::size_t> body_of_;
+  std::span<const Index> limb_of_;
   std::map<Key, Origin> origins_;
   struct Corner {
     Index particle;

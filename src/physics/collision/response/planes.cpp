@@ -62,12 +62,13 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   const Points8 origin = a.corner[0];
   for (int c = 0; c < 3; ++c) a.corner[c] = minus(a.corner[c], origin), b.corner[c] = minus(b.corner[c], origin);
 
-  float best_gap[8];
-  Points8 best_n;
+  Lanes8 best_gap{};
+  Points8 best_n{};
   const auto consider = [&](const Points8& direction, bool initial) {
     const Lanes8 length_sq = dot(direction, direction);
-    Lanes8 scale;
-    for (int l = 0; l < 8; ++l) scale[l] = length_sq[l] > 0 ? 1 / std::sqrt(length_sq[l]) : 0.0F;
+    Lanes8 length;
+    for (int l = 0; l < 8; ++l) length[l] = std::sqrt(length_sq[l]);
+    const Lanes8 scale = length_sq > 0 ? 1 / length : Lanes8{};
     const Points8 n{{direction.axis[0] * scale, direction.axis[1] * scale, direction.axis[2] * scale}};
     Lanes8 a_low = dot(n, a.corner[0]), a_high = a_low, b_low = dot(n, b.corner[0]), b_high = b_low;
     for (int c = 1; c < 3; ++c) {
@@ -75,12 +76,10 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
       lower_to(a_low, along_a), raise_to(a_high, along_a), lower_to(b_low, along_b), raise_to(b_high, along_b);
     }
     const Lanes8 above = a_low - b_high, below = b_low - a_high;
-    for (int l = 0; l < 8; ++l) {
-      const float gap = std::max(above[l], below[l]), sign = above[l] >= below[l] ? 1.0F : -1.0F;
-      if (!initial && !(gap > best_gap[l])) continue;
-      best_gap[l] = gap;
-      for (int axis = 0; axis < 3; ++axis) best_n.axis[axis][l] = sign * n.axis[axis][l];
-    }
+    const Lanes8 gap = above < below ? below : above, sign = above >= below ? Lanes8{} + 1 : Lanes8{} - 1;
+    const IntLanes8 is_better = initial ? IntLanes8{} - 1 : gap > best_gap;
+    best_gap = is_better ? gap : best_gap;
+    for (int axis = 0; axis < 3; ++axis) best_n.axis[axis] = is_better ? sign * n.axis[axis] : best_n.axis[axis];
   };
   Points8 centres = b.corner[0];
   for (int axis = 0; axis < 3; ++axis)
@@ -112,28 +111,32 @@ void Planes::watch(std::span<const Vec3> x) {
   });
 }
 
-void Planes::append_closer(double radius, std::span<const float> moved, PairList& out) const {
-  std::vector<float> triangle_moved(triangles_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t)
-    triangle_moved[t] = std::max({moved[triangles_[t][0]], moved[triangles_[t][1]], moved[triangles_[t][2]]});
-  TrianglePair* end = out.reserve_more(pairs_.size());
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
+void Planes::set_moved(std::span<const float> moved) {
+  moved_.resize(triangles_.size());
+  parallel_for(triangles_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      moved_[t] = std::max({moved[triangles_[t][0]], moved[triangles_[t][1]], moved[triangles_[t][2]]});
+  });
+}
+
+void Planes::append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const {
+  TrianglePair* last = out.reserve_more(end - begin);
+  for (std::size_t p = begin; p < end; ++p) {
     const TrianglePair& pair = pairs_.view()[p];
-    *end = pair;
-    end += planes_[p].gap < static_cast<float>(radius) + triangle_moved[pair.a] + triangle_moved[pair.b] ? 1 : 0;
+    *last = pair;
+    last += planes_[p].gap < static_cast<float>(radius) + moved_[pair.a] + moved_[pair.b] ? 1 : 0;
   }
-  out.grow(end);
+  out.grow(last);
 }
 
 void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                           std::span<const float> moved, std::span<const std::uint8_t> changed,
                           std::vector<CornerPair>& failing, const CarriedStarts* carried, PlaneKinds which) {
-  moved_.resize(triangles_.size());
+  set_moved(moved);
   changed_.resize(triangles_.size());
   parallel_for(triangles_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle& corners = triangles_[t];
-      moved_[t] = std::max({moved[corners[0]], moved[corners[1]], moved[corners[2]]});
       changed_[t] = changed[corners[0]] | changed[corners[1]] | changed[corners[2]];
     }
   });

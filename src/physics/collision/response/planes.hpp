@@ -42,9 +42,13 @@ class Planes {
   /// Swaps the list of watched pairs for another, so that only one copy exists; watch() must follow.
   void exchange(PairList& pairs) { std::swap(pairs_, pairs); }
 
-  /// Appends the watched pairs that may be closer than `radius` [m] after vertices have `moved` so far from the
-  /// reference [m]. The gap along any direction is a lower bound of the distance.
-  void append_closer(double radius, std::span<const float> moved, PairList& out) const;
+  /// Number of watched pairs.
+  std::size_t size() const { return pairs_.size(); }
+  /// Sets how far vertices have `moved` from the reference [m], for append_closer(), until find_failing() is called.
+  void set_moved(std::span<const float> moved);
+  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m]. The gap along any direction
+  /// is a lower bound of the distance.
+  void append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const;
 
   /// Appends the pairs without a separating plane on the trajectory from x_t0 to x_t1. `reference`: positions at
   /// watch() [m]. `moved`: per vertex, a bound of its distance from the reference at both times [m]. `changed`: per
@@ -81,7 +85,7 @@ class Planes {
   PairList pairs_;
   std::vector<Plane> planes_;
   std::vector<Lanes4> rounded_;             // positions in float, for the search in watch()
-  std::vector<float> moved_;                // per triangle
+  std::vector<float> moved_;                // per triangle: bound of the distances of its corners from the reference
   std::vector<std::uint8_t> changed_;       // per triangle
   std::vector<std::uint8_t> is_separated_;  // per pair: separated at the last test from x_t0
 };

@@ -33,29 +33,34 @@ void Separation::for_each_member(const RigidGroup& group, const Visit& visit) {
 }
 
 void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
-  reference_.assign(x.begin(), x.end());
   planes_.watch(pairs, x);
-  stars_.set_reference(x);
+  set_reference(x);
 }
 
 void Separation::watch(std::span<const Vec3> x) {
-  reference_.assign(x.begin(), x.end());
   planes_.watch(x);
+  set_reference(x);
+}
+
+// Most pairs are collected again from the same start, for another end of the step.
+void Separation::set_reference(std::span<const Vec3> x) {
+  if (std::ranges::equal(reference_, x)) return stars_.forget_tests();
+  reference_.assign(x.begin(), x.end());
   stars_.set_reference(x);
 }
 
-void Separation::append_closer(double radius, std::span<const Vec3> x, PairList& out) const {
-  std::vector<float> moved(x.size());
+void Separation::measure_motion(std::span<const Vec3> x) {
+  moved_.resize(x.size());
   parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      moved[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>((x[v] - reference_[v]).squaredNorm()));
+      moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>((x[v] - reference_[v]).squaredNorm()));
   });
-  planes_.append_closer(radius, moved, out);
+  planes_.set_moved(moved_);
 }
 
 std::vector<std::uint8_t> Separation::find_clear_triangles(double distance, std::span<const Vec3> x) const {
   std::vector<std::uint8_t> vertices(reference_.size(), 0), triangles(triangles_.size(), 0);
-  stars_.mark_clear(distance, x, vertices);
+  stars_.mark_clear(distance, std::ranges::equal(reference_, x) ? std::span<const Vec3>() : x, vertices);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     triangles[t] = vertices[triangles_[t][0]] & vertices[triangles_[t][1]] & vertices[triangles_[t][2]];
   return triangles;

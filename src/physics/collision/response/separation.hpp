@@ -74,8 +74,14 @@ class Separation {
   /// As Planes::exchange().
   void exchange(PairList& pairs) { planes_.exchange(pairs); }
 
-  /// Appends the watched pairs that may be closer than `radius` at x [m].
-  void append_closer(double radius, std::span<const Vec3> x, PairList& out) const;
+  /// Number of watched pairs.
+  std::size_t pair_count() const { return planes_.size(); }
+  /// Measures how far vertices at x [m] are from the reference, for append_closer(), until pairs are tested.
+  void measure_motion(std::span<const Vec3> x);
+  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` at that x [m].
+  void append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const {
+    planes_.append_closer(radius, begin, end, out);
+  }
 
   /// Returns 1 for a triangle only if, at x [m], its features are farther than `distance` [m] from those of all
   /// triangles that share a vertex with it. Pairs of features with a common vertex do not count.
@@ -114,6 +120,7 @@ class Separation {
     SeparationReport report = {};
     std::span<const Vec3> start_of(const CornerPair& pair) const { return carried ? carried->of(pair, x_t0) : x_t0; }
   };
+  void set_reference(std::span<const Vec3> x);
   double balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const;
   bool push_apart(const CornerPair& pair, Step& step) const;
   bool translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const;

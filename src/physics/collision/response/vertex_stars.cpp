@@ -105,8 +105,12 @@ bool VertexStars::turns_once(std::size_t star, const Vec3& axis, std::span<const
   return turns + (before < 0 ? 1 : 0) == 1;
 }
 
-void VertexStars::set_reference(std::span<const Vec3> x) {
+void VertexStars::forget_tests() {
   is_separated_.assign(centres_.size(), 0);
+}
+
+void VertexStars::set_reference(std::span<const Vec3> x) {
+  forget_tests();
   parallel_for(centres_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t star = begin; star < end; ++star) measures_[star] = measure_star(star, x);
   });
@@ -140,8 +144,10 @@ VertexStars::StarMeasures VertexStars::measure_star(std::size_t star, std::span<
 
 void VertexStars::mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const {
   parallel_for(centres_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t star = begin; star < end; ++star)
-      if (static_cast<double>(measure_star(star, x).clearance) > distance) vertices[centres_[star]] = 1;
+    for (std::size_t star = begin; star < end; ++star) {
+      const StarMeasures measures = x.empty() ? measures_[star] : measure_star(star, x);
+      if (static_cast<double>(measures.clearance) > distance) vertices[centres_[star]] = 1;
+    }
   });
 }
 

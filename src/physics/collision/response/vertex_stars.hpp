@@ -33,12 +33,15 @@ class VertexStars {
 
   /// Measures every star at x [m]: how far its vertices may move in any direction before it must be tested again.
   void set_reference(std::span<const Vec3> x);
+  /// Makes the next find_failing() test all stars.
+  void forget_tests();
 
   /// Sets `vertices` to 1 at the centres of stars in which features without a common vertex are farther apart than
-  /// `distance` at x [m]. It suffices that all altitudes of the star's triangles, projected along its axis, exceed
-  /// `distance`. Proof: the closest projected points of two such features of two triangles are a vertex and a point of
-  /// the other triangle. The segment between them leads from the centre to an opposite edge; or, from another vertex,
-  /// it crosses a neighbouring edge of the star or passes its end. In each case it is at least an altitude long.
+  /// `distance` at x [m]; empty: at the reference. It suffices that all altitudes of the star's triangles, projected
+  /// along its axis, exceed `distance`. Proof: the closest projected points of two such features of two triangles are a
+  /// vertex and a point of the other triangle. The segment between them leads from the centre to an opposite edge; or,
+  /// from another vertex, it crosses a neighbouring edge of the star or passes its end. In each case it is at least an
+  /// altitude long.
   void mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
   /// Appends the edge-triangle pairs without a separating plane on the trajectory from x_t0 to x_t1. `moved`: per
