@@ -33,6 +33,16 @@ void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
+// Passes a text to the handler, without the lock, as the handler may wait for a lock that another thread holds while it
+// logs. Returns false if there is no handler.
+bool handled(std::string_view text, const State& s, std::unique_lock<std::mutex>& lock) {
+  const auto handle = s.handle;
+  if (!handle) return false;
+  lock.unlock();
+  handle(text);
+  return true;
+}
+
 void print(State& s, std::string_view text) {
   const std::string line = without_controls(text);
   if (s.status.empty()) {
@@ -46,10 +56,7 @@ void print(State& s, std::string_view text) {
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
   std::unique_lock lock(s.mutex);
-  if (const auto handle = s.handle) {
-    lock.unlock();  // `handle` may wait for a lock that another thread holds while it logs
-    return handle(text);
-  }
+  if (handled(text, s, lock)) return;
   if (std::find((s.*list).begin(), (s.*list).end(), text) != (s.*list).end()) return;
   (s.*list).emplace_back(text);
   print(s, fmt::format("{}: {}", kind, text));
@@ -73,8 +80,8 @@ std::string without_controls(std::string_view text, std::string_view kept) {
 
 void info(std::string_view line) {
   State& s = state();
-  const std::lock_guard lock(s.mutex);
-  print(s, line);
+  std::unique_lock lock(s.mutex);
+  if (!handled(line, s, lock)) print(s, line);
 }
 
 void warn(std::string_view text) {

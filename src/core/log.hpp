@@ -20,7 +20,7 @@ void warn(std::string_view text);
 /// Like warn(), with `note: text`, for intended changes that the user should know of.
 void note(std::string_view text);
 
-/// Sends following warnings and notes to `handle`, in the thread that reports them; they are neither printed nor kept.
+/// Sends following messages to `handle`, in the thread that reports them; they are neither printed nor kept.
 /// An empty `handle` restores the default.
 void set_handler(std::function<void(std::string_view text)> handle);
 

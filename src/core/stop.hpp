@@ -4,6 +4,7 @@
 #include <time.h>
 
 #include <atomic>
+#include <functional>
 
 #include "core/error.hpp"
 
@@ -23,9 +24,13 @@ inline long long monotonic_ns() {
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// Throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops that may run longer than
-/// kStopGrace call this function in each iteration.
+/// Of the program that uses the library: what it throws ends the computation; empty: none.
+inline std::function<void()> host_check;
+
+/// Throws Error(interrupted) if a stop was requested more than kStopGrace ago, or what host_check throws. Loops that
+/// may run longer than kStopGrace call this function in each iteration.
 inline void end_if_stopped() {
+  if (host_check) host_check();
   const long long requested = stop_requested_at.load(std::memory_order_relaxed);
   if (requested != 0 && monotonic_ns() - requested > kStopGrace)
     throw Error(ExitCode::interrupted, "interrupted within a time step");

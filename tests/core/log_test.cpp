@@ -29,5 +29,16 @@ TEST(Log, EscapesWhatTerminalsInterpret) {
             "\\xc2\\x9b 2J \\xc2\\x85 \xC2\xA0 \xC3\xA9 \xC2");
 }
 
+// A program with a window has no use for standard error.
+TEST(Log, HandlerGetsInformationToo) {
+  std::string got;
+  set_handler([&](std::string_view text) { got = text; });
+  ::testing::internal::CaptureStderr();
+  info("lifted bodies");
+  set_handler({});
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(got, "lifted bodies");
+}
+
 }  // namespace
 }  // namespace weft::log

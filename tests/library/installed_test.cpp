@@ -55,10 +55,9 @@ TEST_F(InstalledLibrary, StepsAsTheProgramDoes) {
   }
 }
 
-TEST_F(InstalledLibrary, OfThePhysicsStepsAModel) {
-  install();
-  run("cmake -S '" WEFT_SOURCE_DIR "/tests/library/example' -B example -DCMAKE_PREFIX_PATH='" +
-      (folder_ / "prefix").string() + "' && cmake --build example --target sheet");
+TEST_F(InstalledLibrary, OfThePhysicsStepsAModelWithoutAnInstallation) {
+  run("cmake -S '" WEFT_SOURCE_DIR "/tests/library/example' -B example -DWeft_DIR='" WEFT_BUILD_DIR
+      "' && cmake --build example --target sheet");
   std::istringstream printed(run("example/sheet 9"));
   std::vector<Vec3> got;
   for (Vec3 x; printed >> x.x() >> x.y() >> x.z();) got.push_back(x);

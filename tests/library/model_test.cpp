@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 #include <weft/scene.hpp>
+#include <weft/settings.hpp>
 #include <weft/simulation.hpp>
 
 #include "physics/mesh/quads.hpp"
 #include "physics/mesh/shapes.hpp"
+#include "physics/mesh/sheet.hpp"
 
 namespace weft::library {
 namespace {
@@ -259,6 +261,64 @@ TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
   }
 }
 
+// Without air, the sheet falls freely for 0.2 s and then keeps its velocity, which no warning takes for a gain.
+TEST(LibraryWeather, ChangesGravityBetweenFrames) {
+  Model model;
+  model.air_density = 0;
+  model.cloths = {sheet()};
+  Simulation simulation(model);
+  positions_after(simulation, 5);
+  simulation.set_weather({0, 0, 4}, {0, 0, 0});
+  positions_after(simulation, 10);
+  const Frame& frame = simulation.frame();
+  for (const Vector& v : frame.object("sheet").velocities) EXPECT_NEAR(v[2], -9.81 * 0.2 + 4 * 0.4, 1e-9);
+  EXPECT_EQ(frame.report().warnings, std::vector<std::string>());
+  EXPECT_THROW(simulation.set_weather({0, 0, NAN}, {}), std::invalid_argument);
+  EXPECT_THROW(simulation.set_weather({}, {0, 1001, 0}), std::invalid_argument);
+}
+
+// Wind that is set before the first frame is that of a model that has it from the start, and is in the saved state.
+TEST(LibraryWeather, ChangesTheWindAndIsSaved) {
+  Model still, windy;
+  still.cloths = windy.cloths = {sheet()};
+  still.pins = windy.pins = {{.cloth = "sheet", .particles = {0, 8}}};
+  windy.wind = {3, 2, 1};
+  Simulation changed(still), expected(windy);
+  changed.set_weather(still.gravity, windy.wind);
+  const std::vector<Vector> got = positions_after(changed, 5), wanted = positions_after(expected, 5);
+  for (std::size_t i = 0; i < got.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(got[i][c], wanted[i][c], 1e-9) << i;
+  Simulation resumed(still, {.state = changed.save()});
+  EXPECT_EQ(positions_after(resumed, 5), positions_after(changed, 5));
+}
+
+// Whenever a frame is interrupted, it can be computed again, with the same bits.
+TEST(LibraryInterrupt, EndsAFrameThatCanBeComputedAgain) {
+  Model model;
+  model.cloths = {sheet()};
+  model.bodies = {ball()};
+  Simulation whole(model), interrupted(model);
+  positions_after(whole, 9), positions_after(interrupted, 8);
+  const std::vector<Vector> before = positions_after(interrupted, 0);
+  int times = 0;
+  for (int last = 0;; last += 5) {
+    int calls = 0;
+    set_interrupt_check([&] {
+      if (calls++ == last) throw std::domain_error("stop");
+    });
+    try {
+      interrupted.advance();
+      break;
+    } catch (const std::domain_error&) {
+      ++times;
+      EXPECT_EQ(positions_after(interrupted, 0), before);
+    }
+  }
+  set_interrupt_check({});
+  EXPECT_GT(times, 5);
+  EXPECT_EQ(positions_after(interrupted, 0), positions_after(whole, 0));
+}
+
 TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
   const auto with = [](const std::function<void(Model&)>& change) {
     Model model;
@@ -268,10 +328,26 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
     return model;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  expect_refused("sheet: expected a position [m] from -100000 to 100000",
-                 with([&](Model& m) { m.cloths[0].mesh.positions[3][1] = nan; }));
-  expect_refused("got 1 with a number that none of the 81 vertices has",
-                 with([](Model& m) { m.cloths[0].mesh.triangles[0][0] = 81; }));
+  expect_refused("nan, 0] as vertex 3", with([&](Model& m) { m.cloths[0].mesh.positions[3][1] = nan; }));
+  expect_refused("triangles of vertices from 0 to 80, got [81, 1, 10] as triangle 2", with([](Model& m) {
+                   m.cloths[0].mesh.triangles[2] = {81, 1, 10};
+                 }));
+  expect_refused("ball: expected triangles of three different vertices, got [4, 5, 4] as triangle 1",
+                 with([](Model& m) {
+                   m.bodies[0].mesh.triangles[1] = {4, 5, 4};
+                 }));
+  expect_refused("triangles that face the same way, got 3 edges between two that do not, the first of vertices ",
+                 with([](Model& m) {
+                   auto& t = m.cloths[0].mesh.triangles[40];
+                   std::swap(t[0], t[1]);
+                 }));
+  expect_refused("sheet: expected vertices in different places, got 10 and 81 in the same one; merge them",
+                 with([](Model& m) {
+                   Mesh& mesh = m.cloths[0].mesh;
+                   mesh.positions.push_back(mesh.positions[10]);
+                   for (Triangle& t : mesh.triangles)
+                     if (t[0] == 10) t[0] = 81;
+                 }));
   expect_refused("edges of one or two triangles",
                  with([](Model& m) { m.cloths[0].mesh.triangles.push_back(m.cloths[0].mesh.triangles[0]); }));
   expect_refused("sheet: expected at least one triangle", with([](Model& m) { m.cloths[0].mesh.triangles.clear(); }));

@@ -12,15 +12,16 @@ function(weft_shared_library target name)
   endforeach()
   add_library(${target} SHARED ${library_SOURCES} ${objects})
   target_include_directories(${target} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
-                             ${CMAKE_CURRENT_SOURCE_DIR}/api/physics_library/include
-                             ${CMAKE_CURRENT_SOURCE_DIR}/api/library/include
-                             PUBLIC $<INSTALL_INTERFACE:include>)
+                             PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/api/physics_library/include>
+                             $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/api/library/include>
+                             $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} INTERFACE cxx_std_20)
   target_link_libraries(${target} PRIVATE weft_warnings Eigen3::Eigen TBB::tbb Threads::Threads PkgConfig::fmt
                                           ${library_LINKS})
   target_link_options(${target} PRIVATE -Wl,--as-needed -Wl,-z,defs)
   set_target_properties(${target} PROPERTIES OUTPUT_NAME ${name} EXPORT_NAME ${name} LINKER_LANGUAGE CXX
                         VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  add_library(Weft::${name} ALIAS ${target})
 endfunction()
 set(physics_modules core mesh solver forces integrator collision untangle motion model simulation physics_library)
 weft_shared_library(weft_physics_shared weft-physics MODULES ${physics_modules})
@@ -34,8 +35,10 @@ install(TARGETS weft_shared weft_physics_shared EXPORT Weft LIBRARY DESTINATION 
 install(DIRECTORY api/physics_library/include/weft api/library/include/weft DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Weft)
 install(EXPORT Weft FILE WeftConfig.cmake NAMESPACE Weft:: DESTINATION ${config_folder})
-write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake DESTINATION ${config_folder})
+# With Weft_DIR, programs find the library in the build folder, too.
+export(EXPORT Weft FILE ${PROJECT_BINARY_DIR}/WeftConfig.cmake NAMESPACE Weft::)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/WeftConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/WeftConfigVersion.cmake DESTINATION ${config_folder})
 
 if(WEFT_PYTHON)
   set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME python)

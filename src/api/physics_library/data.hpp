@@ -43,10 +43,13 @@ struct Simulation::Impl {
 
   std::size_t body(std::string_view name) const;
   void update_current_frame(const simulation::FrameReport& report);
+  void set_weather(const Vector& gravity, const Vector& wind);
+  void restore(std::string_view bytes);
 
   std::unique_ptr<simulation::Simulation> simulation;
   std::string heading;
   std::vector<std::size_t> driven;  // numbers of the driven bodies
+  std::vector<Vector> weather;      // gravity and wind of the last set_weather(); empty: there was none
   MakeFrame make_frame;
   std::optional<Frame> current;
 };

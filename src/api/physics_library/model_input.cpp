@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 #include <set>
@@ -26,9 +27,14 @@ template <class... Arguments>
 constexpr double kFarthest = 1e5;  // [m]
 constexpr double kFastest = 1e4;   // [m/s]
 
+// False for NaN.
+bool is_within(const Vec3& x, double largest) {
+  return (x.array().abs() <= largest).all();
+}
+
 Vec3 vector_of(const Vector& x, double largest, const std::string& object, const char* what) {
   Vec3 vector(x.data());
-  if (!(vector.array().abs() <= largest).all())  // false for NaN
+  if (!is_within(vector, largest))
     refuse(object, "{} from {:g} to {:g}, got [{}]", what, -largest, largest, fmt::join(x, ", "));
   return vector;
 }
@@ -43,22 +49,29 @@ enum class Edges { any, of_a_sheet };
 
 mesh::Mesh mesh_of(const Mesh& given, Edges edges, const std::string& object) {
   mesh::Mesh mesh;
-  for (const Vector& x : given.positions) mesh.positions.push_back(vector_of(x, kFarthest, object, "a position [m]"));
+  for (const Vector& given_x : given.positions) {
+    const Vec3& x = mesh.positions.emplace_back(given_x.data());
+    if (!is_within(x, kFarthest))
+      refuse(object, "positions [m] from {:g} to {:g}, got [{}] as vertex {}", -kFarthest, kFarthest,
+             fmt::join(given_x, ", "), mesh.positions.size() - 1);
+  }
   for (const Triangle& t : given.triangles) mesh.topology.triangles.push_back({t[0], t[1], t[2]});
   if (mesh.topology.triangles.empty()) refuse(object, "at least one triangle, got none");
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
-  if (!report.out_of_range.empty() || !report.degenerate.empty())
-    refuse(
-        object,
-        "triangles of three different vertices; got {} with a number that none of the {} vertices has, and {} with a "
-        "vertex twice",
-        report.out_of_range.size(), mesh.positions.size(), report.degenerate.size());
-  if (edges == Edges::of_a_sheet && !report.manifold())
-    refuse(
-        object,
-        "edges of one or two triangles that face the same way; got {} edges of more than two triangles, and {} whose "
-        "triangles face both ways",
-        report.non_manifold.size(), report.misoriented.size());
+  const auto corners = [&](Index triangle) { return fmt::join(given.triangles[at(triangle)], ", "); };
+  if (!report.out_of_range.empty())
+    refuse(object, "triangles of vertices from 0 to {}, got [{}] as triangle {}", mesh.positions.size() - 1,
+           corners(report.out_of_range[0]), report.out_of_range[0]);
+  if (!report.degenerate.empty())
+    refuse(object, "triangles of three different vertices, got [{}] as triangle {}", corners(report.degenerate[0]),
+           report.degenerate[0]);
+  if (edges == Edges::any) return mesh;
+  if (!report.non_manifold.empty())
+    refuse(object, "edges of one or two triangles, got {} edges of more, the first of vertices {}",
+           report.non_manifold.size(), fmt::join(report.non_manifold[0], " and "));
+  if (!report.misoriented.empty())
+    refuse(object, "triangles that face the same way, got {} edges between two that do not, the first of vertices {}",
+           report.misoriented.size(), fmt::join(report.misoriented[0], " and "));
   return mesh;
 }
 
@@ -78,6 +91,17 @@ void check_vertices_are_used(const mesh::Mesh& mesh, const std::string& object) 
     for (const Index v : t) used[static_cast<std::size_t>(v)] = 1;
   const auto loose = std::ranges::find(used, 0);
   if (loose != used.end()) refuse(object, "vertices that triangles use, got number {} alone", loose - used.begin());
+}
+
+// Meshes of other programs often have a vertex for each side of a seam of their texture.
+void check_vertices_are_apart(const mesh::Mesh& mesh, const std::string& object) {
+  std::map<std::array<double, 3>, std::size_t> places;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3& x = mesh.positions[v];
+    const auto [first, is_new] = places.try_emplace({x.x(), x.y(), x.z()}, v);
+    if (!is_new)
+      refuse(object, "vertices in different places, got {} and {} in the same one; merge them", first->second, v);
+  }
 }
 
 // Makes the flat fabric the rest shape of a cloth, from the first step on.
@@ -106,11 +130,12 @@ void check_triangles(const model::Cloth& cloth) {
            mesh::kMaxUnevenness, flat.longest_edge, flat.flattest, flat.least_height);
 }
 
-model::Cloth cloth_of(const Cloth& given) {
+model::Cloth cloth_of(const Cloth& given, bool self_contact) {
   model::Cloth cloth;
   cloth.name = cloth.source = given.name;
   cloth.mesh = mesh_of(given.mesh, Edges::of_a_sheet, given.name);
   check_vertices_are_used(cloth.mesh, given.name);
+  if (self_contact) check_vertices_are_apart(cloth.mesh, given.name);
   cloth.sheet = mesh::make_sheet_from_mesh(cloth.mesh);
   cloth.start = cloth.mesh.positions;
   if (!given.rest.empty()) {
@@ -215,6 +240,13 @@ motion::Pose pose_of(const Pose& given, const std::string& object) {
   return pose;
 }
 
+Vec3 gravity_of(const Vector& given, const std::string& object) {
+  return vector_of(given, kFarthest, object, "gravity [m/s²]");
+}
+Vec3 wind_of(const Vector& given, const std::string& object) {
+  return vector_of(given, 1000, object, "wind [m/s]");
+}
+
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven) {
   const std::string name = "model";
   model::Model model;
@@ -236,8 +268,8 @@ model::Model physics_of(const Model& given, const std::vector<std::string>& driv
                 static_cast<int>(Method::bdf2) == static_cast<int>(integrator::Method::bdf2));
   model.time.integrator = static_cast<integrator::Method>(given.method);
   model.solver.newton_tolerance = given.newton_tolerance;
-  model.physics.gravity = vector_of(given.gravity, kFarthest, name, "gravity [m/s²]");
-  model.physics.wind = vector_of(given.wind, 1000, name, "wind [m/s]");
+  model.physics.gravity = gravity_of(given.gravity, name);
+  model.physics.wind = wind_of(given.wind, name);
   model.physics.air_density = given.air_density;
   if (model.physics.gravity != Vec3::Zero()) model.up = -model.physics.gravity.normalized();
   model.contact.self = given.self_contact;
@@ -249,7 +281,7 @@ model::Model physics_of(const Model& given, const std::vector<std::string>& driv
   };
   for (const Cloth& cloth : given.cloths) {
     check_name(cloth.name);
-    model.cloths.push_back(cloth_of(cloth));
+    model.cloths.push_back(cloth_of(cloth, given.self_contact));
   }
   for (const Body& body : given.bodies) {
     check_name(body.name);

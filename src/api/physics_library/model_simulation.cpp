@@ -7,7 +7,7 @@
 #include <weft/simulation.hpp>
 
 #include "api/physics_library/data.hpp"
-#include "api/physics_library/material_members.hpp"
+#include "api/physics_library/model_bytes.hpp"
 #include "api/physics_library/model_input.hpp"
 
 namespace weft {
@@ -65,72 +65,21 @@ Frame::Data frame_of(const simulation::Simulation& now, const std::shared_ptr<co
   return data;
 }
 
-// FNV-1a, 64 bits (Fowler, Noll & Vo), of all members of a model.
-class Hash {
- public:
-  std::uint64_t value() const { return hash_; }
-
-  void add(const Model& model) {
-    add_all(model.fps, model.step, model.method, model.newton_tolerance, model.gravity, model.wind, model.air_density,
-            model.self_contact);
-    add_list(model.cloths, [&](const Cloth& cloth) {
-      add_mesh(cloth.mesh);
-      add_text(cloth.name);
-      add_list(cloth.rest, [&](const RestPoint& point) { add_all(point); });
-      for (const library::MaterialMember& member : library::kMaterialMembers) add_all(cloth.material.*member.given);
-      add_all(cloth.velocity);
-    });
-    add_list(model.bodies, [&](const Body& body) {
-      add_mesh(body.mesh);
-      add_text(body.name);
-      add_all(body.pose.position, body.pose.rotation, body.mass, body.velocity, body.friction, body.collide);
-      add_list(body.keys, [&](const PoseKey& key) { add_all(key.time, key.pose.position, key.pose.rotation); });
-    });
-    add_list(model.pins, [&](const Pin& pin) {
-      add_text(pin.cloth);
-      add_text(pin.body);
-      add_all(pin.release);
-      add_list(pin.particles, [&](int i) { add_all(i); });
-    });
-  }
-
- private:
-  // Values without padding: numbers, and arrays of them.
-  template <class... Values>
-  void add_all(const Values&... values) {
-    (add_bytes(&values, sizeof values), ...);
-  }
-  void add_bytes(const void* bytes, std::size_t size) {
-    for (const char c : std::string_view(static_cast<const char*>(bytes), size))
-      hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  }
-  void add_text(const std::string& text) {
-    add_all(text.size());
-    add_bytes(text.data(), text.size());
-  }
-  template <class List, class Add>
-  void add_list(const List& list, const Add& add_one) {
-    add_all(list.size());
-    for (const auto& each : list) add_one(each);
-  }
-  void add_mesh(const Mesh& mesh) {
-    add_list(mesh.positions, [&](const Vector& x) { add_all(x); });
-    add_list(mesh.triangles, [&](const Triangle& t) { add_all(t); });
-  }
-
-  std::uint64_t hash_ = 0xcbf29ce484222325U;
-};
+// FNV-1a, 64 bits (Fowler, Noll & Vo).
+std::uint64_t hash_of(std::string_view bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
+  return hash;
+}
 
 }  // namespace
 
 Simulation::Simulation(const Model& model, const SimulationOptions& options)
     : impl_(library::with_public_errors([&] {
         model::Model physics = library::physics_of(model, options.driven);
-        Hash hash;
-        hash.add(model);
         const auto meshes = std::make_shared<const Meshes>(physics);
         return std::make_unique<Impl>(std::make_unique<simulation::Simulation>(std::move(physics)),
-                                      library::heading_of(hash.value(), options), options,
+                                      library::heading_of(hash_of(library::bytes_of(model)), options), options,
                                       [meshes](const simulation::Simulation& now) { return frame_of(now, meshes); });
       })) {}
 

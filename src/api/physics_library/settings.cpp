@@ -3,6 +3,7 @@
 
 #include "core/log.hpp"
 #include "core/parallel.hpp"
+#include "core/stop.hpp"
 #include "core/version.hpp"
 
 namespace weft {
@@ -17,6 +18,10 @@ void set_threads(int threads) {
 
 void set_warning_handler(std::function<void(std::string_view warning)> handle) {
   log::set_handler(std::move(handle));
+}
+
+void set_interrupt_check(std::function<void()> check) {
+  host_check = std::move(check);
 }
 
 }  // namespace weft

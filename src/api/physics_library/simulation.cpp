@@ -7,6 +7,7 @@
 
 #include "api/physics_library/data.hpp"
 #include "api/physics_library/model_input.hpp"
+#include "core/archive.hpp"
 #include "core/version.hpp"
 
 namespace weft {
@@ -26,11 +27,25 @@ Simulation::Impl::Impl(std::unique_ptr<simulation::Simulation> of, std::string h
   if (!options.state.starts_with(heading))
     throw std::invalid_argument("state: expected one that this version saved of the same, with the same driven bodies");
   try {
-    simulation->restore(std::string_view(options.state).substr(heading.size()));
+    restore(std::string_view(options.state).substr(heading.size()));
   } catch (const std::runtime_error& error) {
     throw std::invalid_argument(std::string("state: ") + error.what());
   }
   update_current_frame({});
+}
+
+void Simulation::Impl::set_weather(const Vector& gravity, const Vector& wind) {
+  simulation->set_weather(library::gravity_of(gravity, "set_weather"), library::wind_of(wind, "set_weather"));
+  weather = {gravity, wind};
+}
+
+void Simulation::Impl::restore(std::string_view bytes) {
+  ByteReader reader{bytes};
+  std::vector<Vector> saved;
+  serialize_plain(reader, saved);
+  require(saved.empty() || saved.size() == 2, "gravity and wind");
+  if (!saved.empty()) set_weather(saved[0], saved[1]);
+  simulation->restore(reader.bytes);
 }
 
 // Number of a rigid body. Throws std::invalid_argument with the names of all of them if there is none of this name.
@@ -80,10 +95,15 @@ void Simulation::move(std::string_view body, const Pose& pose) {
   impl_->simulation->drive(number, library::pose_of(pose, std::string(body)));
 }
 
+void Simulation::set_weather(const Vector& gravity, const Vector& wind) {
+  impl_->set_weather(gravity, wind);
+}
+
 std::string Simulation::save() const {
-  std::string bytes = impl_->heading;
-  impl_->simulation->save(bytes);
-  return bytes;
+  ByteWriter writer{impl_->heading};
+  serialize_plain(writer, impl_->weather);
+  impl_->simulation->save(writer.bytes);
+  return std::move(writer.bytes);
 }
 
 }  // namespace weft

@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -14,6 +15,8 @@
 #include <weft/model.hpp>
 #include <weft/scene.hpp>
 
+#include "api/physics_library/material_members.hpp"
+#include "api/physics_library/model_bytes.hpp"
 #include "api/python/bindings.hpp"
 
 namespace weft::python {
@@ -109,9 +112,32 @@ void set_vector(Model& model, const Vector& value) {
   model.*member = value;
 }
 
+Material make_material(const py::kwargs& values) {
+  Material material;
+  const py::object self = py::cast(&material, py::return_value_policy::reference);
+  for (const auto& [name, value] : values) self.attr(name) = value;
+  return material;
+}
+
+using MaterialValues = std::array<double, library::kMaterialMembers.size()>;
+
+MaterialValues values_of(const Material& material) {
+  MaterialValues values{};
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = material.*library::kMaterialMembers[k].given;
+  return values;
+}
+
+Material material_of(const MaterialValues& values) {
+  Material material;
+  for (std::size_t k = 0; k < values.size(); ++k) material.*library::kMaterialMembers[k].given = values[k];
+  return material;
+}
+
 void bind_material(py::module_& module) {
   py::class_<Material>(module, "Material", "A fabric in continuum units; the defaults are cotton. SI units.")
-      .def(py::init<>())
+      .def(py::init(&make_material),
+           "Values by their names, such as Material(density=0.2); the others are those of cotton.")
+      .def(py::pickle(&values_of, &material_of))
       .def_readwrite("density", &Material::density, "kg/m².")
       .def_readwrite("stretch_weft", &Material::stretch_weft, "N/m.")
       .def_readwrite("stretch_warp", &Material::stretch_warp, "N/m.")
@@ -141,6 +167,9 @@ void bind_model(py::module_& module) {
                     "What is simulated, made in memory. Positions are arrays n x 3 (m), triangles m x 3, "
                     "counter-clockwise seen from the front. Values are checked when a Simulation is made.")
       .def(py::init<>())
+      // Also for copy.deepcopy().
+      .def(py::pickle([](const Model& model) { return py::bytes(library::bytes_of(model)); },
+                      [](const py::bytes& bytes) { return library::model_of(bytes.cast<std::string>()); }))
       .def_readwrite("fps", &Model::fps, "Frames per second.")
       .def_readwrite("step", &Model::step, "Maximum time step, s.")
       .def_readwrite("method", &Model::method)

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -15,6 +17,7 @@
 #include <weft/settings.hpp>
 #include <weft/simulation.hpp>
 
+#include "api/library/scene_data.hpp"
 #include "api/python/bindings.hpp"
 
 namespace weft::python {
@@ -171,8 +174,16 @@ void bind_errors(py::module_& module) {
   });
 }
 
+// Text, changes and absolute path, with which worker processes make it again.
+using SceneState = std::tuple<std::string, std::vector<std::string>, std::filesystem::path>;
+
 void bind_scene(py::module_& module) {
   py::class_<Scene>(module, "Scene", "A checked scene; it never changes.")
+      .def(py::pickle(
+          [](const Scene& scene) {
+            return SceneState(scene.data().text, scene.data().changes, scene.data().scene.file);
+          },
+          [](const SceneState& state) { return std::apply(&Scene::parse, state); }))
       .def("with_changes", &change, py::arg("changes"),
            "This scene with further changes, such as {\"cloth.band.material.fabric\": \"silk\"}.")
       .def_property_readonly("name", &Scene::name, "Name of the file without its ending.")
@@ -249,43 +260,106 @@ void bind_frame(py::module_& module) {
           py::arg("name"), "Whether an object has this name.");
 }
 
+/// A simulation that threads of Python share. Each member is called with the lock of the interpreter; advance()
+/// releases it. Handlers of signals run within advance(), too.
+class GuardedSimulation {
+ public:
+  GuardedSimulation(const std::variant<Model, Scene>& of, const std::vector<std::string>& driven,
+                    const py::bytes& state)
+      : simulation_(make(of, {driven, state})), frame_(simulation_.frame()) {}
+
+  const Frame& frame() const { return frame_; }
+  Frame advance() {
+    const Use now(is_used_);
+    {
+      const py::gil_scoped_release without_lock;
+      simulation_.advance();
+    }
+    return frame_ = simulation_.frame();
+  }
+  void move(const std::string& obstacle, const Vector& position, const std::array<double, 4>& rotation) {
+    const Use now(is_used_);
+    simulation_.move(obstacle, {position, rotation});
+  }
+  void set_weather(const Vector& gravity, const Vector& wind) {
+    const Use now(is_used_);
+    simulation_.set_weather(gravity, wind);
+  }
+  py::bytes save() {
+    const Use now(is_used_);
+    return simulation_.save();
+  }
+
+ private:
+  static Simulation make(const std::variant<Model, Scene>& of, const SimulationOptions& options) {
+    const py::gil_scoped_release without_lock;
+    return std::visit([&](const auto& given) { return Simulation(given, options); }, of);
+  }
+
+  // Refuses a use of the simulation within another one.
+  class Use {
+   public:
+    explicit Use(bool& is_used) : is_used_(is_used) {
+      if (is_used_) throw std::runtime_error("expected a simulation that rests, got one that computes a frame");
+      is_used_ = true;
+    }
+    ~Use() { is_used_ = false; }
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    bool& is_used_;
+  };
+
+  Simulation simulation_;
+  Frame frame_;
+  bool is_used_ = false;
+};
+
+// Lets Ctrl-C end a frame. The interpreter runs the handlers of signals in the main thread alone.
+void check_signals() {
+  using Clock = std::chrono::steady_clock;
+  const auto main = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();
+  set_interrupt_check([main, next = Clock::time_point()]() mutable {
+    if (PyThread_get_thread_ident() != main || Clock::now() < next) return;
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    next = Clock::now() + std::chrono::milliseconds(50);
+  });
+}
+
 }  // namespace
 
 void bind_simulation(py::module_& module) {
   bind_errors(module);
   bind_scene(module);
   bind_frame(module);
-  const auto make = [](const std::variant<Model, Scene>& of, const std::vector<std::string>& driven,
-                       const py::bytes& state) {
-    SimulationOptions options{driven, state};
-    const py::gil_scoped_release without_lock;
-    return std::visit([&](const auto& given) { return Simulation(given, options); }, of);
-  };
-  const auto move = [](Simulation& self, const std::string& obstacle, const Vector& position,
-                       const std::array<double, 4>& rotation) {
-    self.move(obstacle, {position, rotation});
-  };
-  py::class_<Simulation>(module, "Simulation",
-                         "Simulates a Scene or a Model frame by frame. Use each object from one thread at a time.")
-      .def(py::init(make), py::arg("scene"), py::kw_only(), py::arg("driven") = std::vector<std::string>(),
+  py::class_<GuardedSimulation>(
+      module, "Simulation",
+      "Simulates a Scene or a Model frame by frame. One thread at a time uses it; while it computes a frame, other "
+      "threads can read the one before, and anything else raises RuntimeError.")
+      .def(py::init<const std::variant<Model, Scene>&, const std::vector<std::string>&, const py::bytes&>(),
+           py::arg("scene"), py::kw_only(), py::arg("driven") = std::vector<std::string>(),
            py::arg("state") = py::bytes(),
            "`scene`: a Scene or a Model. `driven`: names of the obstacles that move() will move. `state`: bytes "
-           "returned by save(), to continue "
-           "from there.")
-      .def_property_readonly("frame", &Simulation::frame, py::return_value_policy::copy, "The current frame.")
-      .def("advance", &Simulation::advance, py::return_value_policy::copy, ReleaseGil(),
-           "Compute the next frame. If it raises SimulationError, the current frame stays as it was. Ctrl-C acts when "
-           "the frame is complete.")
-      .def("move", move, py::arg("obstacle"), py::arg("position"),
+           "returned by save(), to continue from there.")
+      .def_property_readonly("frame", &GuardedSimulation::frame, py::return_value_policy::copy, "The current frame.")
+      .def("advance", &GuardedSimulation::advance,
+           "Compute the next frame. If it raises SimulationError, or KeyboardInterrupt in the main thread, the current "
+           "frame stays as it was.")
+      .def("move", &GuardedSimulation::move, py::arg("obstacle"), py::arg("position"),
            py::arg("rotation") = std::array<double, 4>{1, 0, 0, 0},
            "During the next frame, move a driven obstacle to this pose (m; unit quaternion w, x, y, z) at constant "
            "velocity. Pins that follow it move with it.")
       .def(
-          "save", [](const Simulation& self) { return py::bytes(self.save()); },
-          "The complete state, from which later frames follow.");
+          "set_weather", &GuardedSimulation::set_weather, py::arg("gravity"), py::arg("wind"),
+          "From the next frame on, gravity (m/s²) and the velocity of the air (m/s), in place of those of the scene or "
+          "model and their keys. Gusts and fans of a scene stay.")
+      .def("save", &GuardedSimulation::save, "The complete state, from which later frames follow.");
   module.def("set_threads", &set_threads, py::arg("threads"),
              "Set the maximum number of threads that compute; 0: all processors.");
   module.attr("__version__") = version();
+  check_signals();
   set_warning_handler([](std::string_view text) {
     const py::gil_scoped_acquire lock;
     if (PyErr_WarnEx(PyExc_UserWarning, std::string(text).c_str(), 1) < 0) throw py::error_already_set();

@@ -66,6 +66,7 @@ class Cache {
     return with_public_errors([&] { return reader_->frames(); });
   }
   double fps() const { return reader_->manifest().fps; }
+  const std::filesystem::path& folder() const { return reader_->folder(); }
   Scene scene() const {
     return Scene::parse(with_public_errors([&] { return reader_->scene_text(); }), {},
                         reader_->folder() / "scene.toml");
@@ -164,6 +165,10 @@ void bind_tools(py::module_& module) {
       .def_property_readonly("frames", &Cache::frames, "Numbers of the frames that the cache contains now.")
       .def_property_readonly("fps", &Cache::fps)
       .def_property_readonly("scene", &Cache::scene)
+      .def("__repr__",
+           [](const Cache& self) {
+             return fmt::format("weft.Cache({})", py::repr(py::cast(self.folder().string())).cast<std::string>());
+           })
       .def("__getitem__", &Cache::frame, py::arg("number"), ReleaseGil(),
            "The frame of this number. Raises KeyError if the cache does not contain it now.")
       .def("__contains__", &Cache::has, py::arg("number"), "Whether the cache contains the frame of this number now.")

@@ -65,7 +65,7 @@ std::vector<std::string> EnergyBound::check(const FrameReport& energies) {
   pin_work_high_ = std::max(pin_work_high_, pin_work_);
   solver_work_ += std::abs(energies.solver_work);
   highest_ = std::max(highest_, energies.kinetic_energy + energies.elastic_energy);
-  has_lagged_ = has_lagged_ || energies.lagging_particles > 0;
+  is_exempt_ = is_exempt_ || energies.lagging_particles > 0;
   std::vector<std::string> warnings;
   for (std::optional<std::string> warning : {check_gain(energies), check_solver(energies.frame)})
     if (warning) warnings.push_back(*std::move(warning));
@@ -77,7 +77,7 @@ double EnergyBound::energy_in_play() const {
 }
 
 std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) {
-  if (!applies_ || has_lagged_) return {};
+  if (!applies_ || is_exempt_) return {};
   const double in_play = energy_in_play();
   const double gain = mechanical_energy(energies) - start_energy_ - pin_work_;
   const auto is_above = [&](double ratio) { return gain > ratio * in_play + negligible_energy_; };

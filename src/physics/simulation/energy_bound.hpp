@@ -25,10 +25,13 @@ class EnergyBound {
   /// Checks a frame. Returns warnings, each once in a run; throws Error(simulation_failed) if far too much is gained.
   std::vector<std::string> check(const FrameReport& energies);
 
+  /// Ends the checks of gains, because something else drives the model from now on.
+  void exempt_gains() { is_exempt_ = true; }
+
   template <class Archive>
   void serialize(Archive& archive) {
     serialize_values(archive, potential_low_, potential_high_, pin_work_, pin_work_low_, pin_work_high_, solver_work_,
-                     highest_, has_lagged_, warned_, warned_of_solver_);
+                     highest_, is_exempt_, warned_, warned_of_solver_);
   }
 
  private:
@@ -37,9 +40,9 @@ class EnergyBound {
   std::optional<std::string> check_solver(int frame);
 
   bool applies_, damped_contact_;  // whether pins alone drive the model; whether a gain only warns
-  // Whether pinned particles have lagged. Gains are then not checked, as the work of the force that pulls these
-  // particles is not counted.
-  bool has_lagged_ = false;
+  // Whether gains are not checked any more: of exempt_gains(), or because pinned particles have lagged, as the work of
+  // the force that pulls these particles is not counted.
+  bool is_exempt_ = false;
   bool warned_ = false, warned_of_solver_ = false;
   integrator::Method integrator_;
   double negligible_energy_;               // smaller differences are no error [J]

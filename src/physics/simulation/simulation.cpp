@@ -172,7 +172,7 @@ FrameReport Simulation::Impl::advance() {
       measure_energies(report);
       report_obstructions(report);
       std::ranges::move(energy_bound->check(report), std::back_inserter(report.warnings));
-    } catch (const Error&) {
+    } catch (...) {
       steps->return_to(std::move(start));
       throw;
     }
@@ -361,6 +361,13 @@ void Simulation::allow_drive(std::size_t body) {
 
 void Simulation::drive(std::size_t body, const motion::Pose& end) {
   impl_->drive(body, end);
+}
+
+void Simulation::set_weather(const Vec3& gravity, const Vec3& wind) {
+  impl_->model.physics.keys = {{0, gravity, wind}};
+  if (impl_->dressed_part) impl_->dressed_part->physics.keys = impl_->model.physics.keys;
+  impl_->steps->reload_weather();
+  impl_->energy_bound->exempt_gains();
 }
 
 bool Simulation::run_preroll(const std::function<bool()>& proceed) {

@@ -102,6 +102,10 @@ class Simulation {
   /// there.
   void drive(std::size_t body, const motion::Pose& end);
 
+  /// Sets gravity [m/s²] and wind [m/s] from the next frame on, in place of those of the model and their keys. Gusts
+  /// and fans stay. A saved state does not have them: set them before restore(), too.
+  void set_weather(const Vec3& gravity, const Vec3& wind);
+
   /// Appends everything that later frames depend on. Only the same version of the program on a machine of the same kind
   /// can read it. Not allowed after a failed advance().
   void save(std::string& bytes) const;

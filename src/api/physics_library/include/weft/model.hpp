@@ -10,8 +10,8 @@
 namespace weft {
 
 struct Mesh {
-  std::vector<Vector> positions;    ///< per vertex [m]
-  std::vector<Triangle> triangles;  ///< counter-clockwise seen from the front; each edge of a cloth has one or two
+  std::vector<Vector> positions{};    ///< per vertex [m]
+  std::vector<Triangle> triangles{};  ///< counter-clockwise seen from the front; each edge of a cloth has one or two
 };
 
 /// A fabric in continuum units; the defaults are cotton.
@@ -34,12 +34,12 @@ struct Material {
 
 /// A sheet of triangles. Its particles are the vertices.
 struct Cloth {
-  std::string name;
-  Mesh mesh;  ///< shape at the start
+  std::string name{};
+  Mesh mesh{};  ///< shape at the start
   /// Per particle: its place in the flat fabric, along weft and warp [m]. If empty, the mesh is the rest shape, and the
   /// weft of each triangle runs along the projection of the x axis onto it.
-  std::vector<RestPoint> rest;
-  Material material;
+  std::vector<RestPoint> rest{};
+  Material material{};
   Vector velocity{0, 0, 0};  ///< of all particles at the start [m/s]
 };
 
@@ -51,26 +51,26 @@ struct Pose {
 
 struct PoseKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;
+  Pose pose{};
 };
 
 /// A rigid body that cloth may touch.
 struct Body {
-  std::string name;
-  Mesh mesh;                  ///< in its own coordinates; closed if forces move it
-  Pose pose;                  ///< where it stays, or starts if forces move it
-  std::vector<PoseKey> keys;  ///< poses through which it moves smoothly, in place of `pose`; empty: none
-  double mass = 0;            ///< [kg]; above 0, forces move it
-  Vector velocity{0, 0, 0};   ///< at the start, if forces move it [m/s]
+  std::string name{};
+  Mesh mesh{};                  ///< in its own coordinates; closed if forces move it
+  Pose pose{};                  ///< where it stays, or starts if forces move it
+  std::vector<PoseKey> keys{};  ///< poses through which it moves smoothly, in place of `pose`; empty: none
+  double mass = 0;              ///< [kg]; above 0, forces move it
+  Vector velocity{0, 0, 0};     ///< at the start, if forces move it [m/s]
   double friction = 0.3;
   bool collide = true;  ///< false: no contact; pins can still follow the body
 };
 
 /// Holds particles of a cloth where they start, or at a body. A particle can be in one pin only.
 struct Pin {
-  std::string cloth;
-  std::vector<int> particles;
-  std::string body;                                          ///< body without mass that they follow; empty: they stay
+  std::string cloth{};
+  std::vector<int> particles{};
+  std::string body{};                                        ///< body without mass that they follow; empty: they stay
   double release = std::numeric_limits<double>::infinity();  ///< time from which they are free [s]
 };
 
@@ -86,9 +86,9 @@ struct Model {
   Vector wind{0, 0, 0};           ///< velocity of the air [m/s]
   double air_density = 1.2;       ///< [kg/m³]; 0: no air
   bool self_contact = true;       ///< of cloth with itself and other cloths
-  std::vector<Cloth> cloths;
-  std::vector<Body> bodies;
-  std::vector<Pin> pins;
+  std::vector<Cloth> cloths{};
+  std::vector<Body> bodies{};
+  std::vector<Pin> pins{};
 };
 
 }  // namespace weft

@@ -16,8 +16,8 @@ class Scene;
 
 struct SimulationOptions {
   /// Names of the bodies that Simulation::move() moves: without a mass, or, in scenes, until their `release`.
-  std::vector<std::string> driven;
-  std::string state;  ///< result of save(), from which to continue; empty: begin at frame 0
+  std::vector<std::string> driven{};
+  std::string state{};  ///< result of save(), from which to continue; empty: begin at frame 0
 };
 
 /// A simulation at one frame. One thread at a time may use it; different simulations may run in different threads.
@@ -45,6 +45,10 @@ class WEFT_API Simulation {
   /// move along, so a body that does not collide can serve as a handle for cloth. Throws std::invalid_argument if the
   /// body is not driven, or the pose is not finite or has no unit quaternion.
   void move(std::string_view body, const Pose& pose);
+
+  /// Sets gravity [m/s²] and the velocity of the air [m/s] from the next frame on, in place of those of the model or
+  /// scene and their keys. Gusts and fans of a scene stay. Throws std::invalid_argument if a number is out of range.
+  void set_weather(const Vector& gravity, const Vector& wind);
 
   /// Returns everything on which later frames depend. It can be restored with the same model or scene, options, library
   /// version and kind of machine. Not allowed after a failed advance().
