@@ -242,13 +242,13 @@ TEST_F(Scenes, WithPartsThatCannotBeUsedAreRefusedByTheirNames) {
   EXPECT_EQ(refusal(), "mesh \"leg\", bone \"knee\": expected one of 4 vertices, got number 9");
   leg_->mBones[1]->mWeights[0] = {1, 0.5F};
   leg_->mVertices[2].y = kNan;
-  EXPECT_EQ(refusal(), "mesh \"leg\": expected finite coordinates, got others at vertex 2");
+  EXPECT_EQ(refusal(), "mesh \"leg\": vertex 2 has infinite or undefined numbers; export the file again");
   leg_->mVertices[2].y = 1;
   box_->mFaces[0].mIndices[1] = 3;
   EXPECT_EQ(refusal(), "mesh \"box\": expected one of 3 vertices in each face, got number 3");
   box_->mFaces[0].mIndices[1] = 1;
   hip_->mTransformation.b2 = kNan;
-  EXPECT_EQ(refusal(), "node \"hip\": expected finite numbers, got others");
+  EXPECT_EQ(refusal(), "node \"hip\": its transform has infinite or undefined numbers; export the file again");
   hip_->mTransformation.b2 = 1;
   root_->mMeshes[1] = 2;
   EXPECT_EQ(refusal(), "node \"root\": expected one of 2 meshes, got number 2");
@@ -263,7 +263,8 @@ TEST_F(Scenes, WithChannelsThatCannotBeUsedAreRefusedByTheirNames) {
   EXPECT_EQ(refusal(),
             "clip \"walk\", channel \"knee\": expected key times within a day, got nan ticks of 10 a second");
   channel_->mPositionKeys[1] = {20, {1, kNan, 0}};
-  EXPECT_EQ(refusal(), "clip \"walk\", channel \"knee\": expected finite numbers, got others in the key at 2 s");
+  EXPECT_EQ(refusal(),
+            "clip \"walk\", channel \"knee\": the key at 2 s has infinite or undefined numbers; export the file again");
 }
 
 TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {

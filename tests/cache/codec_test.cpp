@@ -236,7 +236,8 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
   refuse("not finite", [](frame::Surface& s, Positions&) { s.appearance.roughness = INFINITY; });
   refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = "../../etc/passwd"; });
   refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = ""; });
-  refuse("is no known value", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
+  refuse("a choice has the number 4, where 3 is the largest",
+         [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
 }
 
 // Content changed with a valid checksum, as only a faulty writer could do: it is refused or read, never a crash

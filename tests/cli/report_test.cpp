@@ -168,16 +168,37 @@ TEST(Warnings, ComeOnlyWithFiguresThatLookWrong) {
   EXPECT_TRUE(find_warnings(frames).empty());  // one rejected step for four accepted ones is no reason to warn
   frames[1].report.rejected_steps = 2;
   ASSERT_EQ(find_warnings(frames).size(), 1u);
-  EXPECT_EQ(find_warnings(frames)[0], "2 of 6 steps were rejected: a smaller time.step would be faster");
+  EXPECT_EQ(find_warnings(frames)[0],
+            "2 of 6 steps failed and were repeated as shorter ones: a smaller time.step would be faster");
   frames[1].report.inexact_steps = 1;
   ASSERT_EQ(find_warnings(frames).size(), 2u);
-  EXPECT_EQ(find_warnings(frames)[1].substr(0, 70),
-            "1 of 4 steps were taken with an error above time.tolerance: an impact ");
+  EXPECT_TRUE(
+      find_warnings(frames)[1].starts_with("1 of 4 steps, most in frame 1, have an error above time.tolerance"));
   frames[1].report.inexact_steps = 0;
   frames[1].report.max_strain = 0.4;
   frames[1].report.min_distance = 0;
   EXPECT_EQ(find_warnings(frames).size(), 3u);
   EXPECT_TRUE(find_warnings({}).empty());
+}
+
+TEST(Warnings, NameTheFrameToLookAt) {
+  auto frames = two_frames();
+  simulation::FrameReport& report = frames[1].report;
+  report.max_strain = 0.4;
+  report.stretch_ratio = 1.8;
+  report.pinched_pairs = report.lagging_particles = 3;
+  report.min_distance = 0;
+  frames.push_back(frames[1]);
+  frames[2].report.frame = 2;
+  frames[2].report.stretch_ratio = 2.1;
+  const std::vector<std::string> warnings = find_warnings(frames);
+  ASSERT_EQ(warnings.size(), 5u);
+  EXPECT_NE(warnings[0].find("by up to 40 %, in frame 1:"), std::string::npos) << warnings[0];
+  EXPECT_NE(warnings[1].find("in 2 of 3 frames, first in frame 1, most in frame 2, to 2.1 times that limit"),
+            std::string::npos)
+      << warnings[1];
+  for (std::size_t k = 2; k < 5; ++k)
+    EXPECT_NE(warnings[k].find("in 2 of 3 frames, first in frame 1"), std::string::npos) << warnings[k];
 }
 
 }  // namespace

@@ -114,8 +114,8 @@ std::string exit_codes(const fs::path& root) {
 
 std::string fabrics() {
   std::string table =
-      "| fabric | | density kg/m² | stretch weft, warp N/m | max_stretch | shear μ N/m | bending B N·m | bending "
-      "friction N | contact thickness m | friction |\n|---|---|---|---|---|---|---|---|---|---|\n";
+      "| fabric | | `density` kg/m² | `stretch` weft, warp N/m | `max_stretch` | `shear` N/m | `bend` N·m | "
+      "`bend_friction` N | `thickness` m | `friction` |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const scene::Fabric& fabric : scene::fabrics()) {
     const scene::Material& m = fabric.material;
     table += fmt::format("| {} | {} | {} | {}, {} | {} | {} | {:.2g} | {:.2g} | {} | {} |\n", m.fabric, fabric.what,

@@ -65,12 +65,12 @@ TEST_P(ObstructedPin, LagsBehindAndReturns) {
       lagging += frame.report.lagging_particles > 0;
       // Other warnings concern threads that are stretched meanwhile.
       for (const std::string& warning : frame.report.warnings)
-        if (warning.find("pin 0 of") != std::string::npos) said.push_back(warning);
+        if (warning.find("cloth.sheet.pin.0") != std::string::npos) said.push_back(warning);
     }
     EXPECT_GT(lagging, 4) << response;
     ASSERT_GE(said.size(), 2u) << response;
-    EXPECT_NE(said.front().find("pin 0 of 'sheet' gives way to '"), std::string::npos) << said.front();
-    EXPECT_NE(said.back().find("pin 0 of 'sheet' is held again"), std::string::npos) << said.back();
+    EXPECT_NE(said.front().find("cloth.sheet.pin.0: yields to '"), std::string::npos) << said.front();
+    EXPECT_NE(said.back().find("cloth.sheet.pin.0: is at its target again"), std::string::npos) << said.back();
     // The upper edge is the last row; it ends exactly where it started.
     const auto &first = frames.front().cloths[0], &last = frames.back().cloths[0];
     for (std::size_t i = first.size() - 13; i < first.size(); ++i) EXPECT_LT((last[i] - first[i]).norm(), 1e-12);

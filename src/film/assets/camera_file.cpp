@@ -117,7 +117,7 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   const Vec3 position(world.a4, world.b4, world.c4);
   const Vec3 forward = to_vec(turn * from.mLookAt).normalized(), up = to_vec(turn * from.mUp).normalized();
   if (!position.allFinite() || !forward.allFinite() || !up.allFinite())
-    throw std::runtime_error(fmt::format("expected finite numbers, got others at {:g} s", time));
+    throw std::runtime_error(fmt::format("its motion at {:g} s {}", time, kNotFinite));
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);

@@ -140,7 +140,7 @@ class CharacterReader {
       character_.nodes.push_back({name, parent, to_affine(node->mTransformation)});
       const Affine& local = character_.nodes.back().local;
       if (!local.matrix().allFinite())
-        throw std::runtime_error(fmt::format("node \"{}\": expected finite numbers, got others", name));
+        throw std::runtime_error(fmt::format("node \"{}\": its transform {}", name, kNotFinite));
       globals_.push_back(parent < 0 ? local : globals_[parent] * local);
     }
   }
@@ -162,8 +162,7 @@ class CharacterReader {
       const aiVector3D& x = mesh.mVertices[v];
       soup_.positions.push_back(placing * Vec3(x.x, x.y, x.z));
       if (!soup_.positions.back().allFinite())
-        throw std::runtime_error(
-            fmt::format("mesh \"{}\": expected finite coordinates, got others at vertex {}", name, v));
+        throw std::runtime_error(fmt::format("mesh \"{}\": vertex {} {}", name, v, kNotFinite));
       materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
       uv_.push_back(uv_of(mesh, v));
     }
@@ -191,8 +190,8 @@ class CharacterReader {
                                              mesh.mName.C_Str(), bone->mName.C_Str()));
       const Affine offset = to_affine(bone->mOffsetMatrix);
       if (!offset.matrix().allFinite())
-        throw std::runtime_error(fmt::format("mesh \"{}\", bone \"{}\": expected finite numbers, got others",
-                                             mesh.mName.C_Str(), bone->mName.C_Str()));
+        throw std::runtime_error(fmt::format("mesh \"{}\", bone \"{}\": its transform {}", mesh.mName.C_Str(),
+                                             bone->mName.C_Str(), kNotFinite));
       const auto index = static_cast<Index>(character_.bones.size() + bones.size());
       bones.emplace_back(found->second, offset);
       for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
@@ -246,10 +245,10 @@ class CharacterReader {
     double most = 0;
     for (const character::Influence& influence : weights[worst])
       if (influence.weight > most) most = influence.weight, holder = character_.bones[influence.bone].node;
-    read_.warnings.push_back(
-        fmt::format("mesh \"{}\": the rest pose of the nodes holds its skin up to {:.3g} m from where it was bound, at "
-                    "node \"{}\"; if the body looks wrong, export it in its bind pose, or as glTF",
-                    mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
+    read_.warnings.push_back(fmt::format(
+        "mesh \"{}\": in the rest pose of the skeleton, its skin is up to {:.3g} m away from where it was "
+        "bound to the bones, at node \"{}\"; if the body looks wrong, export it in its bind pose, or as glTF",
+        mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
   }
 
   /// Normalises weights to a sum of 1. Vertices without weights are bound to the node of the mesh.
@@ -319,9 +318,7 @@ class CharacterReader {
         morph.displacements.push_back(placing.linear() * Vec3(by.x, by.y, by.z));
         if (!morph.displacements.back().allFinite())
           throw std::runtime_error(
-              fmt::format("mesh \"{}\", morph target \"{}\": expected finite coordinates, got "
-                          "others at vertex {}",
-                          name, morph.name, v));
+              fmt::format("mesh \"{}\", morph target \"{}\": vertex {} {}", name, morph.name, v, kNotFinite));
       }
       morphs_.push_back(std::move(morph));
     }

@@ -8,6 +8,8 @@
 #include <span>
 #include <stdexcept>
 
+#include "film/assets/import.hpp"
+
 namespace weft::assets {
 namespace {
 
@@ -81,7 +83,7 @@ struct ClipReader {
     for (const Key& key : keys) {
       const Value value = to_value(key.mValue);
       const double t = to_seconds(key.mTime, channel);
-      if (!is_usable(value)) fail(channel, fmt::format("expected finite numbers, got others in the key at {:g} s", t));
+      if (!is_usable(value)) fail(channel, fmt::format("the key at {:g} s {}", t, kNotFinite));
       append(curve, t, tidy(value), channel);
     }
     return curve;
@@ -104,7 +106,7 @@ struct ClipReader {
         const unsigned target = key.mValues[k];
         if (target >= channels.size())
           fail(channel, fmt::format("expected one of {} morph targets, got number {}", channels.size(), target));
-        if (!std::isfinite(key.mWeights[k])) fail(channel, "expected finite weights of morph targets, got others");
+        if (!std::isfinite(key.mWeights[k])) fail(channel, fmt::format("a weight of a morph target {}", kNotFinite));
         append(channels[target].weight, t, key.mWeights[k], channel);
       }
     }

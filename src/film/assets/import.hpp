@@ -13,6 +13,9 @@ class Importer;
 
 namespace weft::assets {
 
+/// End of the message about a part of a file that has such numbers.
+inline constexpr const char* kNotFinite = "has infinite or undefined numbers; export the file again";
+
 /// Imports a file with the post-processing flags `steps` of assimp; `importer` owns the result. Throws
 /// std::runtime_error with assimp's message. Damaged files can crash assimp or block it for ever: call it through
 /// run_isolated.

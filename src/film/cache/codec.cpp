@@ -24,7 +24,10 @@ template <class Archive, class Value>
 void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
   archive.value(byte);
-  if (byte > static_cast<std::uint8_t>(last)) throw std::runtime_error(fmt::format("{} is no known value", byte));
+  if (byte > static_cast<std::uint8_t>(last))
+    throw std::runtime_error(
+        fmt::format("a choice has the number {}, where {} is the largest; simulate the scene again", byte,
+                    static_cast<std::uint8_t>(last)));
   value = static_cast<Value>(byte);
 }
 

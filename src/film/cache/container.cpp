@@ -62,7 +62,8 @@ Header check(std::string_view bytes) {
   Header header;
   serialize(reader, header);
   if (header.version != kFormatVersion)
-    throw std::runtime_error(fmt::format("expected version {} of the format, got {}", kFormatVersion, header.version));
+    throw std::runtime_error(
+        fmt::format("made by another version of Weft (format {}; this one reads {})", header.version, kFormatVersion));
   if (header.stored_size > reader.bytes.size()) throw std::runtime_error("it was cut short");
   if (header.stored_size < reader.bytes.size()) throw std::runtime_error("there is something behind its end");
   if (header.checksum != checksum_of(bytes, reader.bytes)) throw std::runtime_error("its checksum is wrong");

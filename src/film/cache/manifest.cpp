@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/error.hpp"
 #include "core/json.hpp"
 #include "core/names.hpp"
 #include "film/cache/container.hpp"
@@ -55,11 +56,13 @@ frame::ObjectInfo parse_object(const Json& json) {
   throw std::runtime_error(fmt::format("kind: expected {}, got {}", fmt::join(kKinds, " or "), kind));
 }
 
-Manifest parse(const Json& json) {
+Manifest parse(const Json& json, const std::string& file) {
   require(value_or(json, "format", std::string()) == kFormat, "it is no manifest of a frame cache");
   const int version = parse_count(json, "format_version", 1, 1'000'000);
   if (version != static_cast<int>(kFormatVersion))
-    throw std::runtime_error(fmt::format("expected version {} of the format, got {}", kFormatVersion, version));
+    throw Error(ExitCode::asset_unreadable,
+                "{}: made by another version of Weft (format {}; this one reads {}); simulate the scene again", file,
+                version, kFormatVersion);
   Manifest manifest;
   manifest.scene = json.at("scene").get<std::string>();
   require(is_plain_name(manifest.scene), "scene: expected a name");
@@ -119,9 +122,9 @@ std::string manifest_text(const Manifest& manifest) {
   return json_text(json, 2) + "\n";
 }
 
-Manifest parse_manifest(std::string_view text) {
+Manifest parse_manifest(std::string_view text, const std::string& file) {
   try {
-    return parse(parse_json(text));
+    return parse(parse_json(text), file);
   } catch (const Json::exception& error) {
     throw std::runtime_error(error.what());
   }

@@ -30,7 +30,7 @@ struct Manifest {
 
 std::string manifest_text(const Manifest& manifest);
 
-/// Throws std::runtime_error with the defect.
-Manifest parse_manifest(std::string_view text);
+/// Throws std::runtime_error with the defect. Names `file` if another version of Weft has made it.
+Manifest parse_manifest(std::string_view text, const std::string& file = "manifest.json");
 
 }  // namespace weft::cache

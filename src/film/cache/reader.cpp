@@ -33,7 +33,7 @@ Reader::Reader(fs::path folder, Looks looks) : folder_(std::move(folder)), looks
     throw Error(ExitCode::asset_unreadable, "{}: expected a frame cache, a folder with a {}; weft simulate makes one",
                 folder_.string(), kManifestFile);
   const fs::path manifest = folder_ / kManifestFile, surfaces = folder_ / kSurfacesFile;
-  manifest_ = read_checked(manifest, [&] { return parse_manifest(read_file(manifest)); });
+  manifest_ = read_checked(manifest, [&] { return parse_manifest(read_file(manifest), manifest.string()); });
   std::error_code ignored;
   if (!fs::exists(surfaces, ignored)) return;
   surfaces_ = read_checked(surfaces, [&] { return decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0)); });

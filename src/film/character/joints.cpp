@@ -248,10 +248,16 @@ const std::vector<std::string>& joint_names() {
   return kNames;
 }
 
+std::string normalise_word(const std::string& name) {
+  std::string word;
+  for (const char c : name)
+    if (c != '_') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
 Index joint_number(const std::string& name) {
-  const auto& names = joint_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  return found == names.end() ? -1 : static_cast<Index>(found - names.begin());
+  const auto found = std::ranges::find(joint_names(), normalise_word(name), normalise_word);
+  return found == joint_names().end() ? -1 : static_cast<Index>(found - joint_names().begin());
 }
 
 std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vector<bool>& is_active) {

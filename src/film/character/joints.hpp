@@ -55,7 +55,10 @@ Joint parent(Joint joint);
 /// Hand, UpperLeg, LowerLeg, Foot, Toes.
 const std::vector<std::string>& joint_names();
 
-/// Index of a name in joint_names(); -1 for other names.
+/// The name in lower case, without underscores: "LeftUpperArm" and "left_upper_arm" are the same.
+std::string normalise_word(const std::string& name);
+
+/// Index of a name in joint_names(), compared by normalise_word(); -1 for other names.
 Index joint_number(const std::string& name);
 
 /// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if

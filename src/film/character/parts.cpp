@@ -1,7 +1,6 @@
 #include "film/character/parts.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
 #include <limits>
 
@@ -24,13 +23,6 @@ const std::vector<PartGroup> kGroups = {
     {"head", {"Neck", "Head"}, {}},
     {"torso", {"Hips", "Spine", "Chest"}, {"Shoulder"}},
 };
-
-std::string normalise_word(const std::string& name) {
-  std::string word;
-  for (const char c : name)
-    if (c != '_') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return word;
-}
 
 /// The vertices with at least half of their weight on bones whose nodes pass the test.
 VertexMask vertices_weighted_by(const Character& character, const std::function<bool(Index node)>& test) {
@@ -69,8 +61,7 @@ std::vector<Index> joints_of_part(const std::string& name) {
       for (const std::string& joint : group.sides) joints.push_back(joint_number(side + joint));
     return joints;  // returns before the joint of the same name ("head")
   }
-  for (std::size_t j = 0; j < joint_names().size(); ++j)
-    if (normalise_word(joint_names()[j]) == word) joints.push_back(static_cast<Index>(j));
+  if (const Index joint = joint_number(name); joint >= 0) joints.push_back(joint);
   return joints;
 }
 

@@ -340,7 +340,7 @@ StandingBody make_standing(const Cast& cast, const Source& source, const std::st
 
 StandingBody make_standing(const Cast& cast, const scene::MeshSequence& /*source*/, const std::string& where) {
   throw Error(ExitCode::scene_invalid,
-              "{}: expected a wearer with bones for a pattern with panels around its parts, got '{}', a sequence of "
+              "{}: expected a wearer with bones, around which the panels of the pattern start; got '{}', a sequence of "
               "meshes",
               where, cast.settings.name);
 }

@@ -41,7 +41,8 @@ std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNam
     const Index number = character::joint_number(joint.name);
     const std::string key = fmt::format("joint.{}", joint.name);
     if (number < 0)
-      cast.fail(key + ".name", fmt::format("expected a joint of the body, got \"{}\"{}", joint.name,
+      cast.fail(key + ".name", fmt::format("expected a joint of the body ({}), got \"{}\"{}",
+                                           fmt::join(character::joint_names(), ", "), joint.name,
                                            did_you_mean(joint.name, character::joint_names())));
     if (joint.*name) joints[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
   }

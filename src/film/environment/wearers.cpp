@@ -89,9 +89,10 @@ garment::Wearer make_wearer(const StandingBody& standing, const Vec3& up, const 
 const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string& where) {
   const auto& characters = scene_.characters;
   if (characters.empty())
-    throw Error(ExitCode::scene_invalid,
-                "{}: expected a [[character]] to put the garment on, whose panels are around its parts, got none",
-                where);
+    throw Error(
+        ExitCode::scene_invalid,
+        "{}: expected a [[character]] that wears the garment, as its panels start around parts of a body; got none",
+        where);
   if (cloth.wearer.empty() && characters.size() > 1)
     throw Error(ExitCode::scene_invalid, "{}: expected the wearer, one of {} characters such as {}, got none", where,
                 characters.size(), characters[0].name);

@@ -34,7 +34,8 @@ class Sewing {
       : pattern_(pattern), spacing_(spacing), where_(where), wearer_(wearer) {}
 
   Garment sew() {
-    if (pattern_.wraps() && wearer_ == nullptr) refuse("expected a wearer for panels around its parts, got none");
+    if (pattern_.wraps() && wearer_ == nullptr)
+      refuse("expected a wearer, as panels start around parts of a body; got none");
     count_segments();
     mesh_panels();
     join_seams();

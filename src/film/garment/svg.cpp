@@ -279,7 +279,7 @@ class Sheet {
     for (Curve& curve : outline)
       for (Vec2& p : curve.control) {
         p = transform * p;
-        if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got others");
+        if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got infinite or undefined ones");
       }
     return outline;
   }
@@ -319,7 +319,7 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   if (!x || !y || x->empty() || y->empty())
     drawing.refuse(node, "expected x and y where a label stands, got something else");
   const Vec2 place = sheet.to_metres(at) * Vec2(x->front(), y->front());
-  if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got others");
+  if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got infinite or undefined ones");
   if (first == "origin") {
     group.origin = place;
     return;

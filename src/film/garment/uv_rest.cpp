@@ -199,8 +199,7 @@ std::string UvRest::describe() const {
                                                     : fmt::format("1 unit = {:.4g} by {:.4g} m", scale.x(), scale.y());
   return fmt::format(
       "{} island{}, {}{}, {:.0f} % of all edges as long as in the mesh within 5 %; its triangles are off by {:.1f} % "
-      "in the "
-      "middle, 95 % of them by at most {:.1f} %",
+      "(median), 95 % of them by at most {:.1f} %",
       islands, islands == 1 ? "" : "s", length, unit.empty() ? "" : " (" + unit + ")", 100 * alike,
       100 * median_stretch, 100 * stretch_quantile_95);
 }

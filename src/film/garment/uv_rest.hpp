@@ -36,7 +36,7 @@ struct UvRest {
   /// surfaces.
   bool has_panel_lengths() const;
   /// Text for messages, such as "3 islands, 1 unit = 1 m (metres), 98 % of all edges as long as in the mesh within 5 %;
-  /// its triangles are off by 1.2 % in the middle, 95 % of them by at most 4.3 %".
+  /// its triangles are off by 1.2 % (median), 95 % of them by at most 4.3 %".
   std::string describe() const;
 };
 

@@ -176,8 +176,8 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
             pin.follow);
       else if (!has_keys(pin))
         reason = "; it takes over particles that an earlier pin has moved and releases";
-      found.push_back(fmt::format("{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}",
-                                  moving.name(scene, number), speed, t, reason));
+      found.push_back(fmt::format("{}: moves at {:.3g} m/s at {:.4g} s, where cloth can follow at {:g} m/s{}",
+                                  moving.name(scene, number), speed, t, kMaxHoldSpeed, reason));
     }
     last = t;
   }

@@ -220,7 +220,7 @@ const ErrorPart& ErrorEstimate::largest() const {
 
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options) {
   if (scene.cloths.empty())
-    throw Error(ExitCode::usage, "expected a scene with cloth or ropes, whose motion is compared, got none");
+    throw Error(ExitCode::usage, "the scene has no cloth or rope, whose error could be estimated");
   return Companions(scene, std::move(run), options).estimate();
 }
 

@@ -111,7 +111,10 @@ Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
     cpu_s += process_cpu_seconds() - start;
     steps += report.steps + report.rejected_steps;
     if (steps > limits.steps)
-      throw Error(ExitCode::simulation_failed, "frame {}: stopped after more than {} steps", k, limits.steps);
+      throw Error(ExitCode::simulation_failed,
+                  "frame {}: stopped, as this setting takes more than {} steps, which are too short to compare; use a "
+                  "larger time.tolerance or newton_tolerance",
+                  k, limits.steps);
     recorder.see(simulation.snapshot(), report, simulation.state().velocities);
   }
   Trajectory trajectory = recorder.finish(simulation.state().masses);

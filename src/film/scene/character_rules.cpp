@@ -12,7 +12,7 @@ const Table& joint_rules() {
       TableBuilder<JointNames>("Names a joint in the files of body and motion, if Weft does not find it there.")
           .plain(Type::name, "name", &JointNames::name,
                  "joint: Hips, Spine, Chest, Neck, Head, or Left or Right followed by Shoulder, UpperArm, LowerArm, "
-                 "Hand, UpperLeg, LowerLeg, Foot or Toes")
+                 "Hand, UpperLeg, LowerLeg, Foot or Toes; LeftHand and left_hand are the same")
           .need(Need::required)
           .plain(Type::text, "body", &JointNames::body, "its name in the character's file")
           .by_default("found by common names, else by the tree and the lengths of bones")

@@ -29,10 +29,12 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
     const Vec3 way = *rope.to - *rope.from;
     const double span = (way - up.dot(way) * up).norm(), least = kMinRopeSpan * rope.diameter;
     if (hangs_slack(rope) && span < least) {
-      findings.report(path + ".to",
-                      fmt::format("expected ends at least {:.4g} m apart across the up axis, {:g} diameters, as it is "
-                                  "longer than their distance; got {:.4g} m; move the ends apart, or give points",
-                                  least, kMinRopeSpan, span));
+      findings.report(
+          path + ".to",
+          fmt::format("expected a place at least {:.4g} m ({:g} diameters) beside `from`, measured horizontally, as "
+                      "the rope is longer than the distance of its ends and hangs between them; got {:.4g} m; "
+                      "move one end aside, or give points",
+                      least, kMinRopeSpan, span));
       return false;
     }
     return true;

@@ -426,7 +426,7 @@ std::string CollisionStage::describe(const collision::ObstructedPin& given, cons
 
 std::string CollisionStage::describe(const collision::Pinch& pinch) const {
   const std::string& obstacle = names_[pinch.obstacle];
-  const std::string between = !pinch.other ? fmt::format("before '{}'", obstacle)
+  const std::string between = !pinch.other ? fmt::format("in front of '{}'", obstacle)
                               : *pinch.other == pinch.obstacle
                                   ? fmt::format("between parts of '{}'", obstacle)
                                   : fmt::format("between '{}' and '{}'", obstacle, names_[*pinch.other]);

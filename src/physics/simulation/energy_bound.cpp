@@ -84,10 +84,10 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
   const bool refused = is_above(numerics.energy.failing_gain) && !damped_contact_;
   if (!refused && (warned_ || !is_above(numerics.energy.doubtful_gain))) return {};
   const std::string text = fmt::format(
-      "frame {}: the cloth has {:.3g} J more than at the start{}, with {:.3g} J in play and nothing else that drives "
-      "it; try a smaller time.step or solver.newton_tolerance{}",
+      "frame {}: the cloth has {:.3g} J more than at the start{}, which nothing gave it (start, gravity and pins give "
+      "it {:.3g} J in all), so the motion may be wrong; try a smaller time.step or solver.newton_tolerance{}",
       energies.frame, gain,
-      pin_work_high_ > pin_work_low_ ? fmt::format(" and by the work of its pins ({:.3g} J)", pin_work_) : "", in_play,
+      pin_work_high_ > pin_work_low_ ? fmt::format(", besides {:.3g} J from its pins", pin_work_) : "", in_play,
       integrator_ == integrator::Method::implicit_midpoint
           ? ", or integrator = \"bdf2\": the midpoint rule damps nothing"
           : "");
@@ -101,8 +101,9 @@ std::optional<std::string> EnergyBound::check_solver(int frame) {
   if (warned_of_solver_ || solver_work_ <= numerics.energy.failing_gain * in_play + negligible_energy_) return {};
   warned_of_solver_ = true;
   return fmt::format(
-      "frame {}: the solver has left forces in the cloth that did {:.3g} J of work, with {:.3g} J in play: the motion "
-      "may be far off; try a smaller solver.newton_tolerance or time.step, or a softer material",
+      "frame {}: the solver has left forces in the cloth without balance, which did {:.3g} J of work (its motion has "
+      "about {:.3g} J): the motion may be far off; try a smaller solver.newton_tolerance or time.step, or a softer "
+      "material",
       frame, solver_work_, in_play);
 }
 

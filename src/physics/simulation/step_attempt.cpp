@@ -202,8 +202,10 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double ratio = added_energy_ratio(energy_before, attempt.h);
   if (ratio <= numerics.energy.doubtful_gain) return std::nullopt;
   progress_.longest = 0.5 * attempt.h;
-  return fmt::format("keeping cloth from passing through adds {:.2g} times the energy of its motion and threads",
-                     ratio);
+  return fmt::format(
+      "keeping surfaces from passing through each other would add {:.2g} times the energy that cloth has "
+      "in motion and stretch",
+      ratio);
 }
 
 bool StepLoop::may_shorten(const Attempt& attempt) {
@@ -222,7 +224,7 @@ StepLoop::Rejection StepLoop::check_overstretch(double h) {
   const double most = numerics.repair.max_excess_stretch;
   if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).ratio + most) return std::nullopt;
   progress_.longest = 0.5 * h;
-  return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", ratio);
+  return fmt::format("it would stretch threads to {:.2g} times their max_stretch", ratio);
 }
 
 // Mechanical energy at `moment`, with the gravity of the current step [J].
@@ -245,8 +247,8 @@ double StepLoop::added_energy_ratio(double before, double h) const {
 StepLoop::Rejection StepLoop::rejection_of(const integrator::StepReport& step) {
   if (step.verdict == integrator::Verdict::solved || step.verdict == integrator::Verdict::unfinished)
     return std::nullopt;
-  return fmt::format("{} (a velocity of {:.2g} m/s left where {:.2g} may be, after {} iterations)",
-                     integrator::describe(step.verdict), step.left, step.allowed, step.newton_iterations);
+  return fmt::format("{} (after {} iterations, velocities are off by {:.2g} m/s; at most {:.2g} m/s is allowed)",
+                     integrator::describe(step.verdict), step.newton_iterations, step.left, step.allowed);
 }
 
 }  // namespace weft::simulation

@@ -218,10 +218,11 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
 }
 
 void StepLoop::fail(int frame, double t, double h, const std::string& reason) const {
-  throw Error(ExitCode::simulation_failed,
-              "frame {}: the step at t = {:.6g} s was rejected down to h = {:.3g} s: {}; try a smaller time.{} or "
-              "softer material",
-              frame, t, h, reason, progress_.control ? "tolerance" : "step");
+  throw Error(
+      ExitCode::simulation_failed,
+      "frame {}: the step at {:.6g} s failed, even when shortened to {:.3g} s: {}; try a smaller time.{} or softer "
+      "material",
+      frame, t, h, reason, progress_.control ? "tolerance" : "step");
 }
 
 // Makes `next_`, the end of a step over h [s], the current state.

@@ -18,6 +18,12 @@ double arrived_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
 
+// The pin as the scene names it, such as cloth.flag.pin.0.
+std::string name_of(const model::Model& model, const Pins::Info& pin) {
+  const model::Cloth& cloth = model.cloths[pin.cloth];
+  return fmt::format("{}.{}.pin.{}", cloth.rope ? "rope" : "cloth", cloth.name, pin.number);
+}
+
 }  // namespace
 
 YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& first_particle,
@@ -121,9 +127,8 @@ void YieldingPins::accept() {
     ++count;
     const std::size_t pin = pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
-    const Pins::Info& info = pins_.info(pin);
-    seen_.turns.push_back(
-        fmt::format("pin {} of '{}' gives way to {}", info.number, model_.cloths[info.cloth].name, obstructions_[pin]));
+    seen_.turns.push_back(fmt::format("{}: yields to {}, and lags behind until the way is free",
+                                      name_of(model_, pins_.info(pin)), obstructions_[pin]));
   }
   seen_.particles = std::max(seen_.particles, count);
   std::swap(lagged_, lags_);
@@ -134,8 +139,7 @@ void YieldingPins::accept() {
 YieldingPins::Lags YieldingPins::take_lags() {
   for (std::size_t pin : lagging_before_) {
     if (lagging_.contains(pin)) continue;
-    const Pins::Info& info = pins_.info(pin);
-    seen_.turns.push_back(fmt::format("pin {} of '{}' is held again", info.number, model_.cloths[info.cloth].name));
+    seen_.turns.push_back(fmt::format("{}: is at its target again", name_of(model_, pins_.info(pin))));
   }
   lagging_before_ = std::move(lagging_);
   lagging_.clear();

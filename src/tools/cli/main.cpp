@@ -12,7 +12,7 @@ __attribute__((constructor(101), target("arch=x86-64"))) static void check_cpu()
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return;
   static constexpr char kText[] =
       "weft: this program is built for x86-64-v3 processors (AVX2 and FMA), and this one is older; "
-      "build it with cmake -DWEFT_CPU=x86-64\n";
+      "build it with cmake --preset release -DWEFT_CPU=x86-64 && ninja -C build weft\n";
   if (::write(STDERR_FILENO, kText, sizeof kText - 1) < 0) ::_exit(1);
   ::_exit(1);
 }

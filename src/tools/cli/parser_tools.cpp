@@ -149,7 +149,8 @@ void Parser::add_diff() {
               [name, &most](const std::string& text) { most = parse_fraction(name, text); });
   };
   add_share("--pixel-budget", diff.limits.pixel_budget,
-            "Fraction of pixels that may differ by more; with the default, a pixel at an edge counts a fortieth");
+            "Fraction of pixels that may differ by more than --pixel-tolerance; with the default, a pixel at an edge "
+            "counts a fortieth");
   add_share("--max-flip", diff.limits.flip,
             "Maximum mean of FLIP, 0 (looks the same) to 1; the default grows below 640x360 pixels");
   add_share("--max-spot", diff.limits.spot, "Maximum of FLIP at any pixel");

@@ -94,7 +94,7 @@ void take_output(FilmPlan& plan, const RunOptions& options) {
 
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
   if ((options.error || options.mesh_error) && scene.cloths.empty())
-    throw Error(ExitCode::usage, "--error: expected a scene with cloth or ropes, whose motion is compared, got none");
+    throw Error(ExitCode::usage, "--error: the scene has no cloth or rope, whose error could be estimated");
   FilmPlan plan;
   plan.settings = render_settings(scene, options.common);
   plan.scene = manifest_of(scene, plan.settings);

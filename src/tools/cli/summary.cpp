@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <utility>
 
 #include "tools/cli/error_report.hpp"
 #include "tools/cli/table.hpp"
@@ -133,50 +134,57 @@ std::string summary(const RunReport& report) {
 std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
   std::vector<std::string> warnings;
   if (frames.empty()) return warnings;
-  double strain = 0, distance = std::numeric_limits<double>::infinity();
   const StepTotals steps = total_steps(frames);
-  for (const FrameRecord& record : frames) {
-    strain = std::max(strain, record.report.max_strain);
-    distance = std::min(distance, record.report.min_distance);
+  using Report = simulation::FrameReport;
+  const auto worst = [&](auto value) -> const Report& {
+    return std::ranges::max_element(frames, {}, [&](const FrameRecord& r) { return std::invoke(value, r.report); })
+        ->report;
+  };
+  // Where a condition holds, such as "in 3 of 76 frames, first in frame 12"; empty if nowhere.
+  const auto where = [&](auto holds) {
+    const auto in = [&](const FrameRecord& r) { return holds(r.report); };
+    const auto count = std::ranges::count_if(frames, in);
+    return count == 0 ? std::string()
+                      : fmt::format("in {} of {} frames, first in frame {}", count, frames.size(),
+                                    std::ranges::find_if(frames, in)->report.frame);
+  };
+  const auto warn = [&]<class... Args>(fmt::format_string<Args...> text, Args&&... args) {
+    warnings.push_back(fmt::format(text, std::forward<Args>(args)...));
+  };
+  if (const Report& most = worst(&Report::max_strain); most.max_strain > kLargeStrain)
+    warn(
+        "threads were stretched or squeezed by up to {:.0f} %, in frame {}: a stiffer material or a smaller time.step "
+        "may be needed",
+        100 * most.max_strain, most.frame);
+  const auto is_overstretched = [](const Report& r) { return r.stretch_ratio > simulation::kMaxStretchRatio; };
+  if (const std::string in = where(is_overstretched); !in.empty()) {
+    const Report& most = worst(&Report::stretch_ratio);
+    warn(
+        "cloth was stretched beyond its max_stretch {}, most in frame {}, to {:.1f} times that limit (warnings of "
+        "single frames name the cloth): pins farther apart than the cloth is long, an obstacle pressed into pinned "
+        "cloth, or a motion too fast for time.step",
+        in, most.frame, most.stretch_ratio);
   }
-  if (strain > kLargeStrain) {
-    warnings.push_back(fmt::format(
-        "threads were stretched or squeezed by up to {:.0f} %: a stiffer material or a smaller time.step may be needed",
-        100 * strain));
-  }
-  if (const auto torn =
-          std::ranges::count_if(frames, [](const FrameRecord& r) { return r.report.stretch_ratio > 1.1; });
-      torn > 0) {
-    warnings.push_back(fmt::format(
-        "cloth was stretched beyond its max_stretch in {} of {} frames, up to {:.1f} times that limit: pins farther "
-        "apart than the cloth is long, an obstacle pressed into pinned cloth, or a motion too fast for time.step",
-        torn, frames.size(), std::ranges::max(frames, {}, [](const FrameRecord& r) {
-                               return r.report.stretch_ratio;
-                             }).report.stretch_ratio));
-  }
-  if (steps.rejected > steps.accepted / 4) {
-    warnings.push_back(fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", steps.rejected,
-                                   steps.accepted + steps.rejected));
-  }
-  if (steps.inexact > 0) {
-    warnings.push_back(
-        fmt::format("{} of {} steps were taken with an error above time.tolerance: an impact would have "
-                    "made them too short",
-                    steps.inexact, steps.accepted));
-  }
-  if (const auto pinched = std::count_if(frames.begin(), frames.end(),
-                                         [](const FrameRecord& record) { return record.report.pinched_pairs > 0; });
-      pinched > 0) {
-    warnings.push_back(fmt::format(
-        "obstacles left cloth no space, so that it is inside one of them, in {} of {} frames", pinched, frames.size()));
-  }
-  if (const auto lagging = std::count_if(frames.begin(), frames.end(),
-                                         [](const FrameRecord& record) { return record.report.lagging_particles > 0; });
-      lagging > 0) {
-    warnings.push_back(fmt::format("pins lagged behind, because something was in their way, in {} of {} frames",
-                                   lagging, frames.size()));
-  }
-  if (distance <= 0) warnings.push_back("surfaces touched or passed through each other");
+  if (steps.rejected > steps.accepted / 4)
+    warn("{} of {} steps failed and were repeated as shorter ones: a smaller time.step would be faster", steps.rejected,
+         steps.accepted + steps.rejected);
+  if (steps.inexact > 0)
+    warn(
+        "{} of {} steps, most in frame {}, have an error above time.tolerance: something hits so hard there that exact "
+        "steps would be too short; slower motion is more exact",
+        steps.inexact, steps.accepted, worst(&Report::inexact_steps).frame);
+  if (const std::string in = where([](const Report& r) { return r.pinched_pairs > 0; }); !in.empty())
+    warn(
+        "obstacles left cloth no space, so that it is inside one of them, {} (warnings of single frames name them): "
+        "move them farther apart there",
+        in);
+  if (const std::string in = where([](const Report& r) { return r.lagging_particles > 0; }); !in.empty())
+    warn(
+        "pins lagged behind, because something was in their way, {} (warnings of single frames name the pin): change "
+        "its keys or what is in its way",
+        in);
+  if (const std::string in = where([](const Report& r) { return r.min_distance <= 0; }); !in.empty())
+    warn("surfaces touched or passed through each other {}: a smaller time.step may be needed", in);
   return warnings;
 }
 
