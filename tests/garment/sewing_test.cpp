@@ -1,4 +1,5 @@
 // Patterns sewn into one mesh around the wearer: topology, dimensions, start shape.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -259,6 +260,31 @@ TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
                  "p.toml:5:8: panel.p.fold: expected a straight edge, got one that is 0.0");
   expect_mistake("[[panel]]\nname = 'p'\n" + half + "edges = 'hem side_l neck fold'\nfold = 'folt'\n",
                  "panel.p.fold: expected the name of an edge, got \"folt\"");
+}
+
+// Programs such as Valentina draw each curve as many straight pieces.
+TEST_F(SewingText, DrawnCurvesOfManyPiecesHaveOneNameFromCornerToCorner) {
+  std::string path = "M0,0 L300,0";  // a hem, a side, and an armhole of 20 pieces from (300, 400) to (0, 400)
+  for (int k = 0; k <= 20; ++k)
+    path += fmt::format(" L{},{}", 300 - 15 * k, 400 - 60 * std::sin(k * std::numbers::pi / 20));
+  support::write_bytes(folder_ / "d.svg",
+                       "<svg width='1000mm' viewBox='0 0 1000 1000'><path d='" + path + "Z'/></svg>");
+  const std::string drawn = "[[panel]]\nname = 'p'\nfile = 'd.svg'\nid = 'path:1'\n";
+  const auto names = [&](const std::string& more) {
+    support::write_bytes(folder_ / "p.toml", drawn + more);
+    std::vector<std::string> found;
+    for (const PanelEdge& edge : load_pattern(folder_ / "p.toml", "a test").panels.at(0).edges)
+      found.push_back(edge.name);
+    std::ranges::sort(found);
+    return found;
+  };
+  EXPECT_EQ(names("edges = 'hem side_l armhole side_r'\n"),
+            (std::vector<std::string>{"armhole", "hem", "side_l", "side_r"}));
+  EXPECT_EQ(names("").size(), 23U);
+  EXPECT_EQ(names("edges = 'a b c c c c c c c c c c c c c c c c c c c c d'\n"),
+            (std::vector<std::string>{"a", "b", "c", "d"}));
+  expect_mistake(drawn + "edges = 'hem side'\n",
+                 "expected 23 names, one for each curve, or 4, one for each edge from corner to corner, got 2");
 }
 
 TEST_F(SewingText, MistakesAreAllNamedWithTheirPlaces) {

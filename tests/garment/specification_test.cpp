@@ -136,6 +136,23 @@ TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
   ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
   EXPECT_NEAR(length_of(read.pattern, "skirt_front.1"), 0.25, 1e-12);
   EXPECT_NEAR(read.pattern.panels[2].position->y(), 0.2 + 1.12, 1e-12);
+  EXPECT_EQ(read.pattern.measures.height, 1.66);
+  EXPECT_EQ(this->read(kSpecification).pattern.measures.height, 1.72);
+}
+
+// Its body may stand with its legs apart.
+TEST_F(Specification, LegsApartAreWornAlongTheLegs) {
+  std::string apart = changed(kLegs, R"("a": { "translation": [0, 10, 20],)",
+                              R"("a": { "translation": [30, 10, 20], "rotation": [0, 0, 20],)");
+  apart = changed(apart, R"("b": { "translation": [0, 10, -20],)",
+                  R"("b": { "translation": [30, 10, -20], "rotation": [0, 0, 20],)");
+  const Pattern pattern = read(apart).pattern;
+  for (const char* edge : {"a.0", "b.3"}) {
+    const auto [p, e] = pattern.find(edge);
+    EXPECT_EQ(pattern.panels[p].around, Around::left_leg);
+    const Curve& hem = pattern.panels[p].edges[e].curves[0];
+    EXPECT_NEAR(hem.start().y(), hem.end().y(), 1e-12);
+  }
 }
 
 TEST_F(Specification, IsSewnAroundTheWearer) {

@@ -177,6 +177,45 @@ TEST_F(Drawings, OfOldVersionsOfInkscapeHaveNinetyUnitsPerInch) {
     EXPECT_NEAR(width(other), 0.0254 * 90 / 96, 1e-12) << other;
 }
 
+// As Valentina and Seamly write them.
+TEST_F(Drawings, WithAnAllowanceAroundTheSeamLineGiveTheSeamLine) {
+  const std::string head = "<svg width='1000mm' viewBox='0 0 1000 1000'><path id='p' d='", tail = "'/></svg>";
+  const std::string seam_line = "M100,100 L400,100 L400,600 L100,600 L100,100 ";
+  const std::vector<Vec2> corners{{0.1, -0.1}, {0.4, -0.1}, {0.4, -0.6}, {0.1, -0.6}};
+  const std::string around = "M90,90 L410,90 L410,640 L90,640 L90,90 ";
+  expect_corners(head + seam_line + around + tail, corners);
+  expect_corners(head + around + seam_line + tail, corners);
+  expect_corners(head + "M100,90h310v520h-310z " + seam_line + tail, corners);       // no allowance along a fold
+  expect_refused(head + seam_line + "M0,0h900v900h-900z" + tail, "got 2 outlines");  // a panel with a hole
+  expect_refused(head + seam_line + "M500,100h300v500h-300z" + tail, "got 2 outlines");
+  expect_refused(head + seam_line + around + around + tail, "got 3 outlines");
+}
+
+TEST_F(Drawings, MayBeNested) {
+  const double px = 0.0254 / 96;
+  const std::string path = "<path id='p' d='M5 5h50v10z'/></svg></svg>";
+  // Enlarged twice and centred in its height of 300.
+  expect_corners("<svg><svg x='10' y='20' width='100' height='300' viewBox='5 5 50 100'>" + path,
+                 {{10 * px, -70 * px}, {110 * px, -70 * px}, {110 * px, -90 * px}});
+  expect_corners("<svg><svg y='20'>" + path, {{5 * px, -25 * px}, {55 * px, -25 * px}, {55 * px, -35 * px}});
+  expect_refused("<svg><svg viewBox='5 5 50 100' width='50%' height='9'>" + path, "width, height");
+}
+
+TEST_F(Drawings, WithoutASizeAreRefused) {
+  const std::string path = "<path id='p' d='M5 5h50v10z'/></svg>";
+  for (const char* width : {"", "width='100%' height='100%'"})
+    expect_refused("<svg viewBox='0 0 210 297' " + std::string(width) + ">" + path,
+                   "width: expected the size of the sheet, such as 210mm, beside a viewBox");
+}
+
+TEST_F(Drawings, OfFreeSewingHaveMarksThatDoNotCount) {
+  const std::string mark = "d='M0 0h9v9h-9z'/>";
+  EXPECT_EQ(load("<svg><g id='p'><path class='scalebox metric fill-bg' " + mark + "<path class='lining help' " + mark +
+                 "<path class='note' " + mark + "<path class='fabric' d='M0 0h900v900z'/></g></svg>")
+                .size(),
+            3u);
+}
+
 TEST_F(Drawings, DamagedFilesAreRefusedOrRead) {
   const std::string good =
       "<?xml version='1.0'?><svg width='210mm' height='297mm' viewBox='0 0 210 297'><g transform='rotate(3 1 2)'><path "

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -161,6 +162,21 @@ TEST_F(Wrapping, RingsThatLieApartHaveTheirOwnWidths) {
   const std::vector<Index>&a = alone.edges.at("high_front.hem"), &b = both.edges.at("high_front.hem");
   EXPECT_LT((alone.sheet.rest[a[a.size() / 2]] - both.sheet.rest[b[b.size() / 2]]).norm(), 1e-6);
   EXPECT_GT(alone.sheet.rest[a[a.size() / 2]].head<2>().norm(), 0.23);
+}
+
+// Front and back are a ring wider than the body, 1 cm off its middle.
+TEST_F(Wrapping, SlitsStartOpen) {
+  std::string text;
+  for (const std::string side : {"front", "back"})
+    text += "[[panel]]\nname = '" + side + "'\naround = 'torso'\nside = '" + side +
+            "'\nposition = [0.005, 0.5]\npath = 'M -0.3 0 L 0.3 0 L 0.3 0.2 L 0.3 0.5 L -0.3 0.5 Z'\n"
+            "edges = 'hem slit side top right'\n";
+  for (const std::string edge : {"side", "right"})
+    text += "[[seam]]\na = 'front." + edge + "'\nb = 'back." + edge + "'\n";
+  const Garment garment = sew_text(text);
+  const std::array<support::JudgedObject, 1> object{
+      support::JudgedObject{.name = "skirt", .positions = garment.sheet.rest, .triangles = garment.sheet.triangles}};
+  EXPECT_TRUE(support::judge(object).pairs.empty());
 }
 
 TEST_F(Wrapping, MirrorImagesHaveTheOtherSide) {

@@ -15,6 +15,9 @@ constexpr std::size_t kMaxCurves = 10000;
 constexpr double kMaxCoordinate = 1e6;
 // Number of pieces per curve for measuring its length. The relative error of a quarter circle is then 2e-6.
 constexpr int kPiecesPerCurve = 256;
+// Minimum angle between two curves at a corner [rad]. Pieces of one curve meet within 1 or 2 degrees, seam and hem at
+// 60 or more.
+constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
 
 Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {
   return {{from, from + 2.0 / 3 * (control - from), to + 2.0 / 3 * (control - to), to}, false};
@@ -70,20 +73,28 @@ class PathReader {
  public:
   explicit PathReader(std::string_view data) : data_(data) {}
 
-  ParsedPath read() {
+  ParsedPaths read() {
     while (result_.mistake.empty() && skip_space()) command();
-    if (!closed_ && !result_.outline.empty() && is_at_start()) close();
-    if (result_.mistake.empty() && !closed_)
-      fail("expected a closed outline, which ends with Z or where it starts, got one that is open at the end");
-    Outline& outline = result_.outline;
-    std::erase_if(outline, [](const Curve& c) {
-      return c.control[1] == c.start() && c.control[2] == c.start() && c.end() == c.start();
-    });
-    if (result_.mistake.empty() && outline.size() < 2) fail("expected an outline of two curves or more, got fewer");
+    end_outline();
     return std::move(result_);
   }
 
  private:
+  void end_outline() {
+    if (!closed_ && !outline_.empty() && is_at_start()) close();
+    if (!closed_)
+      fail("expected a closed outline, which ends with Z or where it starts, got one that is open at the end");
+    std::erase_if(outline_, [](const Curve& c) {
+      return c.control[1] == c.start() && c.control[2] == c.start() && c.end() == c.start();
+    });
+    if (outline_.size() < 2) fail("expected an outline of two curves or more, got fewer");
+    result_.outlines.push_back(std::move(outline_));
+  }
+  void begin_outline() {
+    outline_.clear();
+    started_ = closed_ = false;
+    nearest_ = Vec2::Constant(kMaxCoordinate), farthest_ = -nearest_;
+  }
   void fail(std::string text) {
     if (result_.mistake.empty()) result_.mistake = std::move(text);
   }
@@ -135,15 +146,16 @@ class PathReader {
   }
 
   void command() {
-    if (closed_) return fail_here("nothing after the closed outline");
     const char letter = data_[at_];
+    const bool is_move = letter == 'M' || letter == 'm';
+    if (closed_ && !is_move) return fail_here("M or nothing after the closed outline");
+    if (started_ && is_move) end_outline(), begin_outline();
     if (std::string_view("MmLlHhVvCcSsQqTtAaZz").find(letter) == std::string_view::npos)
       return fail_here("a command of SVG paths");
     ++at_;
     const bool relative = letter >= 'a';
     const char kind = static_cast<char>(relative ? letter - 'a' + 'A' : letter);
-    if (started_ == (kind == 'M'))
-      return fail(started_ ? "expected one outline, got a second M" : "expected M at the start, got another command");
+    if (!started_ && !is_move) return fail("expected M at the start, got another command");
     if (kind == 'Z') return close();
     bool first = true;
     do {
@@ -154,7 +166,7 @@ class PathReader {
         draw(kind == 'M' ? 'L' : kind, relative);
       }
       first = false;
-      if (result_.outline.size() > kMaxCurves) fail(fmt::format("expected at most {} curves, got more", kMaxCurves));
+      if (curves_ > kMaxCurves) fail(fmt::format("expected at most {} curves, got more", kMaxCurves));
     } while (result_.mistake.empty() && number_follows());
   }
 
@@ -165,7 +177,8 @@ class PathReader {
     closed_ = true;
     if (!is_at_start()) return add(straight(pen_, first_));
     // The end is moved to the start.
-    if (!result_.outline.empty()) result_.outline.back().control[3] = first_;
+    if (!outline_.empty()) outline_.back().control[3] = first_;
+    pen_ = first_;
   }
 
   void draw(char kind, bool relative) {
@@ -190,9 +203,9 @@ class PathReader {
       const Vec2 radii(number(), 0);
       Arc arc{{radii.x(), number()}, number() * std::numbers::pi / 180, flag(), flag()};
       const Vec2 end = point(relative);
-      const std::size_t before = result_.outline.size();
-      if (result_.mistake.empty() && end != from) append_arc(from, arc, end, result_.outline);
-      for (std::size_t i = before; i < result_.outline.size(); ++i) extend_bounds(result_.outline[i]);
+      const std::size_t before = outline_.size();
+      if (result_.mistake.empty() && end != from) append_arc(from, arc, end, outline_);
+      for (std::size_t i = before; i < outline_.size(); ++i) extend_bounds(outline_[i]);
       pen_ = end;
     }
     handle_ = handle;
@@ -203,18 +216,21 @@ class PathReader {
     return after.find(last_) == std::string_view::npos ? pen_ : Vec2(2 * pen_ - handle_);
   }
   void add(const Curve& curve) {
-    result_.outline.push_back(curve);
+    outline_.push_back(curve);
     extend_bounds(curve);
     pen_ = curve.end();
   }
   void extend_bounds(const Curve& curve) {
+    ++curves_;
     nearest_ = nearest_.cwiseMin(curve.start()).cwiseMin(curve.end());
     farthest_ = farthest_.cwiseMax(curve.start()).cwiseMax(curve.end());
   }
 
   std::string_view data_;
   std::size_t at_ = 0;
-  ParsedPath result_;
+  ParsedPaths result_;
+  Outline outline_;         // the current one
+  std::size_t curves_ = 0;  // of all outlines
   bool started_ = false, closed_ = false;
   char last_ = 'M';
   Vec2 pen_ = Vec2::Zero(), first_ = Vec2::Zero(), handle_ = Vec2::Zero();
@@ -237,8 +253,33 @@ std::from_chars_result parse_number(std::string_view text, double& value) {
   return std::from_chars(text.data() + (has_plus ? 1 : 0), text.data() + text.size(), value);
 }
 
-ParsedPath parse_path(std::string_view data) {
+ParsedPaths parse_paths(std::string_view data) {
   return PathReader(data).read();
+}
+
+ParsedPath parse_path(std::string_view data) {
+  ParsedPaths parsed = parse_paths(data);
+  if (parsed.outlines.size() > 1) parsed.mistake = "expected one outline, got a second M";
+  return {std::move(parsed.outlines[0]), std::move(parsed.mistake)};
+}
+
+bool has_corner(const Curve& before, const Curve& after) {
+  constexpr double kEndOffset = 1e-3;  // direction at an end is taken at this offset: control points may coincide
+  const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
+  return std::abs(angle_between(in, out)) > kMinCornerAngle;
+}
+
+std::vector<std::size_t> edges_between_corners(const Outline& outline) {
+  const std::size_t n = outline.size();
+  std::vector<std::size_t> edge(n, 0);
+  std::size_t first = 0, number = 0;
+  while (first < n && !has_corner(outline[(first + n - 1) % n], outline[first])) ++first;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = (first + i) % n;
+    if (i > 0 && has_corner(outline[(k + n - 1) % n], outline[k])) ++number;
+    edge[k] = number;
+  }
+  return edge;
 }
 
 std::vector<Vec2> sample_points(const std::vector<Curve>& chain) {

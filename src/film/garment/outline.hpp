@@ -34,11 +34,25 @@ struct ParsedPath {
   Outline outline;
   std::string mistake;  ///< "expected a number, got "x" at character 12"; empty: none
 };
+struct ParsedPaths {
+  std::vector<Outline> outlines;  ///< one or more, if there is no mistake
+  std::string mistake;
+};
 
-/// Reads one closed outline, which ends with Z or where it starts, from the path data of SVG 1.1 (section 8.3), in the
-/// units of the data. Arcs become cubic curves of at most a quarter turn each (maximum error: 3e-4 of the radius).
+/// Reads closed outlines, each of which ends with Z or where it starts, from the path data of SVG 1.1 (section 8.3), in
+/// the units of the data. Arcs become cubic curves of at most a quarter turn each (maximum error: 3e-4 of the radius).
 /// Curves of zero length are dropped.
+ParsedPaths parse_paths(std::string_view data);
+
+/// As parse_paths(), for data that must have one outline.
 ParsedPath parse_path(std::string_view data);
+
+/// Whether two consecutive curves meet at a corner.
+bool has_corner(const Curve& before, const Curve& after);
+
+/// The edge of each curve, numbered from 0. An edge extends from corner to corner; the first one starts at the first
+/// corner.
+std::vector<std::size_t> edges_between_corners(const Outline& outline);
 
 /// Number of points of each curve in sample_points().
 inline constexpr int kPointsPerCurve = 16;

@@ -76,8 +76,10 @@ const Table& panel_rules() {
           .plain(Type::text, "mirror_of", &Panel::mirror_of,
                  "an earlier panel whose mirror image this one is; keys that are not given are taken from it, with "
                  "left and right exchanged")
-          .plain(Type::text, "edges", &Panel::edge_names,
-                 "names of the curves of the outline, in their order; neighbours with the same name are one edge")
+          .plain(
+              Type::text, "edges", &Panel::edge_names,
+              "names of the curves of the outline, in their order, or in a drawing of its edges from corner to corner; "
+              "neighbours with the same name are one edge")
           .by_default("those in the drawing, else 1 2 3 and so on")
           .plain(Type::text, "fold", &Panel::fold,
                  "straight edge at which the outline is half of a panel cut on the fold: the panel gets the mirror "
@@ -100,17 +102,26 @@ const Table& panel_rules() {
   return kTable;
 }
 
-// Assigns a name to each curve; the pieces of an arc share one. Returns a description of a mistake, or an empty string.
-std::string name_curves(const std::string& text, const Outline& outline, std::vector<std::string>& names) {
+// Assigns a name to each curve; the pieces of an arc share one. In a drawing, programs cut curves into many pieces:
+// there an edge from corner to corner may have one name. Returns a description of a mistake, or an empty string.
+std::string name_curves(const std::string& text, const Outline& outline, bool drawn, std::vector<std::string>& names) {
   std::istringstream stream(text);
   std::vector<std::string> words;
   for (std::string word; stream >> word;) words.push_back(word);
   const auto curves = static_cast<std::size_t>(std::ranges::count(outline, false, &Curve::continues_arc));
+  const std::vector<std::size_t> edge = edges_between_corners(outline);
+  const std::size_t edges = *std::ranges::max_element(edge) + 1;
+  const bool by_edge = drawn && words.size() == edges && edges != curves;
   if (words.empty())
     for (std::size_t i = 1; i <= curves; ++i) words.push_back(std::to_string(i));
-  if (words.size() != curves) return fmt::format("expected {} names, one for each curve, got {}", curves, words.size());
+  if (!by_edge && words.size() != curves)
+    return fmt::format(
+        "expected {} names, one for each curve{}, got {}", curves,
+        drawn && edges != curves ? fmt::format(", or {}, one for each edge from corner to corner", edges) : "",
+        words.size());
   std::size_t word = 0;
-  for (const Curve& curve : outline) names.push_back(words[curve.continues_arc ? word - 1 : word++]);
+  for (std::size_t k = 0; k < outline.size(); ++k)
+    names.push_back(words[by_edge ? edge[k] : outline[k].continues_arc ? word - 1 : word++]);
   return {};
 }
 
@@ -245,7 +256,7 @@ void derive_edges(Panel& panel, const std::string& path, Findings& findings, std
       for (Vec2& p : curve.control) p.x() = -p.x();
   if (names.empty() || !panel.edge_names.empty()) {
     names.clear();
-    if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
+    if (const std::string mistake = name_curves(panel.edge_names, outline, panel.path.empty(), names); !mistake.empty())
       return findings.report(path + ".edges", mistake);
   }
   if (!panel.fold.empty())

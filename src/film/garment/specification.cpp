@@ -28,14 +28,21 @@ constexpr double kDefaultUnitsPerMetre = 100;  // of files that state no unit: c
 // Height above the floor of the origin of the body in the Garment-Pattern-Generator, the predecessor of GarmentCode
 // [m]. The origin lies between pelvis and chest.
 constexpr double kPredecessorOrigin = 1.12;
-// Measures of the body that the dataset's patterns are drawn for [m].
-constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
-// If a pattern has the predecessor's format of curves, or if its lowest point is below this height [m], its heights
-// count from the predecessor's origin, else from the floor. The limit is negative since flat trousers end below the
-// heel.
+// Measures of the bodies that the patterns of GarmentCode and of its predecessor are drawn for [m].
+constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .height = 1.72};
+constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .height = 1.66};
+// If a pattern has the predecessor's format of curves, or if its lowest point is below this height [m], it is one of
+// the predecessor, whose heights count from that origin, else from the floor. The limit is negative since flat trousers
+// end below the heel.
 constexpr double kMinLowestPanel = -0.2;
 // Minimum height of the lowest point above the floor at the start [m].
 constexpr double kMinStartHeight = 0.02;
+
+/// The direction along an axis of the drawing, up, down, left or right, that is nearest to `direction`.
+Vec2 nearest_axis(const Vec2& direction) {
+  return std::abs(direction.x()) > std::abs(direction.y()) ? Vec2(direction.x() > 0 ? 1 : -1, 0)
+                                                           : Vec2(0, direction.y() > 0 ? 1 : -1);
+}
 
 /// Text of a value in messages.
 std::string text_of(const json& value) {
@@ -309,9 +316,7 @@ class Reader {
     Vec2 low = panel.points[0][0], high = low;
     for (const auto& points : panel.points)
       for (const Vec2& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-    const Vec2 direction = (cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9));
-    return std::abs(direction.x()) > std::abs(direction.y()) ? Vec2(direction.x() > 0 ? 1 : -1, 0)
-                                                             : Vec2(0, direction.y() > 0 ? 1 : -1);
+    return nearest_axis((cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9)));
   }
 
   /// Map from a panel's drawing to the panel as worn, seen from outside.
@@ -323,7 +328,7 @@ class Reader {
     if (arm)
       up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
-      up = height.normalized();
+      up = panel.is_limb() ? nearest_axis(height) : height.normalized();  // legs may be apart in the file
     Eigen::Matrix2d turn;
     turn << up.y(), -up.x(), up.x(), up.y();
     Eigen::Affine2d map = Eigen::Affine2d::Identity();
@@ -332,17 +337,14 @@ class Reader {
   }
 
   void fill_pattern(Pattern& pattern) {
-    pattern.measures.chest = kChest;
-    pattern.measures.waist = kWaist;
-    pattern.measures.hip = kHip;
-    pattern.measures.height = kHeight;
     double lowest = std::numeric_limits<double>::infinity();
     for (const SpecPanel& panel : panels_)
       for (const auto& points : panel.points)
         for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
+    const bool from_predecessor = is_predecessor_ || lowest < kMinLowestPanel;
+    pattern.measures = from_predecessor ? kPredecessorBody : kBody;
     // Trousers that end below the floor are raised: they are drawn lower than they are worn.
-    const double floor =
-        is_predecessor_ || lowest < kMinLowestPanel ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
+    const double floor = from_predecessor ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& of = panels_[p];
       findings_.add_entry("panel", "pattern.panels." + of.name);

@@ -27,12 +27,13 @@ namespace weft::garment {
 namespace {
 
 constexpr double kMetresPerPixel = 0.0254 / 96;
-// Minimum angle between two curves at a corner. Pieces of one curve meet within 1 or 2 degrees, seam and hem at 60 or
-// more.
-constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
+// Maximum distance by which the outline of a seam allowance exceeds that of the panel on each side of a panel [m].
+// Allowances are 10 to 30 mm wide, and wider at corners.
+constexpr double kMaxAllowance = 0.06;
 // Maximum count of numbers read from one attribute.
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
+using Box = Eigen::AlignedBox2d;
 
 /// Stops the traversal at elements that are too deep for the recursive functions of this file. (pugixml itself does not
 /// recurse.)
@@ -163,6 +164,12 @@ std::optional<double> parse_length(std::string_view text) {
   return std::nullopt;
 }
 
+using Numbers = std::optional<std::vector<double>>;
+void check_view_box(const Drawing& drawing, const pugi::xml_node& node, const Numbers& box) {
+  if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
+    drawing.refuse(node, "viewBox: expected x, y, width > 0 and height > 0, got something else");
+}
+
 // Size of one unit of the drawing [m].
 double metres_per_unit(const Drawing& drawing) {
   const pugi::xml_node root = drawing.root();
@@ -174,9 +181,8 @@ double metres_per_unit(const Drawing& drawing) {
     const bool known = parse_number(root.attribute("inkscape:version").value(), version).ec == std::errc();
     return known && version < 0.92 ? 0.0254 / 90 : kMetresPerPixel;
   }
-  if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
-    drawing.refuse(root, "viewBox: expected x, y, width > 0 and height > 0, got something else");
-  if (!width) return kMetresPerPixel;
+  check_view_box(drawing, root, box);
+  if (!width) drawing.refuse(root, "width: expected the size of the sheet, such as 210mm, beside a viewBox, got none");
   double unit = *width / (*box)[2];
   // If the height is given too, the smaller of both units counts, as in browsers.
   if (const auto height = parse_length(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
@@ -227,8 +233,28 @@ Affine parse_transform(const Drawing& drawing, const pugi::xml_node& node) {
   }
 }
 
-// The outline in the coordinates of the element.
-Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
+// The map from the content of a nested svg element to the content around it.
+Affine place_nested(const Drawing& drawing, const pugi::xml_node& node) {
+  const auto x = parse_numbers(node.attribute("x").value()), y = parse_numbers(node.attribute("y").value());
+  const auto width = parse_length(node.attribute("width").value()),
+             height = parse_length(node.attribute("height").value());
+  const std::string_view ratio = node.attribute("preserveAspectRatio").as_string("xMidYMid meet");
+  if (!x || !y || x->size() > 1 || y->size() > 1)
+    drawing.refuse(node, "expected x and y as numbers, got something else");
+  Affine t = Affine::Identity();
+  t.translate(Vec2(x->empty() ? 0 : x->front(), y->empty() ? 0 : y->front()));
+  if (!node.attribute("viewBox")) return t;
+  const auto box = parse_numbers(node.attribute("viewBox").value());
+  check_view_box(drawing, node, box);
+  if (!width || !height || (ratio != "xMidYMid meet" && ratio != "xMidYMid"))
+    drawing.refuse(node, "expected width, height and preserveAspectRatio xMidYMid of a nested drawing, got others");
+  const Vec2 size = Vec2(*width, *height) / kMetresPerPixel, inner((*box)[2], (*box)[3]);
+  const double scale = size.cwiseQuotient(inner).minCoeff();
+  return t.translate(0.5 * (size - scale * inner)).scale(scale).translate(-Vec2((*box)[0], (*box)[1]));
+}
+
+// The outlines in the coordinates of the element.
+std::vector<Outline> outlines_of(const Drawing& drawing, const pugi::xml_node& node) {
   const std::string_view kind = node.name();
   std::string data = node.attribute("d").value();
   if (kind == "polygon") {
@@ -257,9 +283,9 @@ Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
   } else if (kind != "path") {
     drawing.refuse(node, "expected a path, polygon or rect, got another element; id names the outline itself");
   }
-  ParsedPath parsed = parse_path(data);
+  ParsedPaths parsed = parse_paths(data);
   if (!parsed.mistake.empty()) drawing.refuse(node, parsed.mistake);
-  return std::move(parsed.outline);
+  return std::move(parsed.outlines);
 }
 
 /// Converts coordinates of elements to metres, y upward.
@@ -269,19 +295,36 @@ class Sheet {
 
   Affine to_metres(const pugi::xml_node& element) const {
     Affine transform = Affine::Identity();
-    for (pugi::xml_node node = element; node && node != drawing_.root(); node = node.parent())
+    for (pugi::xml_node node = element; node && node != drawing_.root(); node = node.parent()) {
+      if (std::string_view(node.name()) == "svg") transform = place_nested(drawing_, node) * transform;
       transform = parse_transform(drawing_, node) * transform;
+    }
     return Eigen::Scaling(unit_, -unit_) * transform;
   }
 
-  Outline place(Outline outline, const pugi::xml_node& element) const {
+  /// The outline of the panel that the element draws [m].
+  Outline outline(const pugi::xml_node& element) const {
+    std::vector<Outline> outlines = outlines_of(drawing_, element);
     const Affine transform = to_metres(element);
-    for (Curve& curve : outline)
-      for (Vec2& p : curve.control) {
-        p = transform * p;
-        if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got infinite or undefined ones");
+    std::vector<Box> boxes(outlines.size());
+    for (std::size_t i = 0; i < outlines.size(); ++i)
+      for (Curve& curve : outlines[i])
+        for (Vec2& p : curve.control) {
+          p = transform * p;
+          if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got infinite or undefined ones");
+          boxes[i].extend(p);
+        }
+    if (outlines.size() == 1) return std::move(outlines[0]);
+    // Valentina and Seamly draw the seam line and, around it, its allowance as one path.
+    if (outlines.size() == 2)
+      for (const std::size_t i : {0, 1}) {
+        const Box &inner = boxes[i], &outer = boxes[1 - i];
+        const double margin = std::max((inner.min() - outer.min()).maxCoeff(), (outer.max() - inner.max()).maxCoeff());
+        if (outer.contains(inner) && margin <= kMaxAllowance) return std::move(outlines[i]);
       }
-    return outline;
+    drawing_.refuse(element, fmt::format("expected one outline, or a seam line with its allowance around it, got {} "
+                                         "outlines",
+                                         outlines.size()));
   }
 
  private:
@@ -334,9 +377,12 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   group.edges.push_back({name, place});
 }
 
-bool is_seam_allowance(const pugi::xml_node& node) {
+/// Whether FreeSewing draws this beside the outline of a part: seam allowances, scale boxes and other marks.
+bool is_mark(const pugi::xml_node& node) {
+  constexpr std::array<std::string_view, 6> kMarks{"sa", "scalebox", "note", "mark", "help", "hidden"};
   std::istringstream classes(node.attribute("class").value());
-  return std::find(std::istream_iterator<std::string>(classes), {}, "sa") != std::istream_iterator<std::string>();
+  return std::any_of(std::istream_iterator<std::string>(classes), {},
+                     [&](const std::string& name) { return std::ranges::find(kMarks, name) != kMarks.end(); });
 }
 
 void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
@@ -344,12 +390,12 @@ void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node
     const std::string_view kind = child.name();
     if (kind == "text") {
       read_text(drawing, sheet, child, group);
-    } else if (is_seam_allowance(child)) {
+    } else if (is_mark(child)) {
       continue;
     } else if (kind == "g") {
       read_group(drawing, sheet, child, group);
     } else if (kind == "polygon" || kind == "rect" ||
-               (kind == "path" && parse_path(child.attribute("d").value()).mistake.empty())) {
+               (kind == "path" && parse_paths(child.attribute("d").value()).mistake.empty())) {
       group.outlines.push_back(child);
     }
   }
@@ -362,24 +408,11 @@ double distance(const Curve& curve, const Vec2& from) {
   return nearest;
 }
 
-bool has_corner(const Curve& before, const Curve& after) {
-  constexpr double kEndOffset = 1e-3;  // direction at an end is taken at this offset: control points may coincide
-  const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
-  return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > kMinCornerAngle;
-}
-
 /// Names each curve by the nearest label of its edge or, without labels, by the number of its edge.
 std::vector<std::string> name_edges(const Outline& outline, const std::vector<Label>& labels) {
   const std::size_t n = outline.size();
-  std::vector<std::size_t> edge(n, 0);  // edge number of each curve, counted from the first corner
-  std::size_t first = 0, edges = 0;
-  while (first < n && !has_corner(outline[(first + n - 1) % n], outline[first])) ++first;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::size_t k = (first + i) % n;
-    if (i > 0 && has_corner(outline[(k + n - 1) % n], outline[k])) ++edges;
-    edge[k] = edges;
-  }
-  std::vector<std::vector<const Label*>> of_edge(edges + 1);
+  const std::vector<std::size_t> edge = edges_between_corners(outline);
+  std::vector<std::vector<const Label*>> of_edge(*std::ranges::max_element(edge) + 1);
   for (const Label& label : labels) {
     const auto nearest =
         std::ranges::min_element(outline, {}, [&](const Curve& c) { return distance(c, label.place); });
@@ -401,7 +434,7 @@ DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pu
     drawing.refuse(node,
                    fmt::format("expected a group with one closed outline, got {}; name the outline itself by its id",
                                group.outlines.size()));
-  DrawnPanel panel{sheet.place(outline_of(drawing, group.outlines[0]), group.outlines[0]), {}};
+  DrawnPanel panel{sheet.outline(group.outlines[0]), {}};
   if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
   // Without an origin text, the group's own origin counts, so that moving the group on the sheet changes nothing.
   const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
@@ -417,7 +450,7 @@ DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& 
   const Sheet sheet(drawing);
   const pugi::xml_node element = drawing.find(id);
   if (std::string_view(element.name()) == "g") return read_panel_group(drawing, sheet, element);
-  return {sheet.place(outline_of(drawing, element), element), {}};
+  return {sheet.outline(element), {}};
 }
 
 }  // namespace weft::garment

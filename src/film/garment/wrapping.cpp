@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "film/garment/joined_places.hpp"
@@ -18,8 +19,8 @@ namespace {
 
 // Distance between layers at the start [m]: more than any fabric's contact thickness.
 constexpr double kLayerDistance = 0.01;
-// Slack in a ring with a closure [m], so that the two edges of the closure do not start in the same place.
-constexpr double kClosureSlack = 0.03;
+// Slack in a ring with a closure or a slit [m], so that its two edges do not start in the same place.
+constexpr double kOpeningSlack = 0.03;
 // Minimum distance between a narrow sleeve and the skin at the start [m], and the decrease in width at which the cap of
 // a sleeve begins [m].
 constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
@@ -122,15 +123,27 @@ class PanelPlacer {
     }
     return of_part;
   }
-  // Whether a ring around the part has a closure. Closures between two parts, such as a fly between two legs, are in no
-  // ring.
-  bool has_closure(Around part) const {
-    const auto is_around_part = [&](const std::string& edge) {
-      return part_of(pattern_.panels[pattern_.find(edge).first]) == part;
-    };
-    return std::ranges::any_of(pattern_.seams, [&](const Seam& seam) {
-      return seam.closure() && is_around_part(seam.a) && is_around_part(seam.b);
-    });
+  // Whether a ring around the part has a closure or a slit. Closures between two parts, such as a fly between two legs,
+  // are in no ring.
+  bool has_opening(Around part) const {
+    std::set<std::pair<std::size_t, std::size_t>> sewn;  // panels and their edges
+    for (const Seam& seam : pattern_.seams) {
+      const auto a = pattern_.find(seam.a), b = pattern_.find(seam.b);
+      sewn.insert(a), sewn.insert(b);
+      const bool around = part_of(pattern_.panels[a.first]) == part && part_of(pattern_.panels[b.first]) == part;
+      if (seam.closure() && around) return true;
+    }
+    // A slit is an edge that continues a seam but is not sewn.
+    for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
+      const std::vector<PanelEdge>& edges = pattern_.panels[p].edges;
+      for (std::size_t e = 0; e < edges.size() && part_of(pattern_.panels[p]) == part; ++e) {
+        const std::size_t next = (e + 1) % edges.size();
+        if (sewn.contains({p, e}) != sewn.contains({p, next}) &&
+            !has_corner(edges[e].curves.back(), edges[next].curves.front()))
+          return true;
+      }
+    }
+    return false;
   }
 
   // Computes the ease of each ring: how far outward the panels must move to close the ring. Narrow sleeves move toward
@@ -140,7 +153,7 @@ class PanelPlacer {
     for (const auto& [part, of_level] : widths()) {
       auto& [first, of_height] = eases_[part];
       first = kStep * static_cast<double>(of_level.begin()->first);
-      const double slack = has_closure(part) ? kClosureSlack : 0;
+      const double slack = has_opening(part) ? kOpeningSlack : 0;
       const bool arm = part == Around::left_arm || part == Around::right_arm;
       const double min_ease = arm ? std::min(kMinSleeveGap - pattern_.gap, 0.0) : 0;
       std::vector<double> raw;
