@@ -62,7 +62,7 @@ class Pipe {
 
 void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   const rlimit both{soft, hard};
-  // If a stricter limit exists, setrlimit fails and that limit stays.
+  // Without privileges, a stricter hard limit makes setrlimit fail, and stays.
   static_cast<void>(::setrlimit(resource, &both));
 }
 
@@ -80,7 +80,7 @@ void send(int descriptor, std::string_view bytes) {
 [[noreturn]] void run_child(const std::function<std::string()>& work, const Isolation& isolation, int answer) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM}) std::signal(crash, SIG_DFL);
-  // Ctrl-C reaches all processes of the terminal; the parent decides about the child.
+  // Ctrl-C also reaches the child, which ignores it: the parent kills it once `stop` is true.
   for (const int request : {SIGINT, SIGHUP}) std::signal(request, SIG_IGN);
   limit(RLIMIT_CORE, 0, 0);
   // The soft limit sends SIGXCPU, the hard limit SIGKILL a second later.
@@ -164,7 +164,7 @@ std::string run_isolated(const std::function<std::string()>& work, const Isolati
   pipe.close_write_end();
   std::string answer = receive(pipe.read_end(), isolation);
   const int status = child.wait();
-  // The signal that stopped this process may have stopped the child, too.
+  // The signal that set `stop` may also have ended the child: that is an interruption, not a crash.
   if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);

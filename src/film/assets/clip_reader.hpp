@@ -1,4 +1,4 @@
-// Converts animations of assimp to clips in seconds, with checks.
+// Converts animations of assimp to clips, with times in seconds; rejects damaged ones.
 #pragma once
 
 #include <assimp/scene.h>

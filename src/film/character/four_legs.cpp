@@ -9,10 +9,10 @@
 namespace weft::character {
 namespace {
 
-/// Maximum mean sine of the trunk's slope on all fours [1]: 30 degrees.
+/// On all fours: maximum mean of |sine| of the angle between trunk and horizontal; 0.5 is 30 degrees.
 constexpr double kMaxTrunkSlope = 0.5;
 
-/// Maximum height of hands on the floor above the lowest foot, in leg lengths.
+/// Hands that are less than this above the lowest foot count as on the floor [leg lengths].
 constexpr double kMaxHandHeight = 0.25;
 
 double lowest_height(const Skeleton& skeleton, const Posture& posture, std::initializer_list<Joint> joints,

@@ -11,11 +11,12 @@ namespace {
 constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; at the recorded 0.038, thighs would touch
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
-constexpr double kFirstStepRatio = 0.65, kLastStepRatio = 0.75;  ///< length of first and last / steady step
+constexpr double kFirstStepRatio = 0.65,
+                 kLastStepRatio = 0.75;        ///< lengths of the first and last step, in steady steps
 constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
 
-/// Turn of the body per step on the small arc of a turn, toward the side of the foot that takes the first step of the
-/// turn [degrees]. The inner foot turns by more than the outer one, so that toes do not collide.
+/// Rotation of the body at each step of a U-turn [degrees], toward the foot that steps first, the inner one. The inner
+/// foot (entries 0 and 2) rotates by more than the outer one, so that toes do not collide.
 constexpr std::array<double, 4> kTurnAngles{54, 36, 54, 36};
 constexpr double kTurnStep = 0.11;  ///< forward distance per step of a turn [m], for a height of 1.75 m
 

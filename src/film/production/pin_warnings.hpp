@@ -13,12 +13,12 @@ namespace weft::production {
 /// following a body, that moves too fast for cloth to follow. Computes nothing if no pin moves.
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment);
 
-/// One warning for each key-framed pin and each rigid obstacle with prescribed motion that it enters, with the first
-/// time.
+/// One warning for each pair of a key-framed pin and a rigid, not dynamic obstacle that the pin enters; it states when
+/// the pin first enters.
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment);
 
-/// One warning for each two pins without a strength on a rectangle of cloth, at least one of them key-framed, that move
-/// farther apart than the cloth between them can stretch.
+/// One warning for each pair of rigid pins (no `strength`) on a rectangular cloth, at least one of them key-framed,
+/// that move farther apart than the cloth between them can stretch.
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment);
 
 /// One warning for each pin that follows a body, except an infinite floor, from more than 0.1 m away at the start.

@@ -62,7 +62,7 @@ class Outlines {
   Vertex to_picture(const Eigen::Vector4d& clip) const;
 
   int width_, height_, words_;  // words_: bit words in a row
-  float kink_ = 0;              // second difference of 1 / distance between pixels, relative to it: more is a fold
+  float kink_ = 0;              // folds: minimum second difference of 1 / distance, relative to it
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
   std::vector<int> first_;      // by word of `bits_`: index of its first pixel in `pixels_`
   std::vector<Pixel> pixels_;

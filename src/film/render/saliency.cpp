@@ -11,7 +11,7 @@
 namespace weft::render {
 namespace {
 
-// Occlusion is computed on a grid with this number of rows: one cell covers 1/5000 to 1/10000 of the picture.
+// Occlusion is computed on a grid with this number of rows: one cell covers 1/9216 of a picture of 16:9.
 constexpr int kRows = 72;
 constexpr double kHalfScoreRate =
     0.5;  // rate of shape change at which Saliency::motion is 1/2 [sizes of the cloth per second]

@@ -10,8 +10,8 @@ namespace weft::scene {
 /// through others, by the motion of that body. A character counts as moving. Motion by forces does not count.
 bool moves(const Scene& scene, const Obstacle& obstacle);
 
-/// Reports each `follow` of an obstacle or camera that names no body, or a character without a part. For obstacles,
-/// also reports the first cycle, and each `follow` of an obstacle that forces move.
+/// Reports each `follow` key of an obstacle or camera that names no body, or a character but none of its parts ("man",
+/// not "man.head"). For obstacles, also reports the first cycle, and each `follow` that names a dynamic obstacle.
 void check_following(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

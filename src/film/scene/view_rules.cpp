@@ -6,8 +6,8 @@
 namespace weft::scene {
 namespace {
 
-// The values in the table of a camera or light itself are stored as its first key. If the table has `keys`, the
-// defaults of the first key are these values, and each later key takes its defaults from the key before.
+// The values directly under a camera or light are stored as its first key frame. If it has `keys`, they are the
+// defaults of the first entry; each later entry takes its defaults from the entry before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -32,8 +32,8 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// Row of the focal length, after the row of the field of view. `stands` (S&): whether the value in the table itself is
-/// written.
+/// Row of the focal length, after the row of the field of view. `stands(s)`: whether the scene's text has the row for
+/// `s`; `otherwise`: the text of its default.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm",
@@ -76,7 +76,7 @@ const Table& camera_key_rules() {
   return kTable;
 }
 
-/// Keys of cameras that stand still or move by keys.
+/// TOML keys of a placed camera, still or key-framed.
 void placed_camera_rows(TableBuilder<Camera>& rows) {
   rows.vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "position of the camera")
       .need(Need::here_or_in_first_key)
@@ -110,7 +110,7 @@ void lens_rows(TableBuilder<Camera>& rows) {
       .by_default("the distance of the target; with kind = \"file\", aperture needs it");
 }
 
-/// Keys of computed cameras for their subject.
+/// TOML keys `subject` and `margin` of cameras that are placed by what they show (whole, follow, close, track).
 void subject_rows(TableBuilder<Camera>& rows) {
   rows.plain(Type::texts, "subject", &Camera::subjects,
              "names of the cloths, ropes, obstacles and characters that it shows")
@@ -151,7 +151,7 @@ void file_rows(TableBuilder<Camera>& rows) {
               "factor on the lengths of the file, which glTF gives in metres");
 }
 
-/// Table of the keys of a light. Suns and spots share some keys; `rows` adds the others.
+/// Rules for a key frame of a light; `rows` adds the TOML keys that only suns or only spots have.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
       .number("time", &LightKey::time, kMoment, "s", "time of the scene; later than that of the key before")

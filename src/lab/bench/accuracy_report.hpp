@@ -11,7 +11,7 @@ namespace weft::bench {
 
 /// All runs of one axis, of all integrators.
 std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis);
-/// The runs of Axis::grid in which the step decides, of all integrators.
+/// The runs of Axis::grid whose error comes from the step, not from the solver (Run::step_decides).
 std::vector<const Run*> deciding(const Accuracy& accuracy);
 /// The runs of Axis::grid with the newton_tolerance of the scene, of all integrators.
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
@@ -24,8 +24,8 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy);
 /// Errors against step, solver tolerance and mesh.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
-/// The cheapest run of Axis::grid or Axis::tolerance whose error plus uncertainty is at most `target`, as for all finer
-/// runs of its axis and integrator; nullptr if there is none.
+/// The cheapest run of Axis::grid or Axis::tolerance such that the error plus uncertainty of it, and of all finer runs
+/// of its axis and integrator, is at most `target`; nullptr if there is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
 /// The Pareto front of Axis::grid and Axis::tolerance, cheapest first: runs for which no other run is both cheaper and
 /// more exact (by error plus uncertainty).

@@ -11,7 +11,7 @@ namespace weft::model {
 enum class PressureControl {
   gauge,  ///< pressure above that of the outside air [Pa]
   air,    ///< air pumped in after closing, as volume at outside pressure [m³]; negative: out
-  fill,   ///< total air, as a ratio of the enclosed volume at closing
+  fill,   ///< total air, as its volume at outside pressure relative to the volume enclosed at closing
 };
 
 struct PressureKey {

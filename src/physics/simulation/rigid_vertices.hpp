@@ -1,4 +1,4 @@
-// Vertices of bodies that forces move: weighted sums of the particles of the bodies' frames.
+// Vertices of dynamic bodies, as weighted sums of the particles of each body's mesh::RigidFrame.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace weft::simulation {
 
-/// In arrays of positions, the vertices of bodies that forces move come after all particles. Contacts act on them as on
+/// In arrays of positions, the vertices of dynamic bodies come after all particles. Contacts act on them as on
 /// particles; this class passes the resulting forces and terms on to the frames.
 class RigidVertices {
  public:
-  /// `first`: number of the first vertex, which equals the number of particles.
+  /// `first`: index of the first vertex, equal to the count of particles.
   explicit RigidVertices(Index first) : first_(first) {}
 
   /// Appends the vertices of a body. `first_of_frame`: first particle of its frame. The frame must outlive this object.

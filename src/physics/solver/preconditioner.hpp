@@ -21,21 +21,21 @@ enum class AggregateSums { recompute, reuse };
 /// & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
 /// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
 /// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and of
-/// the aggregates of its neighbours. Q_k is a step of damped Jacobi on the graph of the matrix, applied to constants
-/// (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+/// the aggregates of its neighbours. Q_k is one step of damped Jacobi on the graph of the matrix, applied to
+/// interpolation by constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
 ///
 /// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or all of it on the last level. Both are expensive, so A_l
 /// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If each aggregate moves as a whole, all strain is at
-/// the boundaries of aggregates. If the same motion is spread over the width of an aggregate, its stiffness halves with
-/// each doubling of that width. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters with
-/// the factor 1/2 per level (small diagonal blocks: 1), the mass part with factor 1. Contact terms are not part of the
-/// matrix. For each particle of a contact term, the particle's stiffness enters the aggregates from which it
-/// interpolates. The sum bounds the contact part of the diagonal of T_lᵀ A T_l from above. The last level has T_lᵀ A
-/// T_l of the contact terms exactly.
+/// the boundaries of aggregates. Aggregates double in width per level, and the same motion spread over twice the
+/// width meets half of the stiffness. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters
+/// with the factor 1/2 per level (1 in a DiagonalBlock that is_small), the mass part with factor 1. Contact terms are
+/// not part of the matrix. Their stiffness at each particle is added to the aggregates from which the particle
+/// interpolates, by its weights; this is an upper bound of the contact part of the diagonal of T_lᵀ A T_l. The last
+/// level has T_lᵀ A T_l of the contact terms exactly.
 ///
-/// If threads are so stiff that the trace of a particle's block exceeds `stiff_particle` times the sum of
-/// `norm_weights` over its diagonal block (small ones excepted), no level interpolates: T_l = R_lᵀ, and the factor per
-/// level is 1. Interpolated motion would stretch threads across folds; R_l A R_lᵀ contains only threads across the
+/// If threads are so stiff that the trace of a particle's 3×3 block exceeds `stiff_particle` times the sum of
+/// `norm_weights` over its DiagonalBlock (not tested where is_small), no level interpolates: T_l = R_lᵀ, and the factor
+/// per level is 1. Interpolated motion would stretch threads across folds; R_l A R_lᵀ contains only threads across the
 /// boundaries of aggregates, not those inside.
 ///
 /// Set up in double, applied in `Real`.

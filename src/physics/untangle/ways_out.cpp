@@ -15,8 +15,8 @@ constexpr double kBlockedCost = 25;
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
 // Cost of a displacement as long as the region, so that the shorter of two ways with equal stretch is chosen.
 constexpr double kDisplacementCost = 0.05;
-// Cost of moving a whole mesh, high enough that it stays if the region can leave alone; and the longest such move, in
-// sizes of the region.
+// Cost of moving a whole mesh, high enough that the mesh stays if the region can get out by itself; and the longest
+// such move, in sizes of the region.
 constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
 // Maximum fraction of the particles that may pass through the body in such a move: more would pull cloth off a body
 // that wears it.

@@ -42,7 +42,7 @@ void add_backend(CLI::App& command, render::Backend& backend);
 void add_picture(CLI::App& command, SceneOptions& options);
 /// Adds --threads, --progress, --overwrite.
 void add_process(CLI::App& command, SceneOptions& options);
-/// Adds all options that change how a scene is read or drawn.
+/// Adds --fps, add_overrides(), add_picture() and add_process().
 void add_scene_changes(CLI::App& command, SceneOptions& options);
 /// Adds the scene argument, and add_scene_changes().
 void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file");

@@ -28,10 +28,11 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
 
 /// Whether a face takes part in a search.
 using CountsFace = std::function<bool(const Triangle& face)>;
-/// Nearest point of a surface of the broad phase, at x [m] inside the bounds of its last refit. Gives the same bits as
-/// a search over all triangles that are not excluded (unless a thousand nearly equidistant faces, each within rounding
-/// of the next, span kNearestTolerance). `counts`: if given, excludes faces for which it is false. `towards`: unit or
-/// zero; if not zero and some counted faces have a normal within 60 degrees of it, excludes all other faces.
+/// Nearest point of a surface of the broad phase at positions x [m], which must be inside the bounds of its last refit.
+/// Gives the same bits as a search over all triangles that are not excluded, except if the distances of some thousand
+/// faces, each within rounding of the next, extend over more than kNearestTolerance (query.hpp). `counts`: if given,
+/// excludes faces for which it is false. `towards`: unit or zero; if not zero and some counted faces have a normal
+/// within 60 degrees of it, excludes all other faces.
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
 
