@@ -233,8 +233,8 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
 
 TEST(Joints, AreNoMeshesOfTheSameName) {
   const std::vector<Node> nodes{{"Head", -1, Affine::Identity()}, {"mixamorig:Head", -1, Affine::Identity()}};
-  EXPECT_EQ(find_named_joints(nodes)[place_of(Joint::head)], 0);
-  EXPECT_EQ(find_named_joints(nodes, {false, true})[place_of(Joint::head)], 1);
+  EXPECT_EQ(find_named_joints(nodes)[joint_index(Joint::head)], 0);
+  EXPECT_EQ(find_named_joints(nodes, {false, true})[joint_index(Joint::head)], 1);
 }
 
 TEST(Joints, OfTheTrunkAreWhereLimbsPart) {

@@ -214,6 +214,19 @@ TEST(UntangledStart, HasTheSameBitsForAnyNumberOfThreads) {
   for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(one->states[s].positions, four->states[s].positions);
 }
 
+// Weft, not the scene, places their panels.
+TEST(UntangledStart, IsTheDefaultOfPatterns) {
+  scene::Scene scene = empty_scene();
+  scene::Cloth pillow = sheet("pillow", {0, 0, 1});
+  pillow.start.reset();
+  pillow.shape = scene::ClothShape::pattern;
+  pillow.file = std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/pillow.toml";
+  pillow.edge_length = 0.04;
+  scene.cloths.push_back(pillow);
+  add_obstacle(scene, "ball", scene::Sphere{0.1}, {0, -0.1, 1.2});
+  expect_untangled(scene);
+}
+
 TEST(UntangledStart, OfASceneThatIsApartNothingMoves) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.21}));

@@ -267,7 +267,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
   made.cloth.crossed = cloth.shape == scene::ClothShape::crossed_triangles;
   if (cloth.shape == scene::ClothShape::pattern || cloth.shape == scene::ClothShape::mesh)
     made.cloth.sewing = cloth.sewing;
-  made.cloth.untangle = cloth.start == scene::ClothStart::untangle;
+  made.cloth.untangle = starts_untangled(cloth);
   made.cloth.pressure = cloth.pressure;
   const mesh::Grid grid = grid_of(cloth);
   assets::LoadedMesh file;

@@ -227,9 +227,13 @@ const Table& cloth_rules() {
           .vector("spin", &Cloth::spin, kXyz, within(-36000, 36000), "degrees/s",
                   "initial angular velocity about its centre of mass: a vector along the axis")
           .written_if([](Cloth& cloth) { return cloth.spin != Vec3::Zero(); })
-          .choice("start", &Cloth::start, {"as_given", "untangle"},
-                  "what to do if it touches or crosses itself, other cloth or an obstacle at the start: refuse the "
-                  "scene (as_given), or move it out before the first step (untangle)")
+          .choice_by(
+              "start", {"as_given", "untangle"},
+              "what to do if it touches or crosses itself, other cloth or an obstacle at the start: refuse the "
+              "scene (as_given), or move it out before the first step (untangle)",
+              [](Cloth& cloth) -> std::size_t { return starts_untangled(cloth) ? 1 : 0; },
+              [](Cloth& cloth, std::size_t index) { cloth.start = static_cast<ClothStart>(index); })
+          .by_default("untangle for patterns, else as_given")
           .plain(Type::texts, "over", &Cloth::over,
                  "names of the cloths that it is worn over; the layers share the preroll: each is put on after those "
                  "below it, and moved outside of them")

@@ -202,9 +202,9 @@ struct Cloth {
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec3 spin{0, 0, 0};        ///< at the start, about the centre of mass: vector along the axis [degrees/s]
   Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
-  ClothStart start = ClothStart::as_given;  ///< reaction to surfaces that touch or cross at the start
-  std::vector<std::string> over;            ///< cloths that are put on before this one and stay inside
-  double start_noise = 0;                   ///< maximum random offset of a particle at the start, along each axis [m]
+  std::optional<ClothStart> start;  ///< reaction to surfaces that touch or cross at the start; absent: by shape
+  std::vector<std::string> over;    ///< cloths that are put on before this one and stay inside
+  double start_noise = 0;           ///< maximum random offset of a particle at the start, along each axis [m]
   Material material;
   Pressure pressure;
   Look look;
@@ -212,6 +212,12 @@ struct Cloth {
   std::vector<Weight> weights;
   std::shared_ptr<const Rope> rope;  ///< the rope that this cloth represents; null: a sheet
 };
+
+/// Whether cloth that touches or crosses something at the start may be moved off it, if it is worn `over` nothing. Weft
+/// itself, not the scene, places the panels of a pattern around the wearer.
+inline bool starts_untangled(const Cloth& cloth) {
+  return cloth.start ? *cloth.start == ClothStart::untangle : cloth.shape == ClothShape::pattern;
+}
 
 /// Number of particles of a rectangle of cloth; 0 for other shapes.
 inline long rectangle_particles(const Cloth& cloth) {
