@@ -167,8 +167,8 @@ TEST_F(Scenes, HaveTheMeshesThatAreChosen) {
 TEST_F(Scenes, WhoseRestPoseIsNotThatInWhichTheSkinWasBoundAreWarnedAbout) {
   knee_->mTransformation.a1 = knee_->mTransformation.b2 = -1;
   EXPECT_EQ(warning(),
-            "mesh \"leg\": the rest pose of the nodes holds its skin up to 2 m from where it was bound, at node "
-            "\"knee\"; if the body looks wrong, export it in its bind pose, or as glTF");
+            "mesh \"leg\": in the rest pose of the skeleton, its skin is up to 2 m away from where it was bound to the "
+            "bones, at node \"knee\"; if the body looks wrong, export it in its bind pose, or as glTF");
 }
 
 // An FBX mesh is bound at its node. In other files, a mesh with one bone is consistent with any pose.
@@ -180,7 +180,8 @@ TEST_F(Scenes, OfFbxAreComparedWithTheirNodes) {
   scene_.mMetaData->Set(0, "UnitScaleFactor", 1.0F);
   const std::vector<std::string> warnings = read().warnings;
   EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& text) {
-    return text.find("holds its skin up to 0.25 m from where it was bound, at node \"hip\"") != std::string::npos;
+    return text.find("its skin is up to 0.25 m away from where it was bound to the bones, at node \"hip\"") !=
+           std::string::npos;
   })) << (warnings.empty() ? "none" : warnings.front());
 }
 

@@ -272,9 +272,9 @@ TEST_F(SewingText, DrawnCurvesOfManyPiecesHaveOneNameFromCornerToCorner) {
   const std::string drawn = "[[panel]]\nname = 'p'\nfile = 'd.svg'\nid = 'path:1'\n";
   const auto names = [&](const std::string& more) {
     support::write_bytes(folder_ / "p.toml", drawn + more);
+    const Pattern pattern = load_pattern(folder_ / "p.toml", "a test");
     std::vector<std::string> found;
-    for (const PanelEdge& edge : load_pattern(folder_ / "p.toml", "a test").panels.at(0).edges)
-      found.push_back(edge.name);
+    for (const PanelEdge& edge : pattern.panels.at(0).edges) found.push_back(edge.name);
     std::ranges::sort(found);
     return found;
   };

@@ -285,26 +285,6 @@ TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
   EXPECT_LE((draw(3) - 255 * bright).cwiseAbs().maxCoeff(), 4) << draw(3).transpose();
 }
 
-// The surroundings are a thousand times as large as the eye is high: the floor fades within the last pixel below the
-// horizon, and shows its plain light in all others. On a grid of 16 pixels, it would fade over up to 16 of them.
-TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
-  frame::FrameSnapshot snapshot;
-  snapshot.stage = stage_without_sky();
-  add_floor(snapshot).appearance.color = Vec3::Constant(0.6);
-  for (const double side : {-1, 1})
-    add_square(snapshot, frame::ObjectKind::obstacle, Vec3(1700 * side, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 1);
-  snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
-  snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
-  // The row of the horizon, from the top: 0.005 / tan 15 of half a picture above the middle.
-  const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
-  for (const Quality quality : {Quality::preview, Quality::final}) {
-    const image::Image image = Renderer(settings(quality)).draw(snapshot);
-    for (int y = horizon + 3; y < kPictureHeight; ++y)
-      EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
-    EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
-  }
-}
-
 TEST(Picture, ThinSheetDoesNotShadeItself) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::cloth, 0.3, Vec3(0.6, 0.6, 0.6));
   snapshot.lights = {sun(Vec3(1, 0.35, -0.4))};  // 17 degrees above the sheet

@@ -234,30 +234,30 @@ TEST(JointFilter, AveragesNoiseButNotTwoSurfaces) {
 }
 
 TEST(JointFilter, AveragesAsManyPointsOfAnObliquePlaneAsOfAFacingOne) {
-  constexpr int kSide = 48;
+  constexpr int kPoints = 48;
   const auto remaining_noise = [](bool oblique) {
     View view;
     view.tan_half_width = view.tan_half_height = 0.1;
     std::vector<Seen> seen;
-    for (int i = 0; i < kSide * kSide; ++i) {
+    for (int i = 0; i < kPoints * kPoints; ++i) {
       // The rows of the oblique plane are seen under angles from 4 to 15 degrees.
-      const float high = 0.1f * (2 * (static_cast<float>(i / kSide) + 0.5f) / kSide - 1);
+      const float high = 0.1f * (2 * (static_cast<float>(i / kPoints) + 0.5f) / kPoints - 1);
       seen.push_back({oblique ? 0.2f / (0.05f - 0.3f * high) : 1.0f, static_cast<float>(kFirstSurface)});
     }
     const Vector3f normal = oblique ? Vector3f(0, 0.3f, 0.05f).normalized() : Vector3f(0, 0, 1);
     const std::vector<Eigen::Vector4f> normals(seen.size(), {normal.x(), normal.y(), normal.z(), 0});
-    PixelPoints points(kSide, kSide, 1);
+    PixelPoints points(kPoints, kPoints, 1);
     const PixelPoints::Kind kinds[] = {PixelPoints::Kind::solid};
     points.read(seen, normals, kinds, view, {});
-    std::vector<Plane> planes(1, Plane(kSide, kSide, 0)), scratch = planes;
+    std::vector<Plane> planes(1, Plane(kPoints, kPoints, 0)), scratch = planes;
     std::mt19937 random(5);
     std::uniform_real_distribution<float> noise(-0.05f, 0.05f);
-    for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < kSide; ++x) planes[0].row(y)[x] = noise(random);
+    for (int y = 0; y < kPoints; ++y)
+      for (int x = 0; x < kPoints; ++x) planes[0].row(y)[x] = noise(random);
     for (const int step : {1, 2, 4}) smooth(planes, scratch, points, step);
     float sum = 0;
-    for (int y = 8; y < kSide - 8; ++y)
-      for (int x = 8; x < kSide - 8; ++x) sum += planes[0].row(y)[x] * planes[0].row(y)[x];
+    for (int y = 8; y < kPoints - 8; ++y)
+      for (int x = 8; x < kPoints - 8; ++x) sum += planes[0].row(y)[x] * planes[0].row(y)[x];
     return std::sqrt(sum);
   };
   EXPECT_LT(remaining_noise(true), 1.2f * remaining_noise(false));

@@ -99,7 +99,8 @@ TEST(RopeScenes, MistakesNameTheKeyAndWhatIsExpected) {
   expect("points = [[0, 0, 0], [1, 0, 0]]\nfrom = [0, 0, 0]\n", "expected either from or points, got both");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 200\n",
          "rope.line.segments: expected pieces between particles of at least 0.012 m, 1.5 diameters");
-  expect("from = [0, 0, 0]\nto = [0, 0, 1]\nlength = 2\n", "expected ends at least 0.032 m apart across the up axis");
+  expect("from = [0, 0, 0]\nto = [0, 0, 1]\nlength = 2\n",
+         "expected a place at least 0.032 m (4 diameters) beside `from`");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\nmaterial = \"nylom\"\n", "did you mean nylon?");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\npin = [{}]\n", "rope.line.pin.0.at: expected");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\npin = [{ at = [0.7, 0.2] }]\n", "expected the lower end first");

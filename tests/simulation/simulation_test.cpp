@@ -1,6 +1,5 @@
 // The whole step loop: pins, contact, failures, and the same bits with any number of threads.
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <cstring>
 #include <numbers>
@@ -43,23 +42,6 @@ TEST(Simulation, FrameZeroIsTheSheetAsTheSceneLaysIt) {
     for (int i = 0; i < 5; ++i) EXPECT_LT((x[i + 5 * j] - Vec3(-0.2 + 0.1 * i, -0.2 + 0.1 * j, 1.5)).norm(), 1e-15);
   EXPECT_NEAR(simulation.initial_report().elastic_energy, 0, 1e-20);
   EXPECT_EQ(simulation.initial_report().kinetic_energy, 0);
-}
-
-// In the frame in which the sheet meets the sphere.
-TEST(Simulation, TakesLessThanFiveKilobytesAParticle) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "the sanitizer has its own malloc";
-#endif
-  const auto bytes_in_use = [] {
-    const auto info = mallinfo2();
-    return static_cast<double>(info.uordblks + info.hblkhd);
-  };
-  const scene::Scene scene = support::scene_of(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/sphere_drape.toml",
-                                               {"cloth.sheet.position=[0.003,0.002,0.413]"});
-  const double before = bytes_in_use();
-  production::SceneSimulation simulation(scene);
-  for (int k = 0; k < 3; ++k) simulation.advance();
-  EXPECT_LT((bytes_in_use() - before) / static_cast<double>(simulation.particles()), 4800);
 }
 
 TEST(Simulation, FrameTimesAreThoseOfTheRateAndNoSums) {
@@ -413,7 +395,7 @@ TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) 
   for (int k = 1; k <= 3; ++k) simulation.advance();
   const auto good = simulation.snapshot();
   for (int attempt = 0; attempt < 2; ++attempt) {
-    support::expect_error(ExitCode::simulation_failed, "frame 4: the step at t = 0.12 s was rejected",
+    support::expect_error(ExitCode::simulation_failed, "frame 4: the step at 0.12 s failed",
                           [&] { simulation.advance(); });
     EXPECT_EQ(simulation.snapshot(), good);
     EXPECT_EQ(simulation.snapshot()->frame, 3);
@@ -440,7 +422,7 @@ TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
     return "no failure";
   };
   const std::string first = failure();
-  EXPECT_NE(first.find("frame 4: the step at t = 0.14 s was rejected"), std::string::npos) << first;
+  EXPECT_NE(first.find("frame 4: the step at 0.14 s failed"), std::string::npos) << first;
   EXPECT_EQ(failure(), first);
 }
 
