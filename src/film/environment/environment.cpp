@@ -82,9 +82,8 @@ void list_colliding_triangles(model::Body& body, BodyDetails& details) {
 
 /// Sets the advice for the message that surfaces touch at the start.
 void set_start_advice(const scene::Scene& scene, model::Model& model) {
-  const bool untangles = std::ranges::any_of(scene.cloths, [](const scene::Cloth& cloth) {
-    return starts_untangled(cloth) || !cloth.over.empty();
-  });
+  const bool untangles = std::ranges::any_of(
+      scene.cloths, [](const scene::Cloth& cloth) { return starts_untangled(cloth) || !cloth.over.empty(); });
   model.start_advice = untangles ? "'weft thumbnail --start' draws it as it was; move one of them"
                                  : "'weft thumbnail --start' draws it; move one of them, or leave it out of contact";
   if (!untangles) model.untangle_advice = "or give a cloth start = \"untangle\"";

@@ -193,8 +193,7 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
       },
       "no cloth is sewn from flat panels"));
   items.push_back(cloth_item(
-      "preparation: untangling", scene,
-      [](const Cloth& c) { return starts_untangled(c) || !c.over.empty(); },
+      "preparation: untangling", scene, [](const Cloth& c) { return starts_untangled(c) || !c.over.empty(); },
       "every cloth starts as given"));
   const int frames = scene.preroll_frames();
   const std::vector<scene::Layer> layers = scene::list_layers(scene);

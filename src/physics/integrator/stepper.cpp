@@ -176,8 +176,8 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
 // work as there was energy. If a block exceeds the bound, its allowed error is reduced by the same ratio.
 void Stepper::bound_work(std::span<const double> masses, const State& now) {
   for (BlockState& part : blocks_) {
-    const double work = std::abs(
-        sum_over_particles(part.rows, [&](std::size_t i) { return residual_[i].dot(x_end_[i] - now.x[i]); }));
+    const double work =
+        std::abs(sum_over_particles(part.rows, [&](std::size_t i) { return residual_[i].dot(x_end_[i] - now.x[i]); }));
     const double kinetic =
         0.5 * sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * v_[i].squaredNorm(); });
     const double most = numerics.energy.doubtful_gain * kinetic + numerics.energy.negligible * part.mass;

@@ -155,7 +155,7 @@ class Stepper {
     bool holds_sliding = false;  // a constraint holds it against sliding
     double sliding_error = 0;    // velocity error of the whole block by wrong friction, if it is about to slide [m/s]
 
-    double work_error = 0;       // velocity error that counts if the residual does too much work, else 0 [m/s]
+    double work_error = 0;  // velocity error that counts if the residual does too much work, else 0 [m/s]
 
     double error() const { return std::max({left, sliding_error, work_error}); }  // [m/s]
   };
