@@ -306,6 +306,11 @@ TEST_F(MeshFiles, OfGltfWithIntegersForFloatsAreConverted) {
   std::string cut = gltf_tetrahedron_of_integers();
   cut.replace(cut.find("\"byteOffset\":76"), 15, "\"byteOffset\":80");
   EXPECT_EQ(refusal("cut.gltf", cut), "expected 1 elements of 6 bytes in a buffer, which has 84 bytes");
+  // The sparse part has its index in a texture coordinate now: 255, 0, 0, 0 are the bytes of 255.
+  std::string astray = gltf_tetrahedron_of_integers();
+  astray.replace(astray.find("\"byteOffset\":72"), 15, "\"byteOffset\":60");
+  EXPECT_EQ(refusal("astray.gltf", astray),
+            "expected indices of a sparse accessor below 4, its number of elements, got 255");
 }
 
 TEST_F(MeshFiles, WithAByteOrderMarkAreReadFromBehindIt) {

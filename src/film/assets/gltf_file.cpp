@@ -204,9 +204,13 @@ class Rewriter {
     const std::vector<double> at = integers(part_of(sparse, "indices"), *index, replaced, 1, false),
                               by = integers(part_of(sparse, "values"), *integer_of(accessor), replaced, components,
                                             normalised);
-    for (std::size_t i = 0; i < replaced; ++i)
+    for (std::size_t i = 0; i < replaced; ++i) {
+      if (at[i] >= static_cast<double>(count))
+        throw std::runtime_error(fmt::format(
+            "expected indices of a sparse accessor below {}, its number of elements, got {}", count, at[i]));
       for (std::size_t k = 0; k < components; ++k)
-        values.at(static_cast<std::size_t>(at[i]) * components + k) = by[i * components + k];
+        values[static_cast<std::size_t>(at[i]) * components + k] = by[i * components + k];
+    }
     return values;
   }
 
@@ -261,7 +265,8 @@ class Rewriter {
     append(floats_);
     for (Json& view : gltf_["bufferViews"]) {
       const int buffer = value_or<int>(view, "buffer", 0);
-      const std::size_t start = buffer < 0 ? starts.back() : starts.at(static_cast<std::size_t>(buffer));
+      if (buffer >= 0) entry_of(gltf_, "buffers", buffer);  // checks the number
+      const std::size_t start = buffer < 0 ? starts.back() : starts[static_cast<std::size_t>(buffer)];
       view["buffer"] = 0;
       view["byteOffset"] = start + size_of(view, "byteOffset");
     }
