@@ -2,14 +2,35 @@
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/parallel_for.h>
 
 #include <memory>
+#ifdef __SANITIZE_THREAD__
+#include <thread>
+#endif
 
 namespace weft {
 namespace {
 
 int g_threads = 0;  // 0 until set: all cores
 std::unique_ptr<tbb::global_control> g_limit;
+
+#ifdef __SANITIZE_THREAD__
+// The thread sanitizer cannot see how libtbb, which is not built with it, synchronises threads, and would report every
+// loop. Two threads of our own show it which chunks run at the same time.
+void run_on_threads(std::size_t chunks, FunctionOfIndex run) {
+  const auto each_second = [&](std::size_t first) {
+    for (std::size_t c = first; c < chunks; c += 2) run(c);
+  };
+  std::thread other(each_second, 1);
+  each_second(0);
+  other.join();
+}
+#else
+void run_on_threads(std::size_t chunks, FunctionOfIndex run) {
+  tbb::parallel_for(std::size_t{0}, chunks, run);
+}
+#endif
 
 }  // namespace
 
@@ -22,6 +43,12 @@ void set_thread_count(int threads) {
 
 int thread_count() {
   return g_threads > 0 ? g_threads : tbb::info::default_concurrency();
+}
+
+void run_chunks(std::size_t chunks, FunctionOfIndex run) {
+  if (chunks > 1 && thread_count() > 1) return run_on_threads(chunks, run);
+  const CountedLoop counted(chunks);
+  for (std::size_t c = 0; c < chunks; ++c) run(c);
 }
 
 }  // namespace weft

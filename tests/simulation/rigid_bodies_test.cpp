@@ -11,6 +11,7 @@
 #include "core/error.hpp"
 #include "film/production/plan.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "physics/motion/pose.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 
@@ -47,8 +48,7 @@ Fit fit(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   const Vec3 a = middle(from), b = middle(to);
   Mat3 sum = Mat3::Zero();
   for (std::size_t i = 0; i < from.size(); ++i) sum += (to[i] - b) * (from[i] - a).transpose();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Fit result{svd.matrixU() * svd.matrixV().transpose(), 0};
+  Fit result{motion::best_rotation(sum), 0};
   for (std::size_t i = 0; i < from.size(); ++i)
     result.off = std::max(result.off, (to[i] - b - result.turn * (from[i] - a)).norm());
   return result;
