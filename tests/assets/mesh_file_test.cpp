@@ -319,6 +319,12 @@ TEST_F(MeshFiles, WithAByteOrderMarkAreReadFromBehindIt) {
   EXPECT_NEAR(volume(load("marked.gltf", mark + gltf_tetrahedron())), 1.0 / 6, 1e-15);
 }
 
+TEST_F(MeshFiles, OfObjMayHaveCommentsBehindNumbers) {
+  std::string text;
+  for (const char c : obj_cube()) text += c == '\n' ? "  # 1/2 of a comment\n" : std::string(1, c);
+  EXPECT_NEAR(volume(load("comments.obj", "o cube#1\n" + text)), 1, 1e-15);
+}
+
 TEST_F(MeshFiles, OfGltfHaveTheWeightsOfTheirMorphTargets) {
   std::string gltf = gltf_tetrahedron();
   const std::string indices = "\"indices\":1}]";  // a target that doubles the size, at half its weight

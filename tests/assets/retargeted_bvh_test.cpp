@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -164,6 +165,22 @@ TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
     for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
     EXPECT_LT(max_distance, 1e-4) << (translations == Translations::of_zero ? "of zero" : "of the offsets");
   }
+}
+
+TEST_F(RetargetedBvh, MayHaveKeywordsInAnySpellingAndSpacesInNames) {
+  std::vector<Bone> bones = somebody();
+  const std::vector<double> order(bones.size(), 0);
+  const std::vector<Quat> zero(bones.size(), Quat::Identity());
+  const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
+  for (Bone& bone : bones) bone.name = "My " + bone.name;
+  std::string text = write_bvh(bones, zero, order);
+  const std::size_t frames = text.find("Frames:");
+  for (std::size_t i = 0; i < frames; ++i)
+    if (text.compare(i, 3, "My ") != 0) text[i] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[i])));
+  text.replace(frames, 7, "frames :");
+  const std::size_t time = text.find("Frame Time:");
+  text.replace(time, 11, "FrameTime:");
+  EXPECT_EQ(vertices(text), expected);
 }
 
 TEST_F(RetargetedBvh, NeedsNoNames) {

@@ -22,25 +22,24 @@
 
 #include "core/input_file.hpp"
 #include "film/assets/gltf_file.hpp"
+#include "film/assets/text_file.hpp"
 
 namespace weft::assets {
 namespace {
 
 /// Opens only regular files, also among those that a file refers to (materials, buffers): pipes and devices may never
-/// end. assimp 5.2 passes the names in glTF files on as they are there: percent-encoded. Texts begin after their byte
-/// order mark: assimp 5.2 takes it for a part of the first line of OBJ and BVH.
+/// end. assimp 5.2 passes the names in glTF files on as they are there: percent-encoded.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override { return !find(file).empty(); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     const std::string found = find(file);
     if (found.empty()) return nullptr;
-    constexpr std::string_view kMark = "\xef\xbb\xbf";
-    if (read_start(found, kMark.size()) != kMark) return DefaultIOSystem::Open(found.c_str(), mode);
-    const std::string text = read_bytes(found).substr(kMark.size());
-    auto* bytes = new std::uint8_t[text.size()];
-    std::ranges::copy(text, bytes);
-    return new Assimp::MemoryIOStream(bytes, text.size(), true);  // it owns the bytes
+    const std::optional<std::string> text = readable_text(found);
+    if (!text) return DefaultIOSystem::Open(found.c_str(), mode);
+    auto* bytes = new std::uint8_t[text->size()];
+    std::ranges::copy(*text, bytes);
+    return new Assimp::MemoryIOStream(bytes, text->size(), true);  // it owns the bytes
   }
 
  private:

@@ -1,0 +1,120 @@
+#include "film/assets/text_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+#include <vector>
+
+#include "core/input_file.hpp"
+
+namespace weft::assets {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf", kSpace = " \t\r";
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return lower;
+}
+
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
+  return text.substr(0, text.find_last_not_of(kSpace) + 1);
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (line = trimmed(line); !line.empty(); line = trimmed(line)) {
+    words.push_back(line.substr(0, line.find_first_of(kSpace)));
+    line.remove_prefix(words.back().size());
+  }
+  return words;
+}
+
+// A line of OBJ without a comment behind its numbers. Other lines may have '#' in names.
+std::string_view without_comment(std::string_view line) {
+  constexpr std::array<std::string_view, 6> kWithNumbers{"v", "vt", "vn", "f", "l", "p"};
+  const std::string_view start = trimmed(line);
+  const std::string_view keyword = start.substr(0, start.find_first_of(kSpace));
+  return std::ranges::count(kWithNumbers, keyword) > 0 ? line.substr(0, line.find('#')) : line;
+}
+
+// A line of BVH before its frames.
+std::string usual_bvh_line(std::string_view line) {
+  constexpr std::array<std::string_view, 14> kUsual{"HIERARCHY", "ROOT",      "JOINT",     "OFFSET",    "CHANNELS",
+                                                    "End",       "Site",      "MOTION",    "Xposition", "Yposition",
+                                                    "Zposition", "Xrotation", "Yrotation", "Zrotation"};
+  std::string text;
+  const std::vector<std::string_view> words = words_of(line);
+  const std::string first = words.empty() ? "" : lower_case(words[0]);
+  const bool names_joint = first == "root" || first == "joint";
+  for (std::size_t w = 0; w < words.size(); ++w) {
+    const bool in_name = names_joint && w > 0 && words[w] != "{";
+    std::string word(words[w]);
+    for (const std::string_view usual : kUsual)
+      if (!in_name && lower_case(word) == lower_case(usual)) word = usual;
+    if (w > 0) text += in_name && w > 1 ? '_' : ' ';
+    text += word;
+  }
+  return text;
+}
+
+// Lines of BVH between "MOTION" and the frames.
+std::string usual_bvh_header(std::string_view line) {
+  std::string name;
+  const std::size_t colon = line.find(':');
+  for (const char c : lower_case(line.substr(0, colon)))
+    if (kSpace.find(c) == std::string_view::npos) name += c;
+  if (colon != std::string_view::npos && name == "frames") return "Frames:" + std::string(line.substr(colon + 1));
+  if (colon != std::string_view::npos && name == "frametime")
+    return "Frame Time:" + std::string(line.substr(colon + 1));
+  return std::string(line);
+}
+
+template <class Change>
+std::string change_lines(std::string_view text, const Change& change) {
+  std::string changed;
+  changed.reserve(text.size());
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    changed += change(line);
+    text.remove_prefix(line.size());
+    if (text.empty()) break;
+    changed += '\n';
+    text.remove_prefix(1);
+  }
+  return changed;
+}
+
+std::string usual_bvh(std::string_view text) {
+  enum class Part { hierarchy, header, frames } part = Part::hierarchy;
+  return change_lines(text, [&](std::string_view line) -> std::string {
+    if (part == Part::hierarchy) {
+      std::string usual = usual_bvh_line(line);
+      if (usual == "MOTION") part = Part::header;
+      return usual;
+    }
+    if (part == Part::frames) return std::string(line);
+    std::string usual = usual_bvh_header(line);
+    if (usual.starts_with("Frame Time:")) part = Part::frames;
+    return usual;
+  });
+}
+
+}  // namespace
+
+std::optional<std::string> readable_text(const std::filesystem::path& file) {
+  const std::string ending = lower_case(file.extension().string());
+  const bool is_marked = read_start(file, kByteOrderMark.size()) == kByteOrderMark;
+  if (!is_marked && ending != ".obj" && ending != ".bvh") return std::nullopt;
+  const std::string bytes = read_bytes(file);
+  const std::string_view text = std::string_view(bytes).substr(is_marked ? kByteOrderMark.size() : 0);
+  std::string readable = ending == ".obj"   ? change_lines(text, without_comment)
+                         : ending == ".bvh" ? usual_bvh(text)
+                                            : std::string(text);
+  return readable == bytes ? std::nullopt : std::optional(std::move(readable));
+}
+
+}  // namespace weft::assets
