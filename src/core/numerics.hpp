@@ -156,7 +156,7 @@ struct Numerics {
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
     /// A retry ends before a compromise:
-    /// - after so many rejections of a step, cloth may count as pinched, and much stretch or added energy is accepted,
+    /// - after so many rejections of a step, cloth may count as pinched, and much added energy is accepted,
     /// - after so many halvings of a trajectory, the search for its separating planes ends (0: a tenth more
     ///   iterations),
     /// - after so many repeats of a step with obstructed pins released, pinned particles may be pushed.
@@ -168,9 +168,6 @@ struct Numerics {
     /// Energy gain, relative to the kinetic and elastic energy at the start of the step, above which an unfinished
     /// solve starts anew with fixed normal forces.
     double diverged_energy_ratio = 3;
-    /// Maximum of r₁ − max(1, r₀), where r₀ and r₁ are the largest ratios of stretch to `max_stretch` at the start and
-    /// the end of a step.
-    double max_excess_stretch = 2;
   } repair;
 
   /// Pinned particles that an obstacle or other cloth keeps from their targets: they lag

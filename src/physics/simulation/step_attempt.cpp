@@ -23,9 +23,8 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     if (!collisions_) return rejection_of(solve(h, start, false, report));
 
     const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
-    Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
-                                       : solve_with_velocity_constraints(attempt, start, report);
-    if (!rejection && may_shorten(attempt)) rejection = check_overstretch(h);
+    const Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
+                                             : solve_with_velocity_constraints(attempt, start, report);
     if (collisions_->obstructed_pins().empty() || attempt.may_move_pins) return rejection;
     if (!is_short_enough(attempt) && !pins_.any_lags()) return rejection;
     for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
@@ -198,7 +197,7 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const bool may_pinch = is_short_enough(attempt);
   if (Rejection stuck = collisions_->push_apart(attempt.h, may_pinch, attempt.may_move_pins, progress_.now, next_))
     return stuck;
-  if (!may_shorten(attempt)) return std::nullopt;
+  if (attempt.is_last || attempt.rejections >= numerics.repair.max_retries) return std::nullopt;
   const double ratio = added_energy_ratio(energy_before, attempt.h);
   if (ratio <= numerics.energy.doubtful_gain) return std::nullopt;
   progress_.longest = 0.5 * attempt.h;
@@ -208,23 +207,10 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
       ratio);
 }
 
-bool StepLoop::may_shorten(const Attempt& attempt) {
-  return !attempt.is_last && attempt.rejections < numerics.repair.max_retries;
-}
-
 // Whether a shorter step would find no more space for cloth than this one.
 bool StepLoop::is_short_enough(const Attempt& attempt) const {
   return attempt.is_last || (attempt.rejections >= numerics.repair.max_retries &&
                              collisions_->obstacles_move_little(progress_.now, next_));
-}
-
-// Rejects a step that stretches threads far beyond their limit and far beyond their stretch at its start.
-StepLoop::Rejection StepLoop::check_overstretch(double h) {
-  const double ratio = cloth_.overstretch(next_.particles()).ratio;
-  const double most = numerics.repair.max_excess_stretch;
-  if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).ratio + most) return std::nullopt;
-  progress_.longest = 0.5 * h;
-  return fmt::format("it would stretch threads to {:.2g} times their max_stretch", ratio);
 }
 
 // Mechanical energy at `moment`, with the gravity of the current step [J].

@@ -136,9 +136,7 @@ class StepLoop {
   integrator::StepReport solve(double h, Start start, bool check_early, FrameReport& report);
   integrator::Method method() const;
   Rejection push_apart(const Attempt& attempt);
-  static bool may_shorten(const Attempt& attempt);
   bool is_short_enough(const Attempt& attempt) const;
-  Rejection check_overstretch(double h);
   double energy(const SystemState& moment) const;
   double added_energy_ratio(double before, double h) const;
   static Rejection rejection_of(const integrator::StepReport& step);
