@@ -257,12 +257,18 @@ TEST(LibraryMove, LeavesLayersWhereTheyAreHeldAfterAResumption) {
     EXPECT_EQ(positions(resumed.frame(), name), positions(whole.frame(), name)) << name;
 }
 
+TEST(LibrarySettings, RefuseNumbersOfThreadsBelowZero) {
+  EXPECT_THROW(set_threads(-1), std::invalid_argument);
+  EXPECT_NO_THROW(set_threads(0));
+}
+
 TEST(LibraryMove, RefusesWhatItCannotMove) {
   const Scene scene = Scene::parse(kDrape);
   const SimulationOptions ball{.driven = {"ball"}, .state = {}};
   EXPECT_THROW(Simulation(scene.with({"obstacle.ball.mass=1"}), ball), std::invalid_argument);
   EXPECT_NO_THROW(Simulation(scene.with({"obstacle.ball.mass=1", "obstacle.ball.release=0.2"}), ball));
   EXPECT_THROW(Simulation(scene, {.driven = {"bal"}, .state = {}}), std::invalid_argument);
+  EXPECT_THROW(Simulation(scene, {.driven = {"ball", "ball"}, .state = {}}), std::invalid_argument);
   Simulation still(scene), driven(scene, {.driven = {"ball"}, .state = {}});
   const auto error = thrown<std::invalid_argument>([&] { still.move("ball", {}); });
   EXPECT_STREQ(error.what(), "expected a driven body, got ball; name it in `driven` when the simulation is made");

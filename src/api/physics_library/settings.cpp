@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
 #include <utility>
 #include <weft/settings.hpp>
 
@@ -13,6 +16,7 @@ const char* version() {
 }
 
 void set_threads(int threads) {
+  if (threads < 0) throw std::invalid_argument(fmt::format("threads: expected 0 or more, got {}", threads));
   set_thread_count(threads);
 }
 

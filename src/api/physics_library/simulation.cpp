@@ -16,7 +16,10 @@ Simulation::Impl::Impl(std::unique_ptr<simulation::Simulation> of, std::string h
                        const SimulationOptions& options, MakeFrame make)
     : simulation(std::move(of)), heading(std::move(heading_of_state)), make_frame(std::move(make)) {
   for (const std::string& name : options.driven) {
-    driven.push_back(body(name));
+    const std::size_t number = body(name);
+    if (std::ranges::find(driven, number) != driven.end())
+      throw std::invalid_argument(fmt::format("driven: expected each body once, got {} twice", name));
+    driven.push_back(number);
     simulation->allow_drive(driven.back());
   }
   if (options.state.empty()) {

@@ -11,6 +11,7 @@ namespace weft {
 WEFT_API const char* version();
 
 /// Sets the largest number of threads; 0: as many as there are processors. Results do not depend on it.
+/// Throws std::invalid_argument for a number below 0.
 WEFT_API void set_threads(int threads);
 
 /// Sends each message about a model or scene to `handle`, instead of standard error. `handle` is called by the
