@@ -71,7 +71,6 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
     lags_[i] |= released_[i];
     lagging_particles_[pin_of(target.constraint.particle)] += lags_[i];
   }
-  any_lags_ = std::ranges::any_of(lagging_particles_, [](std::size_t count) { return count > 0; });
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
     if (lags_[i] != 0 || pins_.info(pin_of(target.constraint.particle)).strength)

@@ -36,8 +36,6 @@ class YieldingPins {
   /// Makes a held particle lag in the current step; the step must then begin again. `obstruction`: what is in its way
   /// and where, as text.
   void release_particle(Index particle, const std::string& obstruction);
-  /// Whether any particle lags in this step.
-  bool any_lags() const { return any_lags_; }
   /// Accepts the step: particles that lag in it lag in the next one too, until they arrive.
   void accept();
 
@@ -73,7 +71,6 @@ class YieldingPins {
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
   std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
   double forced_t_ = 0, forced_h_ = 0;               // start and length of the last step that began [s]
-  bool any_lags_ = false;
   std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one
   Lags seen_;
 };
