@@ -97,11 +97,11 @@ struct Numerics {
     /// Stiffening of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation distance
     /// r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
-    /// Width w of the ramps along which the stiffness of an edge pair falls to zero (stiffness_fraction()). 0: contacts
+    /// Width w of the ramps along which the stiffness of a pair falls to zero (stiffness_fraction()). 0: contacts
     /// switch on and off; larger: only separating planes keep crossing creases apart. Ramps:
-    /// - the sine of the angle outside of an edge's wedge (`Proximity::outside_wedge`), from 0 to w,
-    /// - with cloth, the fold: the sum of the sines inside of both wedges, from 2 w to w / 2,
-    /// - with cloth, the place along an edge, from the fraction w to the end.
+    /// - the sine of the angle outside of the wedge of an edge or vertex (`Proximity::outside_wedge`), from 0 to w,
+    /// - of edge pairs with cloth, the fold: the sum of the sines inside of both wedges, from 2 w to w / 2,
+    /// - of edge pairs with cloth, the place along an edge, from the fraction w to the end.
     double ramp_width = 0.1;
     double flat_fold() const { return 0.5 * ramp_width; }
     /// Slip velocity below which friction sticks [m/s]. If contacts are springs, it is at least `stick_spacings` [1/s]

@@ -107,10 +107,15 @@ TEST(ContactBuilder, FrictionReachesTheContact) {
   EXPECT_DOUBLE_EQ(contacts[1].static_friction, 0.3);
 }
 
-// An edge pair has its full stiffness inside both wedges and away from the ends of the edges. Towards these limits the
-// stiffness falls linearly.
+// An edge pair has its full stiffness inside both wedges and away from the ends of the edges, a vertex inside its
+// wedge. Towards these limits the stiffness falls linearly.
 TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_fraction(vertex_face(0, {3, 4, 5})), 1);
+  Proximity beside_border = vertex_face(0, {3, 4, 5});
+  beside_border.outside_wedge[0] = 0.05;
+  EXPECT_NEAR(stiffness_fraction(beside_border), 0.5, 1e-12);
+  beside_border.outside_wedge[0] = 0.1;
+  EXPECT_EQ(stiffness_fraction(beside_border), 0);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.5)), 1);
   // Flat: the sum of the sines decides, from 0.05 to 0.2.
   EXPECT_EQ(stiffness_fraction(edges(-0.025, -0.025, 0.5)), 0);

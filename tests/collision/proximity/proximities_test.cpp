@@ -362,6 +362,27 @@ TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
   EXPECT_NEAR(p.outside_wedge[0], 0.05 / std::hypot(1, 0.05), 1e-12);
 }
 
+// A border passes over a flat surface, beside vertex 0 of that surface: a face there is closer to the border.
+TEST(Proximities, WedgeOfAVertexTellsWhetherAFaceAroundItIsCloser) {
+  TestMesh mesh;
+  mesh.x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.03, -1, 0.04}, {0.03, 1, 0.04}, {1, 0, 1}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {5, 7, 6}};
+  const auto at_centre = [&] {
+    const auto found = find(mesh, 0.06);
+    const auto p = std::find_if(found.begin(), found.end(), [](const Proximity& q) {
+      return q.kind == ProximityKind::vertex_face && q.vertices[0] == 0;
+    });
+    EXPECT_NE(p, found.end());
+    return *p;
+  };
+  EXPECT_NEAR(at_centre().distance, 0.05, 1e-15);
+  EXPECT_NEAR(at_centre().outside_wedge[0], 0.03 / 0.05, 1e-12);
+
+  // Vertex 0 becomes the tip of a cone, and the closest point of its surface.
+  for (std::size_t v = 1; v < 5; ++v) mesh.x[v].z() = -1;
+  EXPECT_EQ(at_centre().outside_wedge[0], 0);
+}
+
 TEST(Features, EachVertexAndEdgeHasOneOwner) {
   const TestMesh mesh = testing::triangle_soup(3, 20, 90, 0.2);
   const Features features(mesh.triangles, static_cast<Index>(mesh.x.size()));

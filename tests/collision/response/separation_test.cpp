@@ -165,6 +165,24 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
   }
 }
 
+// A triangle slides by 25 mm onto a facet, and ends 0.01 mm too low. (Along the line between the closest points of the
+// start, it would be pushed back by 17 mm.)
+TEST(Separation, PushesAlongTheShortestOfTheDirectionsThatSeparateAtTheStart) {
+  const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
+  const std::vector<TrianglePair> pairs{{0, 1}};
+  const std::vector<Vec3> x_t0{{0, 0, 1e-3},      {-0.01, 0.01, 1e-3}, {-0.01, -0.01, 1e-3},
+                               {0.008, -0.02, 0}, {0.014, -0.02, 0},   {0.011, 0.04, 0}};
+  std::vector<Vec3> x_t1 = x_t0;
+  for (std::size_t v = 0; v < 3; ++v) x_t1[v] += Vec3(0.025, 0, -1.01e-3);
+  Separation separation(triangles, {});
+  separation.watch(pairs, x_t0);
+  const SeparationReport report =
+      separation.enforce(x_t0, x_t1, std::vector<std::uint8_t>{kFree, kFree, kFree, kFixed, kFixed, kFixed});
+  EXPECT_TRUE(report.separated);
+  EXPECT_GT(report.largest_push, 0.01e-3);
+  EXPECT_LT(report.largest_push, 0.01e-3 + 1.01 * numerics.separation.restored_gap);
+}
+
 TEST(Separation, PushingAPieceOfRopeOffATriangleKeepsTheMomentum) {
   const std::vector<Triangle> triangles{{0, 1, 1}, {2, 3, 4}};
   const std::vector<TrianglePair> pairs{{0, 1}};

@@ -193,7 +193,8 @@ class ProximityFinder::Search {
     if (!(points.distance_sq < detection_distance_sq_)) return;
     if (points.support() != 0b1111U && is_represented_by_other(vertex, face, points)) return;
     const Vec3 face_normal = (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0]));
-    add(ProximityKind::vertex_face, {vertex, corners[0], corners[1], corners[2]}, points, face_normal, {0, 0});
+    const double outside = points.support() == 0b1111U ? 0 : outside_vertex_wedge(vertex, points);
+    add(ProximityKind::vertex_face, {vertex, corners[0], corners[1], corners[2]}, points, face_normal, {outside, 0});
   }
 
   ClosestPoints closest_to_face(Index vertex, const Triangle& face) const {
@@ -252,6 +253,19 @@ class ProximityFinder::Search {
       if (across > 0) max_sine = std::max(max_sine, length * arm.dot(outward) / across);
     }
     return max_sine;
+  }
+
+  /// Sine of the angle from the wedge of the vertex to the direction towards its closest point; 0 inside the wedge.
+  double outside_vertex_wedge(Index vertex, const ClosestPoints& points) const {
+    const Vec3 point = at(vertex) - points.difference;
+    double least_sq = (1 - kRoundoff) * points.distance_sq;
+    bool is_inside = true;
+    for (const Index t : features_.triangles_at(vertex)) {
+      const Triangle& face = features_.triangle(t);
+      const double distance_sq = closest_vertex_face(point, at(face[0]), at(face[1]), at(face[2])).distance_sq;
+      if (distance_sq < least_sq) least_sq = distance_sq, is_inside = false;
+    }
+    return is_inside ? 0 : std::sqrt(1 - least_sq / points.distance_sq);
   }
 
   void add(ProximityKind kind, const std::array<Index, 4>& vertices, const ClosestPoints& points, const Vec3& fallback,

@@ -20,7 +20,9 @@ struct Proximity : FeaturePair {
   /// For an edge pair, one value for edge a and one for edge b: sine of the angle from the wedge of that edge to the
   /// direction towards the other edge; negative inside the wedge. The wedge of an edge is the set of directions,
   /// perpendicular to the edge, in which no face at the edge is closer than the edge. If a value is above 0, a
-  /// neighbouring pair is closer, and the response may skip this one. For vertex-face pairs: 0.
+  /// neighbouring pair is closer, and the response may skip this one. For vertex-face pairs whose closest point is on
+  /// an edge or at a vertex of the face, the first value is that of the wedge of the vertex, but 0 inside; else both
+  /// are 0.
   std::array<double, 2> outside_wedge{};
 };
 

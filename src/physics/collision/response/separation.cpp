@@ -109,7 +109,7 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   for (const bool is_of_a : {true, false}) {
     const Triangle& side = is_of_a ? pair.a : pair.b;
     for (const Index v : std::span(side).first(side[1] == side[2] ? 2 : 3))  // an edge repeats its second end
-      if (step.movable[v] == kFree && group_of(v) == nullptr)
+      if (!is_fixed(v, step))
         all[count++] = {n.dot(step.x_t1[v]) + (is_of_a ? -0.5 : 0.5) * target, masses_.empty() ? 1 : masses_[v],
                         is_of_a};
   }
@@ -130,24 +130,41 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   return below;
 }
 
+// Of the directions that separate a pair at the start, the one along which its ends overlap least: `closest`, between
+// the closest points of the start, or the normal of a face that is not pushed. A facet that cloth slides towards lies
+// ahead of it; pushed along `closest`, the cloth would be moved back by as much as it has slid.
+Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, const Step& step) const {
+  const std::span<const Vec3> start = step.start_of(pair), end = step.x_t1;
+  Vec3 best = closest;
+  for (const Triangle& face : {pair.a, pair.b}) {
+    const Vec3 across = (end[face[1]] - end[face[0]]).cross(end[face[2]] - end[face[0]]);
+    const bool is_pushed = std::ranges::any_of(face, [&](Index v) { return !is_fixed(v, step); });
+    if (is_pushed || across.squaredNorm() == 0) continue;
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec3 n = sign * across.normalized();
+      if (gap_along(n, pair, start) > 0 && gap_along(n, pair, end) > gap_along(best, pair, end)) best = n;
+    }
+  }
+  return best;
+}
+
 // Moves the ends of a pair apart. If vertices that are fixed or belong to a rigid body leave no space, translates the
 // rigid bodies instead. Returns false if the pair touches at the start or neither is possible.
 bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
   if (start_gap == 0) return false;
-  const Vec3 n = direction / start_gap;
   const double target =
       std::max(2 * numerics.separation.least_gap, std::min(numerics.separation.restored_gap, 0.5 * start_gap));
+  const Vec3 n = push_direction(pair, direction / start_gap, step);
 
   // `plane` is c of the separating plane n·x = c at the end. The push conserves momentum unless fixed vertices limit c.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto is_fixed = [&](Index v) { return step.movable[v] != kFree || group_of(v) != nullptr; };
   double low = -kInfinity, high = kInfinity;  // of c
   for (int k = 0; k < 3; ++k) {
     const double a = n.dot(step.x_t1[pair.a[k]]), b = n.dot(step.x_t1[pair.b[k]]);
-    if (is_fixed(pair.a[k])) high = std::min(high, a - 0.5 * target);
-    if (is_fixed(pair.b[k])) low = std::max(low, b + 0.5 * target);
+    if (is_fixed(pair.a[k], step)) high = std::min(high, a - 0.5 * target);
+    if (is_fixed(pair.b[k], step)) low = std::max(low, b + 0.5 * target);
   }
   if (low > high) return translate_groups(pair, n, target, step);
   const double plane = std::clamp(balanced_plane(pair, n, target, step), low, high);
@@ -155,7 +172,7 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const auto push = [&](const Triangle& corners, double sign) {
     for (Index v : corners) {
       const double missing = sign * plane + 0.5 * target - sign * n.dot(step.x_t1[v]);
-      if (missing <= 0 || is_fixed(v)) continue;
+      if (missing <= 0 || is_fixed(v, step)) continue;
       step.x_t1[v] += sign * missing * n;
       step.report.largest_push = std::max(step.report.largest_push, missing);
     }

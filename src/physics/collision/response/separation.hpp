@@ -45,12 +45,13 @@ struct RigidGroup {
 /// stars. Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
 ///
 /// If a pair has no separating plane, enforce() pushes its end positions apart until a gap remains, along n, the
-/// direction between its closest points at the start. Obstacles and held particles do not move. It then tests the moved
-/// vertices again, until no pair fails. Particles that keep failing are backtracked, finally all the way to their start
-/// or, if they fail with an obstacle that moves rigidly, to where the obstacle would have carried them. As no pair met
-/// at the start, two triangles do not meet if all their vertices end at their start, or if one obstacle carries all of
-/// them. The set of backtracked particles grows until no pair fails. A pair that still fails is forced together by
-/// obstacles that move differently, or by held particles. Its cloth can then be exempted from the obstacle.
+/// direction between its closest points at the start or, if this is shorter, the normal of a face of an obstacle.
+/// Obstacles and held particles do not move. It then tests the moved vertices again, until no pair fails. Particles
+/// that keep failing are backtracked, finally all the way to their start or, if they fail with an obstacle that moves
+/// rigidly, to where the obstacle would have carried them. As no pair met at the start, two triangles do not meet if
+/// all their vertices end at their start, or if one obstacle carries all of them. The set of backtracked particles
+/// grows until no pair fails. A pair that still fails is forced together by obstacles that move differently, or by held
+/// particles. Its cloth can then be exempted from the obstacle.
 ///
 /// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
 /// obstacles and from each other, the lighter one farther.
@@ -122,11 +123,14 @@ class Separation {
   };
   void set_reference(std::span<const Vec3> x);
   double balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const;
+  Vec3 push_direction(const CornerPair& pair, const Vec3& closest, const Step& step) const;
   bool push_apart(const CornerPair& pair, Step& step) const;
   bool translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const;
   const RigidGroup* group_of(Index v) const {
     return group_of_.empty() || group_of_[v] < 0 ? nullptr : &groups_[group_of_[v]];
   }
+  /// Whether push_apart() leaves a vertex in place, or moves it with its rigid body only.
+  bool is_fixed(Index v, const Step& step) const { return step.movable[v] != kFree || group_of(v) != nullptr; }
   template <class Visit>
   static void for_each_member(const RigidGroup& group, const Visit& visit);
   bool release_pins(const CornerPair& pair, Step& step);
