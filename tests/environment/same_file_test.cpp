@@ -29,17 +29,32 @@ class SameFile : public support::TestFolder {
     return make_actor(scene_, scene_.characters[0]);
   }
 
+  static std::string rod_with_dress() {
+    std::string file = support::rod_file();
+    file.insert(
+        file.find(" Mesh Rod"),
+        " Frame Dress { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.2,0.0,1.0;; }\n"
+        "  Mesh Cloth { 3; -0.3;0.5;0.2;, 0.3;0.5;0.2;, 0.0;1.5;0.2;; 1; 3;0,1,2;; } }\n");
+    return file;
+  }
+
   scene::Scene scene_;
   scene::CharacterFile file_;
 };
 
+// Buried faces of a shell face into the shell around it, so they must not decide where the outside of that one is.
+TEST_F(SameFile, MakesEachShellALimbOfItsOwn) {
+  support::write_bytes(file_.path, rod_with_dress());
+  const Actor actor = make();
+  const std::vector<Index> shells = mesh::components(actor.mesh.topology.triangles, actor.mesh.positions.size());
+  ASSERT_GT(*std::ranges::max_element(shells), 0);
+  for (std::size_t v = 0; v < shells.size(); ++v)
+    for (std::size_t w = 0; w < shells.size(); ++w)
+      EXPECT_TRUE(shells[v] == shells[w] || actor.limbs[v] != actor.limbs[w]);
+}
+
 TEST_F(SameFile, GivesAClothWhatTheBodyThenHasNotWhereTheBodyHadIt) {
-  std::string file = support::rod_file();
-  file.insert(
-      file.find(" Mesh Rod"),
-      " Frame Dress { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.2,0.0,1.0;; }\n"
-      "  Mesh Cloth { 3; -0.3;0.5;0.2;, 0.3;0.5;0.2;, 0.0;1.5;0.2;; 1; 3;0,1,2;; } }\n");
-  support::write_bytes(file_.path, file);
+  support::write_bytes(file_.path, rod_with_dress());
   ASSERT_EQ(make().mesh.positions.size(), 8u);
   file_.without = {"Dress"};
   EXPECT_EQ(make().mesh.positions.size(), 5u);

@@ -56,15 +56,32 @@ TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   EXPECT_NEAR(*measures.height, 1.7, 0.011);
 }
 
-TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheHeights) {
+// Between chest and hips, a puppet has a ball. Below the ball, its sections shrink to a point.
+TEST(Fit, TakesNoTipOfAPartForTheWaist) {
+  constexpr double kBall = 0.13, kBottom = 1.02;
+  Wearer wearer = round_wearer();
+  for (Vec3& x : wearer.skin) {
+    if (x.z() < kBottom || x.z() > 1.1) continue;
+    const double above = std::min(x.z() - kBottom, kBall);
+    const double ball = std::sqrt(above * (2 * kBall - above)) + 1e-4;
+    x.head<2>() *= ball / x.head<2>().norm();
+  }
+  const double waist = *measure(wearer).waist;
+  EXPECT_GT(waist, 2 * std::numbers::pi * 0.085);
+  EXPECT_LT(waist, 2 * std::numbers::pi * 0.14);
+}
+
+TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
   const Wearer wearer = round_wearer();
   const Measures own = measure(wearer);
   Pattern pattern;
   pattern.measures = {*own.chest / 1.1, *own.waist / 1.3, *own.hip / 0.9, {}};
   EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(1.3, 1)).norm(), 1e-12);
-  pattern.measures = {{}, {}, *own.hip / 0.9, *own.height / 1.2};
+  // Heights are compared at the neck: a head of any size leaves the garment where it is.
+  const double height = wearer.neck / kNeckHeightRatio / 1.2;
+  pattern.measures = {{}, {}, *own.hip / 0.9, height};
   EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(0.9, 1.2)).norm(), 1e-12);
-  pattern.measures = {{}, {}, {}, *own.height / 1.2};
+  pattern.measures = {{}, {}, {}, height};
   EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(1.2, 1.2)).norm(), 1e-12);
   pattern.measures = {};
   support::expect_error(ExitCode::scene_invalid, "cloth.c.fit: expected a pattern that names the measures",

@@ -359,8 +359,8 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
     // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 and 2.7 times as large.
     EXPECT_LT(solver, steps);
   }
-  // Measured: 14.5 a step; 18.9 if a solve that friction leads astray did not start anew with fixed normal forces.
-  EXPECT_LT(iterations, 17 * number);
+  // Measured: 17.3 a step; 25.4 if a solve that friction leads astray did not start anew with fixed normal forces.
+  EXPECT_LT(iterations, 20 * number);
 }
 
 /// A sheet falls on the edge of a plate of 1 mm and folds over it faster than its contact normals turn.

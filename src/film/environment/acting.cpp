@@ -403,10 +403,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   const std::size_t vertices = body.character.mesh.positions.size();
   const std::optional<character::Room> room = room_of(cast, source, body, performance, parts, cloths);
   MaxDisplacement moved;
-  std::vector<Index> limbs;
-  for (const character::Limb limb : character::limbs_of(
-           body.character, joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source)))
-    limbs.push_back(static_cast<Index>(limb));
+  std::vector<Index> limbs = shells_of_limbs(cast, source, body);
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());

@@ -47,7 +47,7 @@ struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
   KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the places of each FollowingPin
   std::vector<Part> parts;   ///< see parts_of()
-  std::vector<Index> limbs;  ///< per vertex: number of its character::Limb; of a sequence: its connected component
+  std::vector<Index> limbs;  ///< per vertex: see shells_of_limbs(); of a sequence: its connected component
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if the file has none

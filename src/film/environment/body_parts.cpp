@@ -6,6 +6,7 @@
 
 #include "film/character/joints.hpp"
 #include "film/character/parts.hpp"
+#include "physics/mesh/topology.hpp"
 
 namespace weft::environment {
 namespace {
@@ -92,6 +93,15 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::s
   for (const scene::BodyPart& part : wanted)
     parts.push_back({part.name, finder.find(part, "part." + part.name), part.collide, part.friction, part.thickness});
   return parts;
+}
+
+std::vector<Index> shells_of_limbs(const Cast& cast, const scene::Acting& acting, const Body& body) {
+  const std::vector<character::Limb> limbs = character::limbs_of(
+      body.character, joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source));
+  std::vector<Index> shells = mesh::components(body.character.mesh.topology.triangles, limbs.size());
+  constexpr Index kLimbCount = static_cast<Index>(character::Limb::right_leg) + 1;
+  for (std::size_t v = 0; v < limbs.size(); ++v) shells[v] = shells[v] * kLimbCount + static_cast<Index>(limbs[v]);
+  return shells;
 }
 
 }  // namespace weft::environment

@@ -16,4 +16,9 @@ namespace weft::environment {
 std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::span<const FollowingPin> following,
                            Body& body);
 
+/// A number for each vertex, the same for those of one connected component and one character::Limb. Shells that
+/// overlap, such as a pouch on a belt, have buried faces, which face into the other shell; as limbs of their own, they
+/// do not decide where the outside of the other one is.
+std::vector<Index> shells_of_limbs(const Cast& cast, const scene::Acting& acting, const Body& body);
+
 }  // namespace weft::environment

@@ -9,6 +9,7 @@
 #include "core/log.hpp"
 #include "film/environment/dynamics.hpp"
 #include "film/environment/followers.hpp"
+#include "film/environment/hanging.hpp"
 #include "film/environment/orientation.hpp"
 #include "film/scene/layers.hpp"
 #include "physics/mesh/caps.hpp"
@@ -187,6 +188,11 @@ std::vector<Environment::Attached> Environment::add_cloths(const scene::Scene& s
   for (const scene::Cloth& cloth : scene.cloths) {
     MadeCloth made = make_cloth(scene, cloth, wearers);
     for (const std::string& warning : made.details.warnings) log::warn(warning);
+    if (const std::string carrier = carrier_of(scene, cloth);
+        !carrier.empty() && starts_untangled(cloth) && scene::rectangle_particles(cloth) > 0)
+      if (const double moved = move_off_carrier(cloth, wearers.of(carrier, made.cloth.source), made.cloth.start))
+        log::note(fmt::format("{}: starts {:.3g} m farther away from '{}', through which it would go",
+                              made.cloth.source, moved, carrier));
     model.cloths.push_back(std::move(made.cloth));
     cloths.push_back(std::move(made.details));
     attached.push_back(std::move(made.attachments));

@@ -83,9 +83,10 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
                  MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
   const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
+  const garment::Wearer* fitted = cloth.fit ? &wearers.of(cloth, where) : nullptr;
   Vec2 factors(cloth.scale, cloth.scale);
-  if (cloth.fit) {
-    const garment::Wearer& body = wearer != nullptr ? *wearer : wearers.of(cloth, where);
+  if (fitted != nullptr) {
+    const garment::Wearer& body = *fitted;
     const Vec2 fit = garment::fit_factors(pattern, body, where);
     const garment::Measures own = garment::measure(body);
     made.details.fitted = fmt::format(
@@ -112,7 +113,10 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   for (const garment::Panel& panel : pattern.panels) made.details.panels.push_back(panel.name);
   made.details.panel_of = std::move(garment.panel_of);
   made.details.paint_uv = garment.sheet.material;
-  if (wearer == nullptr) made.cloth.mesh = turned_up(std::move(made.cloth.mesh), scene.up);
+  if (wearer == nullptr && fitted != nullptr)
+    for (Vec3& x : made.cloth.mesh.positions) x = fitted->to_world * x;
+  else if (wearer == nullptr)
+    made.cloth.mesh = turned_up(std::move(made.cloth.mesh), scene.up);
   made.cloth.sheet = std::move(garment.sheet);
   made.cloth.spacing = std::numbers::sqrt2 * mesh::min_height(made.cloth.sheet);
   for (const scene::PanelPaint& panel : cloth.look.panels)

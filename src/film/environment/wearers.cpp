@@ -75,12 +75,12 @@ garment::Wearer make_wearer(const StandingBody& standing, const Vec3& up, const 
   constexpr std::array kArm{"UpperArm", "LowerArm", "Hand"}, kLeg{"UpperLeg", "LowerLeg", "Foot"};
   wearer.left_arm = limb("Left", kArm), wearer.right_arm = limb("Right", kArm);
   wearer.left_leg = limb("Left", kLeg), wearer.right_leg = limb("Right", kLeg);
-  // If the neck joint is unknown, estimates its height from the top of the head.
+  // Rigs without a neck begin the head at its base. If the head is unknown too, estimates the height from its top.
   double crown = 0;
   for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
-  constexpr double kNeck = 0.83;  // neck height over body height
-  wearer.neck = kNeck * crown;
-  if (const auto& neck = joint(standing.joints, "Neck")) wearer.neck = (to_own * *neck).z();
+  wearer.neck = garment::kNeckHeightRatio * crown;
+  for (const char* name : {"Head", "Neck"})
+    if (const auto& base = joint(standing.joints, name)) wearer.neck = (to_own * *base).z();
   return wearer;
 }
 
@@ -96,8 +96,11 @@ const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string&
   if (cloth.wearer.empty() && characters.size() > 1)
     throw Error(ExitCode::scene_invalid, "{}: expected the wearer, one of {} characters such as {}, got none", where,
                 characters.size(), characters[0].name);
-  const auto found =
-      std::ranges::find(characters, cloth.wearer.empty() ? characters[0].name : cloth.wearer, &scene::Character::name);
+  return of(cloth.wearer.empty() ? characters[0].name : cloth.wearer, where);
+}
+
+const garment::Wearer& Wearers::of(const std::string& name, const std::string& where) {
+  const auto found = std::ranges::find(scene_.characters, name, &scene::Character::name);
   const auto known = made_.find(found->name);
   if (known != made_.end()) return known->second;
   const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();

@@ -17,6 +17,8 @@ class Wearers {
   /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
   /// names no wearer and there are several, or if the wearer has no bones or not the joints that define its axes.
   const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
+  /// The character of this name, which must exist. Throws likewise.
+  const garment::Wearer& of(const std::string& name, const std::string& where);
 
  private:
   const scene::Scene& scene_;

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/error.hpp"
 
@@ -16,6 +18,8 @@ constexpr double kHipHeightRatio = 0.52;
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
 // Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
+// Maximum change of the girth per height at the waist: skin at 45 degrees.
+constexpr double kMaxGirthSlope = 2 * std::numbers::pi;
 // Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at 1.05 it slides
 // down, at 1.16 it holds).
 constexpr double kMinHipToWaistRatio = 1.1;
@@ -29,9 +33,15 @@ Measures measure(const Wearer& wearer) {
   if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
   const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
   const auto girth = [&](double s) { return torso.girth(s, 0); };
+  // A waistband lies on skin that faces the side. Sections that differ more from the next one cut the top or the bottom
+  // of a part, such as the ball between chest and hips of a puppet.
+  const auto is_upright = [&](double s) {
+    return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
+           kMaxGirthSlope * kSpacing;
+  };
   double waist = at(kLowestWaist);
   for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
-    if (girth(s) < girth(waist)) waist = s;
+    if (girth(s) < girth(waist) && is_upright(s)) waist = s;
   const auto max_girth = [&](double low, double high) {
     double largest = 0;
     for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
@@ -51,7 +61,7 @@ Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string
   double across = 0, up = 1;
   for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip})
     if (drawn.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
-  if (drawn.height) up = *own.height / *drawn.height;
+  if (drawn.height) up = wearer.neck / (kNeckHeightRatio * *drawn.height);
   return {across > 0 ? across : up, up};
 }
 

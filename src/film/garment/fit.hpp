@@ -14,9 +14,9 @@ namespace weft::garment {
 Measures measure(const Wearer& wearer);
 
 /// Factors (x: across, y: up) on the lengths of a pattern. Across: the largest ratio among the girths that the pattern
-/// names, so that the garment is nowhere tighter than drawn. Up: the ratio of heights; 1 if the pattern names no
-/// height. If the pattern names only a height, both are the ratio of heights. `where` names the scene entry for
-/// messages. Throws Error(scene_invalid) if the pattern names no measures.
+/// names, so that the garment is nowhere tighter than drawn. Up: the ratio of the heights of the necks, as heads differ
+/// most; 1 if the pattern names no height. If the pattern names only a height, both are this ratio. `where` names the
+/// scene entry for messages. Throws Error(scene_invalid) if the pattern names no measures.
 Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
 /// Warning text for a pattern with a waist but no chest measure, if the wearer's hips are too narrow to hold the waist

@@ -17,6 +17,10 @@ enum class Region : std::uint8_t { trunk, left_arm, right_arm, left_leg, right_l
 /// Joints of an arm, from shoulder to wrist, or of a leg, from hip to ankle [m].
 using Limb = std::array<Vec3, 3>;
 
+/// Height of the joint at the base of the neck, as a fraction of the body height, of the mannequin. Patterns are drawn
+/// for such bodies.
+inline constexpr double kNeckHeightRatio = 0.83;
+
 /// A body at the start, in its own axes: x to its left, y to its back, z up, origin on the floor below its hips [m].
 struct Wearer {
   std::vector<Vec3> skin;

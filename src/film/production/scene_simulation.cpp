@@ -2,18 +2,44 @@
 
 #include <utility>
 
+#include "core/error.hpp"
 #include "core/log.hpp"
 #include "film/environment/environment.hpp"
+#include "film/environment/growing.hpp"
 #include "film/production/pin_warnings.hpp"
 #include "film/production/plan.hpp"
 
 namespace weft::production {
 
-SceneSimulation::SceneSimulation(const scene::Scene& scene) : SceneSimulation(scene, environment::Environment(scene)) {}
+/// What a scene starts with.
+struct SceneSimulation::Start {
+  const scene::Scene& scene;
+  environment::Environment environment;
+  Simulation simulation;
 
-SceneSimulation::SceneSimulation(const scene::Scene& scene, const environment::Environment& environment)
-    : Simulation(environment.model), maker_(scene, environment), heat_(scene.render.heat) {
-  for (const auto& texts : {find_undrawn(scene), find_jumps(scene, environment)})
+  static Start of(const scene::Scene& scene) {
+    environment::Environment environment(scene);
+    const auto posed = environment::with_arms_in_sleeves(scene, environment);
+    if (posed) environment = environment::Environment(*posed);
+    try {
+      Simulation simulation(environment.model);
+      return {scene, std::move(environment), std::move(simulation)};
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::scene_invalid) throw;
+      const auto growing = environment::with_growing_wearers(posed ? *posed : scene, environment);
+      if (!growing) throw;
+      environment::Environment grown(*growing);
+      Simulation simulation(grown.model);
+      return {scene, std::move(grown), std::move(simulation)};
+    }
+  }
+};
+
+SceneSimulation::SceneSimulation(const scene::Scene& scene) : SceneSimulation(Start::of(scene)) {}
+
+SceneSimulation::SceneSimulation(Start start)
+    : Simulation(std::move(start.simulation)), maker_(start.scene, start.environment), heat_(start.scene.render.heat) {
+  for (const auto& texts : {find_undrawn(start.scene), find_jumps(start.scene, start.environment)})
     for (const std::string& text : texts) log::warn(text);
 }
 

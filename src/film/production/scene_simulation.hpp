@@ -14,7 +14,8 @@ namespace weft::production {
 
 class SceneSimulation : public simulation::Simulation {
  public:
-  /// Throws Error(asset_unreadable, scene_invalid). Warns of pins that jump or move too fast.
+  /// If a garment cannot be untangled from its wearer, the wearer grows into it (environment/growing.hpp). Throws
+  /// Error(asset_unreadable, scene_invalid). Warns of pins that jump or move too fast.
   explicit SceneSimulation(const scene::Scene& scene);
 
   /// The current frame. After construction: frame 0, or the first frame of the preroll (with a negative number). Made
@@ -23,7 +24,8 @@ class SceneSimulation : public simulation::Simulation {
   std::vector<frame::ObjectInfo> objects() const;
 
  private:
-  SceneSimulation(const scene::Scene& scene, const environment::Environment& environment);
+  struct Start;
+  explicit SceneSimulation(Start start);
   std::vector<std::vector<float>> heat() const;
 
   SnapshotMaker maker_;

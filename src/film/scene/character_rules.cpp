@@ -165,9 +165,11 @@ const Table& character_rules() {
           .number("dressing", &Character::dressing, within(0, 3600), "s",
                   "time for which it stands still, counted from the start of the preroll, before its motion begins")
           .number("blend", &Character::blend, within(0, 60), "s", "time in which its motion then starts smoothly")
-          .number("grow", &Character::grow, within(0, 60), "s",
-                  "time at the beginning of `dressing` in which it grows from its bones to its size, into clothes that "
-                  "are too narrow but enclose its bones")
+          .number(
+              "grow", &Character::grow, within(0, 60), "s",
+              "time at the beginning of `dressing` in which it grows from its bones to its size, into clothes that "
+              "are too narrow but enclose its bones; 0: only if a garment from a pattern cannot be moved out of it, "
+              "in half of `dressing`")
           .number("room", &Character::room, within(0, 0.1), "m",
                   "clearance for cloth between its limbs: if the motion presses limbs on cloth, or cloth on the floor, "
                   "the skin moves back, each limb by at most half of the missing clearance; 0: never")

@@ -276,6 +276,7 @@ std::vector<IntersectionPlace> find_start_intersections(const model::Model& mode
 }
 
 Simulation::Simulation(model::Model model) : impl_(std::make_unique<Impl>(std::move(model))) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 const model::Model& Simulation::model() const {

@@ -58,6 +58,7 @@ class Simulation {
   /// Builds only what the model needs. At the start, lifts dynamic bodies off what they touch, and untangles cloth if
   /// the model allows it. Throws Error(scene_invalid) if surfaces still touch or cross.
   explicit Simulation(model::Model model);
+  Simulation(Simulation&&) noexcept;
   virtual ~Simulation();
 
   /// The model, with the motions that drive() has given to bodies.

@@ -71,7 +71,7 @@ class YieldingPins {
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
   std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
   double forced_t_ = 0, forced_h_ = 0;               // start and length of the last step that began [s]
-  std::set<std::size_t> lagging_, lagging_before_;  // pins, in this frame and in the previous one
+  std::set<std::size_t> lagging_, lagging_before_;   // pins, in this frame and in the previous one
   Lags seen_;
 };
 

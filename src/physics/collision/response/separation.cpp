@@ -131,15 +131,16 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
 }
 
 // Of the directions that separate a pair at the start, the one along which its ends overlap least: `closest`, between
-// the closest points of the start, or the normal of a face that is not pushed. A facet that cloth slides towards lies
-// ahead of it; pushed along `closest`, the cloth would be moved back by as much as it has slid.
+// the closest points of the start, or the normal of a face that stands still. A facet that cloth slides towards lies
+// ahead of it; pushed along `closest`, the cloth would be moved back by as much as it has slid. (Along moving faces,
+// what a fast body has not struck yet would be left beside it, and threads be stretched threefold.)
 Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, const Step& step) const {
   const std::span<const Vec3> start = step.start_of(pair), end = step.x_t1;
   Vec3 best = closest;
   for (const Triangle& face : {pair.a, pair.b}) {
     const Vec3 across = (end[face[1]] - end[face[0]]).cross(end[face[2]] - end[face[0]]);
-    const bool is_pushed = std::ranges::any_of(face, [&](Index v) { return !is_fixed(v, step); });
-    if (is_pushed || across.squaredNorm() == 0) continue;
+    const bool stands = std::ranges::all_of(face, [&](Index v) { return is_fixed(v, step) && start[v] == end[v]; });
+    if (!stands || across.squaredNorm() == 0) continue;
     for (const double sign : {-1.0, 1.0}) {
       const Vec3 n = sign * across.normalized();
       if (gap_along(n, pair, start) > 0 && gap_along(n, pair, end) > gap_along(best, pair, end)) best = n;

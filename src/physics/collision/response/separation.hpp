@@ -45,7 +45,7 @@ struct RigidGroup {
 /// stars. Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
 ///
 /// If a pair has no separating plane, enforce() pushes its end positions apart until a gap remains, along n, the
-/// direction between its closest points at the start or, if this is shorter, the normal of a face of an obstacle.
+/// direction between its closest points at the start or, if this is shorter, the normal of a face that stands still.
 /// Obstacles and held particles do not move. It then tests the moved vertices again, until no pair fails. Particles
 /// that keep failing are backtracked, finally all the way to their start or, if they fail with an obstacle that moves
 /// rigidly, to where the obstacle would have carried them. As no pair met at the start, two triangles do not meet if
