@@ -156,13 +156,14 @@ struct Numerics {
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
     /// A retry ends before a compromise:
-    /// - after so many rejections of a step, cloth may count as pinched,
+    /// - after so many rejections of a step, cloth may count as pinched, and much added energy is accepted,
     /// - after so many halvings of a trajectory, the search for its separating planes ends (0: a tenth more
     ///   iterations),
     /// - after so many repeats of a step with obstructed pins released, pinned particles may be pushed.
     int max_retries = 3;
     /// Strain that pushing apart may add. The solve continues if pushing apart adds more than this, or more energy than
-    /// Energy::doubtful_gain. Larger: single frames show strain of 0.1 and more.
+    /// Energy::doubtful_gain. After the last continuation, only added energy rejects the step. Larger: single frames
+    /// show strain of 0.1 and more.
     double added_strain = 0.05;
     /// Energy gain, relative to the kinetic and elastic energy at the start of the step, above which an unfinished
     /// solve starts anew with fixed normal forces.

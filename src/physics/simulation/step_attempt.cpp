@@ -25,7 +25,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
     const Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
                                              : solve_with_velocity_constraints(attempt, start, report);
-    if (collisions_->obstructed_pins().empty() || attempt.may_move_pins) return rejection;
+    if (collisions_->obstructed_pins().empty() || !may_release_pins(attempt)) return rejection;
     for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
       pins_.release_particle(given.particle, collisions_->describe(given, progress_.now));
   }
@@ -97,8 +97,8 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     if (is_separated || !may_continue) continue;
 
     // Pins may press cloth into cloth that a continued solve has not moved out of the way.
-    const bool may_release_pins = continuations > 0 && !attempt.may_move_pins;
-    if (may_release_pins && collisions_->find_pins_between_cloths()) return "pins press cloth into cloth";
+    if (continuations > 0 && may_release_pins(attempt) && collisions_->find_pins_between_cloths())
+      return "pins press cloth into cloth";
     const double energy_before = solved ? energy(next_) : 0;
     const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
     if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
@@ -188,9 +188,26 @@ integrator::Method StepLoop::method() const {
   return needs_damping ? integrator::Method::bdf2 : chosen;
 }
 
-// Pushes particles of `next_` apart without solving again. Rejects the step if some pairs stay stuck.
+// Pushes particles of `next_` apart without solving again. Rejects the step if some pairs stay stuck, or if this adds
+// much energy and the step may still be shortened.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
-  return collisions_->push_apart(attempt.h, is_short_enough(attempt), attempt.may_move_pins, progress_.now, next_);
+  const double energy_before = energy(next_);
+  const bool may_pinch = is_short_enough(attempt);
+  if (Rejection stuck = collisions_->push_apart(attempt.h, may_pinch, attempt.may_move_pins, progress_.now, next_))
+    return stuck;
+  if (attempt.is_last || attempt.rejections >= numerics.repair.max_retries) return std::nullopt;
+  const double ratio = added_energy_ratio(energy_before, attempt.h);
+  if (ratio <= numerics.energy.doubtful_gain) return std::nullopt;
+  progress_.longest = 0.5 * attempt.h;
+  return fmt::format(
+      "keeping surfaces from passing through each other would add {:.2g} times the energy that cloth has "
+      "in motion and stretch",
+      ratio);
+}
+
+// Whether pinned particles that find no space may lag. Before a fast obstacle, a shorter step may find space for them.
+bool StepLoop::may_release_pins(const Attempt& attempt) const {
+  return !attempt.may_move_pins && (attempt.is_last || collisions_->obstacles_move_little(progress_.now, next_));
 }
 
 // Whether a shorter step would find no more space for cloth than this one.

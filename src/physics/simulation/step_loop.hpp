@@ -136,6 +136,7 @@ class StepLoop {
   integrator::StepReport solve(double h, Start start, bool check_early, FrameReport& report);
   integrator::Method method() const;
   Rejection push_apart(const Attempt& attempt);
+  bool may_release_pins(const Attempt& attempt) const;
   bool is_short_enough(const Attempt& attempt) const;
   double energy(const SystemState& moment) const;
   double added_energy_ratio(double before, double h) const;
