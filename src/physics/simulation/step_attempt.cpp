@@ -23,8 +23,8 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     if (!collisions_) return rejection_of(solve(h, start, false, report));
 
     const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
-    const Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
-                                             : solve_with_velocity_constraints(attempt, start, report);
+    Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
+                                       : solve_with_velocity_constraints(attempt, start, report);
     if (collisions_->obstructed_pins().empty() || !may_release_pins(attempt)) return rejection;
     for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
       pins_.release_particle(given.particle, collisions_->describe(given, progress_.now));
