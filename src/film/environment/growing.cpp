@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <vector>
@@ -109,47 +110,56 @@ std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Clo
   return std::nullopt;
 }
 
+/// The body of a wearer; measured only if it is asked for.
+using Measure = std::function<const garment::Wearer&()>;
+
+/// Calls visit(cloth, number of its character, its body) for each garment with a wearer_of().
+template <class Visit>
+void for_each_worn(const scene::Scene& scene, const Environment& environment, const Visit& visit) {
+  Wearers wearers(scene);
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const model::Cloth& cloth = environment.model.cloths[c];
+    const auto number = wearer_of(scene, scene.cloths[c]);
+    if (number)
+      visit(cloth, *number,
+            [&]() -> const garment::Wearer& { return wearers.of(scene.characters[*number].name, cloth.source); });
+  }
+}
+
 }  // namespace
 
 std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, const Environment& environment) {
   std::optional<scene::Scene> posed;
-  Wearers wearers(scene);
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const model::Cloth& cloth = environment.model.cloths[c];
-    const auto wearer = wearer_of(scene, scene.cloths[c]);
-    if (!wearer) continue;
-    const scene::Character& character = scene.characters[*wearer];
-    if (scene::acting_of(character)->stance_arms || !(character.blend > 0)) continue;
-    const garment::Wearer& body = wearers.of(character.name, cloth.source);
-    if (!is_pierced_by_arm(cloth, body)) continue;
+  for_each_worn(scene, environment, [&](const model::Cloth& cloth, std::size_t number, const Measure& measure) {
+    const scene::Character& character = scene.characters[number];
+    if (scene::acting_of(character)->stance_arms || !(character.blend > 0)) return;
+    const garment::Wearer& body = measure();
+    if (!is_pierced_by_arm(cloth, body)) return;
     if (!posed) posed = scene;
     const double angle = std::round(angle_of_sleeves(cloth, body).value_or(kAngleBesideSkirt));
-    scene::acting_of(posed->characters[*wearer])->stance_arms = angle;
+    scene::acting_of(posed->characters[number])->stance_arms = angle;
     log::note(
         fmt::format("{}: the arms of '{}' would go through it at the start; while it is put on, they are {:g} "
                     "degrees from hanging, as with stance_arms = {:g}",
                     cloth.source, character.name, angle, angle));
-  }
+  });
   return posed;
 }
 
 std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment) {
   std::optional<scene::Scene> growing;
-  Wearers wearers(scene);
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const model::Cloth& cloth = environment.model.cloths[c];
-    const auto wearer = wearer_of(scene, scene.cloths[c]);
-    if (!wearer || scene.characters[*wearer].grow > 0) continue;
+  for_each_worn(scene, environment, [&](const model::Cloth& cloth, std::size_t number, const Measure& measure) {
+    if (scene.characters[number].grow > 0) return;
     if (!growing) growing = scene;
-    scene::Character& grown = growing->characters[*wearer];
+    scene::Character& grown = growing->characters[number];
     grown.grow = kGrowingFraction * grown.dressing;
     std::optional<double>& arms = scene::acting_of(grown)->stance_arms;
-    if (!arms && grown.blend > 0) arms = angle_of_sleeves(cloth, wearers.of(grown.name, cloth.source));
+    if (!arms && grown.blend > 0) arms = angle_of_sleeves(cloth, measure());
     log::note(fmt::format(
         "{}: it cannot be moved out of '{}' at full size; so the body grows into it in the first {:g} "
         "s of dressing, as with grow = {:g}{}",
         cloth.source, grown.name, grown.grow, grown.grow, arms ? fmt::format(" and stance_arms = {:.0f}", *arms) : ""));
-  }
+  });
   return growing;
 }
 

@@ -53,11 +53,9 @@ FeaturePair pair_with_corner(Index corner, const Triangle& corners, const Featur
 }  // namespace
 
 double stiffness_fraction(const Proximity& proximity, bool with_cloth) {
-  const bool with_vertex = proximity.kind == ProximityKind::vertex_face;
-  if (with_vertex && !with_cloth) return 1;
   const auto& outside = proximity.outside_wedge;
   const double inside_wedges = ramp(-numerics.contact.ramp_width, 0, -std::max(outside[0], outside[1]));
-  if (with_vertex || !with_cloth) return inside_wedges;
+  if (!with_cloth || proximity.kind == ProximityKind::vertex_face) return inside_wedges;
   double smallest_weight = 1;
   for (double weight : proximity.weights) smallest_weight = std::min(smallest_weight, std::abs(weight));
   return ramp(numerics.contact.flat_fold(), 2 * numerics.contact.ramp_width, -outside[0] - outside[1]) * inside_wedges *
