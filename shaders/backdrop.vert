@@ -1,4 +1,4 @@
-// Backdrop behind everything. Like open floor, it is computed at the corners of a grid.
+// Backdrop behind all surfaces. It varies slowly, so its colour is computed only at the corners of a grid.
 #include "shading.glsl"
 #include "stage.glsl"
 layout(location = 0) in vec2 corner_clip;

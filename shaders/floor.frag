@@ -1,5 +1,5 @@
-// Infinite floor: near the subjects it is lit as a matte surface; far away it has the backdrop's colour. OPEN: variant
-// for floor without shadow or occlusion, which is most of it.
+// Infinite floor. Near the subjects, it is lit; far away, it fades into the backdrop. OPEN: variant for pixels that
+// show open floor (floor without shadow or occlusion), as most floor pixels do.
 #include "shading.glsl"
 #include "traced_light.glsl"
 #include "open_floor.glsl"
@@ -9,7 +9,7 @@
 layout(location = 0) out vec4 color;
 #ifdef TILED
 layout(binding = 16) uniform sampler2D floor_picture;
-uniform vec4 picture_across, picture_up;  // maps from (x, y, z, 1) in the world
+uniform vec4 picture_across, picture_up;  // rows of the map from world (x, y, z, 1) to picture coordinates
 uniform float tint;
 #endif
 

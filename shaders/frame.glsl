@@ -2,25 +2,26 @@
 layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
-  vec4 eye_world;          // w: radius of the surroundings [m]
-  vec4 center_world;       // centre of the surroundings; w: roughness of the floor
+  vec4 eye_world;          // w: half the diagonal of the box surroundings_bounds() [m]
+  vec4 center_world;       // centre of this box; w: roughness of the floor
   vec4 up_world;
   vec4 right_world;        // right axis of the camera
   vec4 sky;                // linear light from above
-  vec4 horizon;            // linear light from the sides; w: linear light below which the look darkens tones
+  vec4 horizon;            // linear light from the sides; w: Style::toe, linear light below which tones are darkened
   vec4 ground;             // linear light from below
   vec4 backdrop;           // linear colour at the horizon; w: fraction by which it is darker far from the subjects
   vec4 backdrop_top;       // linear colour straight above
   vec4 viewport;           // width, height [pixels], and their reciprocals
-  vec4 frustum;            // tangents of half the field of view, near [m], 0
+  vec4 frustum;            // tangents of half the field of view (x, y), distance of the near plane [m], 0
   vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]
   vec4 floor_look;         // linear colour; w: exposure, a factor on all light
-  vec4 box_axes[3];        // unit; w: sharpness (surroundings.hpp)
-  vec4 box_lights[3];
-  vec4 irradiance[9];
+  vec4 box_axes[3];        // unit vectors to the soft boxes; w: sharpness (surroundings.hpp)
+  vec4 box_lights[3];      // linear light of the soft boxes
+  vec4 irradiance[9];      // coefficients of irradiance()
 } frame;
 
-// Geometry buffer values of a pixel: distance along the view axis [m] and surface number, plus 0.5 if its back is seen.
+// Surface numbers. The geometry buffer stores, for each pixel, the distance along the view axis [m] and the number of
+// the surface, plus 0.5 if the pixel shows its back.
 const float kNothing = 0.0, kFloor = 1.0, kFirstSurface = 2.0;
 const float kSolid = -1e6;  // heat value of surfaces other than cloth
 

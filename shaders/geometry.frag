@@ -1,38 +1,39 @@
-// Surface data of each pixel for deferred shading. Without it, llvmpipe would shade whole 4x4 blocks for every triangle
-// that touches them: for the small triangles of cloth, about eight times the visible pixels. The floor writes only
-// distance_surface.
+// Writes the surface data of each pixel, for deferred shading. Forward shading would cost more: llvmpipe shades a whole
+// 4x4 block for every triangle that touches it, which for the small triangles of cloth is about eight times the visible
+// pixels. The floor writes only distance_surface.
 #include "frame.glsl"
-const float kMostRise = 0.02;  // limit of rise() [m], for triangles at folds, whose corner normals differ too much
+const float kMostRise = 0.02;  // limit on rise() [m], for triangles at folds, whose corner normals differ too much
 in vec3 surface_normal_world;
 in vec2 surface_uv;
 in float surface_heat;
 in vec3 normal_squares, normal_products, plane;
 uniform float surface;
-layout(location = 0) out vec4 normal_heat;       // world, towards the viewer; length 1 + rise of the surface [m]
+layout(location = 0) out vec4 normal_heat;       // world normal towards the viewer, of length 1 + rise() [m]; w: heat
 layout(location = 1) out vec2 rest_uv;
-layout(location = 2) out vec2 distance_surface;  // frame.glsl
+layout(location = 2) out vec2 distance_surface;  // see "Surface numbers" in frame.glsl
 #ifdef PAINTED
-// Output for the paint of a pixel. xyz: square root of the linear colour, which needs only 8 bits. w: above 0.5 if the
-// pixel is painted; below 1 if its picture lies over a colour and is transparent there.
+// `paint`: xyz: square root of the linear colour, which needs only 8 bits. w: above 0.5 if the pixel is painted; below
+// 1 if its picture lies over a colour and is transparent there.
 #ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, premultiplied
 #endif
-uniform int laid;         // 0 not painted, 1 plain colour, 2 picture times colour, 3 over colour, 4 as 2 with holes
+uniform int laid;         // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 with holes
 uniform vec3 color;       // linear
 uniform vec4 back_color;  // w < 0: colour of the back; else the back is the front, paler by w
 layout(location = 3) out vec4 paint;
 #endif
 #ifdef TRIMMED
-in vec3 trim_distances, trim_places;  // border, border beyond a corner, seam
-layout(location = 4) out vec4 trims;  // trim.glsl
+in vec3 trim_distances, trim_places;  // distances [m] and positions along the lines [m] of Trim (trims.hpp)
+layout(location = 4) out vec4 trims;  // as read in trim.glsl
 #endif
 #ifdef PEELED
-layout(binding = 12) uniform sampler2D peeled;  // distances up to which layers are already peeled
+layout(binding = 12) uniform sampler2D peeled;  // distance of the layer drawn last; only what lies behind it is drawn
 #endif
 
-// Height of the smooth surface above its triangle, along the normal [m]: the mean of the tangent planes at the corners,
-// with barycentric weights (Hanika, "Hacking the Shadow Terminator", 2021).
+// Height of the smooth surface above its triangle, along the normal [m]. The smooth surface is the mean, with
+// barycentric weights, of the pixel's point projected onto the tangent planes at the three corners (Hanika, "Hacking
+// the Shadow Terminator", 2021).
 float rise(vec3 n) {
   vec3 p = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0 / gl_FragCoord.w));
   vec3 products = normal_products.zxy * p.yzx + normal_products.yzx * p.zxy;

@@ -37,8 +37,7 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
-  // llvmpipe clips at 0 even if GL_CLIP_DISTANCE0 is off: without a millimetre of tolerance, rounding removes the floor
-  // itself.
+  // llvmpipe clips at 0 even if GL_CLIP_DISTANCE0 is off. Without the 1 mm, rounding would remove parts of the floor.
   gl_ClipDistance[0] =
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);

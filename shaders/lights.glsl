@@ -1,14 +1,14 @@
 // Direct light. SPOTS: some lights are spots.
 struct Light {
-  vec4 toward_light_world;        // w: squared distance of a spot from its target; sun: 0
+  vec4 toward_light_world;        // unit; w: squared distance of a spot from its target [m²]; sun: 0
   vec4 position_world;            // w: cosine of half the cone angle
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone, as a difference of cosines
 };
 // The first LIGHTS entries are valid, at least one. Index them by constants: with a variable index, llvmpipe reads a
 // member again for each pixel.
 layout(std140, binding = 1) uniform Lights { Light lights[4]; };
-// Unit vector towards light i. `cone`: intensity of the light at the point: for a spot, inverse square falloff from 1
-// at the target, and 0 outside the cone.
+// Unit vector towards light i. `cone`: relative intensity of the light at the point. Of a sun: 1. Of a spot: 1 at its
+// target, 0 outside its cone; inside, it falls with the squared distance.
 vec3 toward_light(int i, vec3 position_world, out float cone) {
   cone = 1.0;
 #ifdef SPOTS

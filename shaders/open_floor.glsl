@@ -1,4 +1,4 @@
-// Linear light of floor without shadow or occlusion, at the ray of a pixel.
+// Light of open floor (floor without shadow or occlusion), where the ray of a pixel hits it.
 #include "stage.glsl"
 
 #ifdef SHINY
@@ -33,8 +33,8 @@ vec3 fade_out(vec3 color, vec3 position_world, vec3 ray_world) {
   return mix(color, backdrop_color(normalize(ray_world)), away_from_subjects(position_world));
 }
 
-// Distance of the floor along the view axis [m]; `ray_world` advances one metre along this axis. The bound 1e-6 is for
-// rays near the horizon, whose slope rounds to zero; there, the floor has faded into the backdrop.
+// Distance of the floor along the view axis [m]. `ray_world` advances one metre along this axis. The bound 1e-6 avoids
+// a division by zero for rays near the horizon; there, the floor has faded into the backdrop.
 float floor_distance(vec3 ray_world) {
   return frame.floor_plane_world.w / max(-dot(frame.floor_plane_world.xyz, ray_world), 1e-6);
 }
@@ -44,6 +44,7 @@ FloorPoint floor_point(vec3 albedo, vec3 ray_world) {
   return FloorPoint(position_world, frame.floor_plane_world.xyz, -normalize(ray_world), albedo);
 }
 
+// Linear light of open floor.
 vec3 open_floor(vec3 albedo, vec3 ray_world) {
   FloorPoint at = floor_point(albedo, ray_world);
   vec3 shown = albedo * irradiance(at.n) + light_on_floor(0, at);

@@ -1,4 +1,4 @@
-// Open floor under suns varies so slowly over the picture that it is computed at the corners of a grid.
+// Open floor, if its light varies so slowly over the picture that the corners of a grid suffice (Shading::Programs).
 #include "shading.glsl"
 #include "open_floor.glsl"
 layout(location = 0) in vec2 corner_clip;

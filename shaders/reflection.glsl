@@ -6,12 +6,12 @@ const int kMirrorTaps = 8;
 // sRGB to linear light, with an error below 0.3/255 (a cubic fitted to IEC 61966-2-1).
 vec3 decode(vec3 srgb) { return srgb * (srgb * (srgb * 0.305306011 + 0.682171111) + 0.012522878); }
 
-// Replaces the fraction `share` of the floor's colour (sRGB) by the reflection; returns linear light. `distance_view`:
+// Blends the reflection with the weight `share` over the floor's colour (sRGB); returns linear light. `distance_view`:
 // distance of the floor along the view axis [m].
 vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float share) {
   vec2 at = vec2(uv.x, 1.0 - uv.y);
-  // The blur radius is proportional to the distance of the mirror image behind the floor: half of the cone in which a
-  // rough floor scatters light. The nearest surface around the pixel sets it, so that outlines are blurred uniformly.
+  // A rough floor scatters light into a cone (half of it is used), so the blur radius grows with the distance of the
+  // mirror image behind the floor. The nearest surface around sets this distance, so that outlines are blurred evenly.
   float cone = 0.5 * roughness * roughness, nearest = textureLod(mirror_distances, at, 0.0).r;
   vec2 aspect = vec2(frame.frustum.y / frame.frustum.x, 1.0);
   float widest = 0.5 * cone / frame.frustum.y;

@@ -1,4 +1,4 @@
-// Light of the surroundings and encoding to sRGB; all colour passes use it.
+// Light of the surroundings, and encoding to sRGB, for all passes that draw colours.
 #include "frame.glsl"
 #include "lights.glsl"
 #include "surroundings.glsl"
@@ -11,8 +11,9 @@ vec3 srgb(vec3 linear) {
   return mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308)));
 }
 
-// Linear light to sRGB. Below 0.8, colours are unchanged, except for the film-like darkening (toe) of the look; above,
-// the strongest channel is compressed towards 1, and very bright colours desaturate.
+// Applies exposure and tone curve to linear light, and encodes it to sRGB. The look may darken dark tones, as film does
+// (toe). Other colours below 0.8 stay unchanged. Above 0.8, the strongest channel is compressed towards 1, and very
+// bright colours desaturate.
 vec3 encode(vec3 linear) {
   linear *= frame.floor_look.w;
   float toe = frame.horizon.w;

@@ -14,7 +14,8 @@ layout(binding = 8) uniform sampler2D distances_surfaces;
 // One row per surface. Columns:
 // 0: front colour; roughness. 1: back colour; thread spacing [m].
 // 2: heat scale, width of hem [m], thickness [m], distance of stitches from seams [m].
-// 3: gloss, warp fraction, fuzz, sheer of cloth; coat, metal of other surfaces. 4: opacity, threads, skin.
+// 3: cloth: gloss, warp fraction, fuzz, sheer; other surfaces: coat, metal.
+// 4: opacity, threads, 1 for skin.
 layout(binding = 7) uniform sampler2D materials;
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
@@ -30,12 +31,13 @@ float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
   vec3 h = normalize(v + l);
   float h_t = dot(h, t) / kAlong, h_b = dot(h, b) / kAcross, h_n = dot(h, n), d = h_t * h_t + h_b * h_b + h_n * h_n;
   float n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 0.05);
-  d = max(d, 1.0);  // holds if t, b and n are orthogonal; derivatives across outlines can violate this
+  d = max(d, 1.0);  // d >= 1 if t, b and n are orthogonal; at outlines, derivatives make them non-orthogonal
   return n_l / (kAlong * kAcross * d * d * 4.0 * (n_l + n_v - n_l * n_v));
 }
 #endif
 
-// Surface data that the lights need.
+// Surface data for add_light(). n_smooth: normal without threads, hems and seams. v: unit vector to the eye. shine:
+// factor on the highlight. alpha: roughness squared. f0: reflectance at normal incidence.
 struct Point {
   vec3 position_world, n, n_smooth, v;
   float shine, alpha, f0;
@@ -53,12 +55,12 @@ struct LightSums {
 };
 const float kThreadShine = 0.14;  // reflectance factor of threads with full gloss
 #ifdef SKIN
-// Below skin, red light travels farthest and dominates where it emerges: beside the terminator and in penumbrae. Tuned
-// by eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
+// Below skin, red light travels farthest, so skin is redder beside the terminator and in penumbrae. Tuned by eye, from
+// profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
 const vec3 kScattered = vec3(0.50, 0.17, 0.06);
-const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // light emerges behind the terminator up to minus this cosine
+const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // light emerges down to minus this cosine of normal and light
 vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(share * (2.0 - share)), skin * kScattered); }
-// The clamped cosine with its kink at the terminator smoothed.
+// The clamped cosine max(cosine, 0) without its kink at the terminator.
 vec3 scattered_cosine(float cosine, float skin) {
   vec3 width = skin * kPastTerminator, rounded = clamp(cosine + width, vec3(0.0), 2.0 * width);
   return rounded * rounded / max(4.0 * width, 1e-4) + max(cosine - width, 0.0);
@@ -110,8 +112,7 @@ void main() {
   vec3 offset_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, distance_view));
   at.position_world = offset_world + frame.eye_world.xyz;
   at.v = -normalize(offset_world);
-  // Near outlines, the smooth normal may point away from the eye. Then it is tilted until it is nearly perpendicular to
-  // the line of sight.
+  // Near outlines, the smooth normal may point away from the eye. If so, tilts it to nearly 90 degrees to the view ray.
   vec3 n_seen = normalize(normal_heat.xyz);
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
   float roughness = front_roughness.w;
@@ -145,7 +146,7 @@ void main() {
 #ifdef CLOTH
   at.finish = texelFetch(materials, ivec2(3, row), 0);
   at.finish.x *= at.finish.x * at.finish.x;  // cubed: highlights of cotton and satin differ a hundredfold
-  // Derivatives also use pixels beside cloth, whose rest coordinates may be left from an earlier picture.
+  // Derivatives also read pixels beside cloth, whose rest coordinates may be those of an earlier picture.
   vec2 rest_uv = row < 0 ? vec2(0.0) : texelFetch(rest_uvs, pixel, 0).xy;
   int threads = int(opacity_threads.y);
   Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, threads, at.finish.z, at.n, at.position_world);
@@ -179,7 +180,7 @@ void main() {
 
   vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
   float open = from_surfaces.w;
-  // Near shaded floor, `from_surfaces` is negative and may outweigh the open light, hence the lower bound.
+  // Near shaded floor, `from_surfaces` is negative and may exceed the light of the surroundings, hence the lower bound.
   vec3 around_light = irradiance(at.n) * open;
   around_light = max(around_light + from_surfaces.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));

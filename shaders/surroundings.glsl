@@ -1,6 +1,6 @@
 // Environment light (surroundings.hpp); include after frame.glsl.
 
-// Unoccluded irradiance on normal n, as the light that matte white shows.
+// Unoccluded irradiance on a surface with normal n, divided by pi: the light that a matte white surface shows.
 vec3 irradiance(vec3 n) {
   vec3 sum = frame.irradiance[0].rgb + n.x * frame.irradiance[1].rgb + n.y * frame.irradiance[2].rgb +
              n.z * frame.irradiance[3].rgb + n.x * n.y * frame.irradiance[4].rgb + n.y * n.z * frame.irradiance[5].rgb +

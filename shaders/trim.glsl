@@ -17,7 +17,7 @@ float band(float at, float width, float center, float half_width) {
   return max(to - from, 0.0) / width;
 }
 
-// Fraction of a pixel of length `width` in which the thread lies on top.
+// Fraction of a pixel of length `width` in which the thread of a stitch line lies on top of the cloth.
 float on_top(float along, float width) {
   float from = (along - 0.5 * width) / kStitch, to = (along + 0.5 * width) / kStitch;
   float sum = (floor(to) - floor(from)) * kOnTop + min(fract(to), kOnTop) - min(fract(from), kOnTop);
@@ -30,7 +30,7 @@ float stitches(float at, float width, float center, float shown) {
   return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
 }
 
-// A stitch line or, in knits and denim, two, the second at distance `beside` from the first.
+// One stitch line; in knits and denim also a second one, at distance `beside` from the first.
 struct Rows {
   float tone, thread;  // thread: fraction of the pixel that it covers
 };
@@ -55,16 +55,16 @@ struct Trimmed {
   float thread;  // fraction of the pixel that shows stitches of another colour
 };
 
-// `look`: width of the hem, thickness of the cloth, distance of stitches from seams (0: none) [m]. `pixel_width`: width
-// of a pixel on a surface at normal incidence [m].
+// Draws hems and seams at a pixel. `look`: width of the hem, thickness of the cloth, distance of stitches from seams
+// (0: none) [m]. `pixel_width`: width of a pixel on a surface at normal incidence [m].
 Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
-  // Directions of increasing distance from border and seam, in the surface.
+  // `inward` and `aside` below: directions in the surface in which the distances from border and seam increase.
   vec2 u_right = dFdx(rest_uv), u_up = dFdy(rest_uv);
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
-  // On the seam itself, neighbouring pixels on both sides have equal distances. Their derivative, the pixel's width
-  // across the seam, would be zero.
+  // Sets a lower bound on the pixel's width across borders and seams, which is the derivative of the distance. On the
+  // seam itself, this derivative is zero, because neighbouring pixels on both sides have equal distances.
   width.xy = max(width.xy, max(pixel_width, 0.7 * min(sqrt(abs(area)), 1.0)));
   if (woven.at_outline) width = vec3(pixel_width);
   float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
@@ -84,7 +84,8 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
     thread = sewn.thread;
   }
   float valley = band(at.y, width.y, 0.0, kValley);
-  // Slopes of a valley only a few pixels wide, within which derivatives across the seam are invalid, darken it instead.
+  // If the valley is only a few pixels wide, derivatives across the seam are invalid. Then the slopes do not tilt the
+  // normal, but darken the colour.
   const float kSlope = 0.7;
   float sloped = woven.at_outline ? 0.0 : 1.0 - smoothstep(0.3, 0.6, width.y / kValley);
   float fall = kSlope * sloped * valley;

@@ -1,12 +1,12 @@
 // Threads drawn in rest coordinates: plain weave, 3/1 twill, face side of a jersey, or loose fibres. Yarns differ
-// slightly in tone. Every feature fades to its mean before it becomes smaller than two pixels, so that nothing
-// shimmers.
+// slightly in tone. To avoid shimmer, every feature fades to its mean before it becomes smaller than two pixels.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.15;  // maximum relative deviation of a yarn's tone; each size three times larger has 0.7 of it
+// Maximum relative deviation of a yarn's tone at the smallest size of uneven_tone(); each larger size has 0.7 of it.
+const float kUneven = 0.15;
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
-// Random number from -1 to 1 for a thread. Neighbouring threads have opposite contributions: there is no slow
-// variation, which would be visible as bands after the threads themselves have faded.
+// Random number from -1 to 1 for a thread. The numbers of neighbouring threads almost cancel in a sum. A slow variation
+// would be visible as bands after the threads themselves have faded.
 float thread_noise(float thread) { return noise(thread + 1.0) - noise(thread); }
 
 // Random value from -0.5 to 0.5 for each cell.
@@ -16,7 +16,7 @@ float speck(ivec2 cell) {
   return float((mixed ^ (mixed >> 13)) & 0xFFFFu) / 65535.0 - 0.5;
 }
 
-// Value noise, smooth over one unit of `at`.
+// Value noise from -0.5 to 0.5, with cells of side 1.
 float unevenness(vec2 at) {
   vec2 whole = floor(at), f = at - whole;
   f = f * f * (3.0 - 2.0 * f);
@@ -34,7 +34,7 @@ struct Weave {
   bool at_outline;              // derivatives cross an outline and are therefore invalid
 };
 
-// 1 if `size` of a feature is well above the pixel's footprint, 0 if it is below two pixels.
+// Weight of a feature: 0 if its size is below two footprints of a pixel, rising to 1 at 4.5.
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
 // The yarn on top at one point.
@@ -45,7 +45,7 @@ struct Top {
   bool weft;
 };
 
-// Round yarns: height falls off across the thread and where it passes below the next one.
+// Plain weave of round yarns: the height falls off across a yarn, and along it towards the yarns that cross above it.
 Top plain_top(vec2 thread) {
   vec2 cell = floor(thread), local = fract(thread) - 0.5;
   bool weft_over = mod(cell.x + cell.y, 2.0) < 1.0;
@@ -74,9 +74,10 @@ Top knit_top(vec2 thread) {
   return Top(height - 0.717, tilt, floor(thread.x) + 37.0, false);
 }
 
-// Tone variation along yarns, at three sizes: each is some threads wide and eight times as long. Sizes below the
-// pixel's resolution fade. The warp of denim is dyed unevenly, and protruding fibres vary in tone. `footprint`: size of
-// the pixel along weft and warp [threads]; at oblique view, the yarns of one direction may still be resolved.
+// Tone variation of yarns, in patches of three sizes: 3, 9 and 27 threads wide and eight times as long. Patches below
+// the pixel's resolution fade. The warp of denim is dyed unevenly, and protruding fibres vary in tone. `footprint`:
+// size of the pixel along weft and warp [threads]. It has two values, because at oblique view the yarns of one
+// direction may still be resolved.
 float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
@@ -99,11 +100,11 @@ float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
 }
 
 Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, vec3 p_world) {
-  // If the spacing is 0, a tiny one keeps the directions of weft and warp defined. It is 0 for cloth without drawn
-  // threads, and for pixels of other surfaces, which derivatives may include.
+  // `spacing` is 0 for cloth without drawn threads, and for pixels of other surfaces, which derivatives may include.
+  // The lower bound keeps the directions of weft and warp defined.
   vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
-  // Pixel footprint [threads]: along each thread direction, the larger of both, and across the lines of a twill.
+  // Pixel footprints [threads]: along weft and warp, along the pixel's longer side, and across the lines of a twill.
   vec2 along_axes = vec2(length(vec2(across.x, down.x)), length(vec2(across.y, down.y)));
   float footprint = max(length(across), length(down)), across_lines = length(vec2(across.y - across.x, down.y - down.x));
   // Gradients of weft and warp in the surface, from screen derivatives.
@@ -112,8 +113,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   float area = across.x * down.y - across.y * down.x;
   weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
   warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
-  // Threads hardly stretch. If rest coordinates and positions change by very different amounts, the pixel is therefore
-  // at an outline.
+  // Threads hardly stretch. If rest coordinates and positions change by different amounts, the pixel is at an outline.
   float along_threads = spacing * spacing * max(dot(across, across), dot(down, down)),
         in_space = max(dot(p_dx, p_dx), dot(p_dy, p_dy));
   bool at_outline = spacing > 0.0 && (along_threads > 4.0 * in_space || in_space > 4.0 * along_threads);
@@ -146,8 +146,8 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   return result;
 }
 
-// Colour of denim if undyed weft is on top in the fraction `weft` of the area. `cloth`: the mean colour, at a fraction
-// of one quarter.
+// Colour of denim if undyed weft is on top in the fraction `weft` of the area. `cloth`: mean colour of the cloth, where
+// this fraction is one quarter.
 vec3 denim_color(vec3 cloth, float weft) {
   const float kPaler = 2.2, kDye = 0.35;
   vec3 undyed = kPaler * mix(vec3(dot(cloth, vec3(0.2126, 0.7152, 0.0722))), cloth, kDye);

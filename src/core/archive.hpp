@@ -1,6 +1,6 @@
-// Conversion of values to bytes and back. Each type has one description, a function or member `serialize` that is a
-// template over the archive, so that writing and reading cannot differ. Plain types are trivially copyable, and have
-// neither padding nor pointers.
+// Serialisation: values to bytes and back. Each type has one function or member `serialize`. It is a template over the
+// archive (ByteWriter or ByteReader), so that writing and reading cannot differ. A plain value has a trivially copyable
+// type with neither padding nor pointers.
 #pragma once
 
 #include <cstring>
@@ -14,13 +14,13 @@
 
 namespace weft {
 
-/// Appends the values passed to its functions, in the byte order of this machine.
+/// Appends values to `bytes`, in the byte order of this machine.
 struct ByteWriter {
   static constexpr bool kReads = false;
   std::string bytes;
 
   void raw(const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
-  /// T must have no padding, whose bytes would be indeterminate.
+  /// T must have no padding: padding bytes would be indeterminate.
   template <class T>
   void value(T& value) {
     raw(&value, sizeof value);
@@ -32,7 +32,7 @@ struct ByteWriter {
   }
 };
 
-/// Fills the values passed to its functions from `bytes`. Throws std::runtime_error if there are too few bytes.
+/// Reads values from the front of `bytes`. Throws std::runtime_error if there are too few bytes.
 struct ByteReader {
   static constexpr bool kReads = true;
   std::string_view bytes;
@@ -45,15 +45,15 @@ struct ByteReader {
   template <class T>
   void value(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
-      unsigned char byte = 0;  // a bool must not hold any other value than 0 or 1
+      unsigned char byte = 0;  // copying a byte other than 0 or 1 into a bool is undefined behaviour
       raw(&byte, 1);
       value = byte != 0;
     } else {
       raw(static_cast<void*>(&value), sizeof value);
     }
   }
-  /// Resizes the list. Each entry takes at least `min_entry_size` bytes, so a broken count cannot ask for more entries
-  /// than the remaining bytes can hold.
+  /// Reads a count and resizes the list. `min_entry_size`: minimum size of an entry [bytes]. Rejects a count of more
+  /// entries than the remaining bytes can hold, so that damaged data cannot cause a huge allocation.
   template <class List>
   void size(List& list, std::size_t min_entry_size = 1) {
     std::size_t count = 0;
@@ -63,32 +63,33 @@ struct ByteReader {
   }
 };
 
-/// Checks a value that was read: throws std::runtime_error if `holds` is false.
+/// Checks data that was read: throws std::runtime_error if `holds` is false.
 inline void require(bool holds, const char* expected) {
   if (!holds) throw std::runtime_error(std::string("the data does not fit: expected ") + expected);
 }
 
-/// Plain values, one after the other.
+/// Writes or reads plain values, one after the other.
 template <class Archive, class... Values>
 void serialize_values(Archive& archive, Values&... values) {
   (archive.value(values), ...);
 }
 
-/// A list of plain values, or a string.
+/// Writes or reads a list of plain values, or a string.
 template <class Archive, class List>
 void serialize_plain(Archive& archive, List& list) {
   archive.size(list, sizeof list[0]);
   if (!list.empty()) archive.raw(static_cast<void*>(list.data()), list.size() * sizeof list[0]);
 }
 
+/// Writes or reads a list by calling `serialize_one` for each entry. `min_entry_size`: see ByteReader::size().
 template <class Archive, class List, class Serialize>
 void serialize_each(Archive& archive, List& list, const Serialize& serialize_one, std::size_t min_entry_size = 1) {
   archive.size(list, min_entry_size);
   for (auto& entry : list) serialize_one(entry);
 }
 
-/// A list of `count` finite points or vectors. When reading, throws std::runtime_error if the list has another length
-/// or values that are not finite.
+/// Writes or reads a list of `count` finite points or vectors. When reading, throws std::runtime_error if the list has
+/// another length or a value that is not finite.
 template <class Archive>
 void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
   serialize_plain(archive, points);

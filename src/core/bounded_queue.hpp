@@ -11,15 +11,16 @@
 
 namespace weft {
 
-/// Hands items from one thread to another in order. Failures travel both ways: `close(failure)` reaches the consumer
-/// after the last item, so that finished work is kept; `cancel()` stops the producer at its next push.
+/// Passes items in order from one thread, the producer, to another, the consumer. If the producer fails, it calls
+/// close() with its exception, which the consumer gets after the last item, so that finished work is kept. If the
+/// consumer fails, it calls cancel(), which stops the producer at its next push.
 template <class T>
 class BoundedQueue {
  public:
   /// `capacity`: maximum number of waiting items (at least 1); it bounds the memory of the pipeline.
   explicit BoundedQueue(std::size_t capacity) : capacity_(capacity > 0 ? capacity : 1) {}
 
-  /// Waits for space. Returns false if the queue is closed or cancelled: the producer should stop.
+  /// Waits for space. Returns false if the queue is closed or cancelled; the producer should then stop.
   [[nodiscard]] bool push(T item) {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [&] { return items_.size() < capacity_ || closed_ || cancelled_; });
@@ -30,8 +31,8 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. Returns nothing after cancel() and at the end of a closed queue. If the producer failed, throws
-  /// its exception at the end of the queue.
+  /// Waits for an item. Returns nothing after cancel(), or if the queue is closed and empty. If it was closed with an
+  /// exception, throws that exception instead once it is empty.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });
@@ -46,7 +47,7 @@ class BoundedQueue {
     return item;
   }
 
-  /// Called when the producer is done. Waiting items can still be popped. Only the first call counts.
+  /// The producer calls it when it ends. Waiting items can still be popped. Only the first call has an effect.
   void close(std::exception_ptr failure = nullptr) {
     {
       const std::lock_guard lock(mutex_);
@@ -57,7 +58,7 @@ class BoundedQueue {
     room_.notify_all();
   }
 
-  /// Called when the consumer is done. Waiting items are dropped.
+  /// The consumer calls it when it ends. Waiting items are dropped.
   void cancel() {
     {
       const std::lock_guard lock(mutex_);

@@ -7,8 +7,8 @@
 
 namespace weft {
 
-/// Knot i of a spline. i may be one place beyond the ends: a closed spline wraps around, an open one is extended
-/// linearly.
+/// Knot i of a spline, for i from −1 to the number of knots. Beyond its ends, a closed spline wraps around, and an open
+/// spline is extended linearly.
 inline Vec3 spline_knot(const std::vector<Vec3>& knots, bool closed, int i) {
   const auto count = static_cast<int>(knots.size());
   const auto knot = [&](int k) -> const Vec3& { return knots[static_cast<std::size_t>(k)]; };

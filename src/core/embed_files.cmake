@@ -1,5 +1,5 @@
-# Writes OUTPUT, a header with the text of every file below FOLDER as NAME, an array of EmbeddedFile, so that the program
-# needs no file beside it: cmake -DFOLDER=... -DOUTPUT=... -DNAME=kEmbeddedShaders -P embed_files.cmake
+# Writes the header OUTPUT. It defines NAME, an array of EmbeddedFile with the text of every file below FOLDER. Thus the
+# program does not need these files. cmake -DFOLDER=... -DOUTPUT=... -DNAME=kEmbeddedShaders -P embed_files.cmake
 file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*)
 set(entries "")
 foreach(file IN LISTS files)

@@ -1,4 +1,4 @@
-// Reads input files: regular files only, because a pipe or a device may never end. Every Error names its file.
+// Reads input files: only regular files, because reading a pipe or a device may never end. Every Error names its file.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,27 @@
 
 namespace weft {
 
-/// Largest text that is read as a whole [bytes]; statistics of 100,000 frames have 70 MB.
+/// Maximum size of a text file that is read as a whole [bytes]. The statistics of 100,000 frames have 70 MB.
 inline constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{256} << 20;
 inline constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
-/// Returns all bytes of a regular file. Throws std::runtime_error, with the reason but without the file's name, if it
-/// is no regular file, holds more than `max_bytes` bytes, or cannot be read. Never waits for a writer.
+/// Returns all bytes of a regular file. Throws std::runtime_error, with the reason but without the file's name, if
+/// `file` is no regular file (without waiting for the writer of a pipe), is larger than `max_bytes`, or cannot be read.
 std::string read_bytes(const std::filesystem::path& file, std::uintmax_t max_bytes = kAnySize);
 
-/// Like read_bytes(), but throws Error(asset_unreadable) with the name of the file and the reason.
+/// The same, but throws Error(asset_unreadable) with the name of the file and the reason.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t max_bytes = kAnySize);
 
-/// For libraries that open files: throws std::runtime_error if `file` is no regular file or cannot be opened.
+/// Throws std::runtime_error if `file` is no regular file or cannot be opened. For files that a library opens itself.
 void check_is_file(const std::filesystem::path& file);
 
-/// Returns the first bytes of a regular file, at most `count`; empty if it cannot be read.
+/// Returns the first bytes of a regular file, at most `count`; empty if the file cannot be read.
 std::string read_start(const std::filesystem::path& file, std::size_t count);
-/// Likewise the last bytes.
+/// Returns the last bytes, likewise.
 std::string read_end(const std::filesystem::path& file, std::size_t count);
 
-/// Returns what `read` returns. An exception of `read` that is no Error becomes Error(asset_unreadable) with the name
-/// of the file: whatever a file contains, a failure to read it is never an internal error.
+/// Returns the result of `read`, which parses `file`. If `read` throws an exception that is no Error, throws
+/// Error(asset_unreadable) with the name of the file instead: a broken file must not count as an internal error.
 template <class Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
   try {

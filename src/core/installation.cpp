@@ -20,8 +20,8 @@ Installation own_installation() {
   if (!overridden_installation.program.empty()) return overridden_installation;
   std::error_code none;
   const fs::path running = fs::read_symlink("/proc/self/exe", none);
-  // In an archive, bin/NAME starts lib/ld-linux-x86-64.so.2, which runs libexec/NAME with bin/NAME as its name
-  // (.packaging/start.c).
+  // In an archive, bin/NAME starts the loader lib/ld-linux-x86-64.so.2, which runs libexec/NAME with argument 0 set to
+  // bin/NAME (.packaging/start.c).
   const fs::path started = program_invocation_name, libraries = running.parent_path(), top = libraries.parent_path();
   const fs::path code = top / "libexec" / started.filename();
   if (running.filename().string().starts_with("ld-linux") && fs::is_regular_file(code, none))

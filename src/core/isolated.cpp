@@ -62,7 +62,7 @@ class Pipe {
 
 void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   const rlimit both{soft, hard};
-  // Without privileges, a stricter hard limit makes setrlimit fail, and stays.
+  // If a stricter hard limit is in force, setrlimit() fails without privileges, and the stricter limit stays.
   static_cast<void>(::setrlimit(resource, &both));
 }
 
@@ -75,17 +75,18 @@ void send(int descriptor, std::string_view bytes) {
   }
 }
 
-/// The child process. Never returns, and runs no destructors of the parent's objects: their files and threads belong to
-/// the parent.
+/// Code of the child process. Never returns, and runs no destructors of the parent's objects, whose files and threads
+/// belong to the parent.
 [[noreturn]] void run_child(const std::function<std::string()>& work, const Isolation& isolation, int answer) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM}) std::signal(crash, SIG_DFL);
-  // Ctrl-C also reaches the child, which ignores it: the parent kills it once `stop` is true.
+  // The terminal sends the signal of Ctrl-C to the child, too. The child ignores it; the parent kills the child once
+  // `stop` is true.
   for (const int request : {SIGINT, SIGHUP}) std::signal(request, SIG_IGN);
   limit(RLIMIT_CORE, 0, 0);
-  // The soft limit sends SIGXCPU, the hard limit SIGKILL a second later.
+  // At the soft limit, the kernel sends SIGXCPU; at the hard limit, a second later, SIGKILL.
   if (isolation.cpu_seconds > 0) limit(RLIMIT_CPU, isolation.cpu_seconds, isolation.cpu_seconds + 1);
-#ifndef __SANITIZE_ADDRESS__  // the sanitizer reserves terabytes
+#ifndef __SANITIZE_ADDRESS__  // the address sanitizer reserves terabytes of addresses
   if (isolation.addresses > 0) limit(RLIMIT_AS, isolation.addresses, isolation.addresses);
 #endif
   char kind = kDone;
@@ -129,7 +130,7 @@ std::string receive(int descriptor, const Isolation& isolation) {
   }
 }
 
-/// A child process. The destructor kills and reaps it if wait() was not called, so that none is left behind.
+/// A child process. If wait() was not called, the destructor kills and reaps the process.
 class Child {
  public:
   explicit Child(pid_t process) : process_(process) {}
@@ -164,7 +165,7 @@ std::string run_isolated(const std::function<std::string()>& work, const Isolati
   pipe.close_write_end();
   std::string answer = receive(pipe.read_end(), isolation);
   const int status = child.wait();
-  // The signal that set `stop` may also have ended the child: that is an interruption, not a crash.
+  // The signal that set `stop` may also have ended the child; this is an interruption, not a crash.
   if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);

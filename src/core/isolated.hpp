@@ -1,4 +1,4 @@
-// Runs code in a child process: code that may crash on damaged input, or code whose memory use is measured alone.
+// Runs code in a child process, because it may crash on damaged input or its memory use is to be measured alone.
 #pragma once
 
 #include <atomic>
@@ -9,17 +9,17 @@
 namespace weft {
 
 struct Isolation {
-  std::string name = "the process";  ///< used in messages
-  unsigned cpu_seconds = 0;          ///< CPU time limit; 0: none
-  unsigned wall_seconds = 0;         ///< wall time limit, after which the child is killed, even if it waits; 0: none
-  std::uint64_t addresses = 0;       ///< address space limit [bytes]; 0: none
+  std::string name = "the process";         ///< used in messages
+  unsigned cpu_seconds = 0;                 ///< CPU time limit; 0: none
+  unsigned wall_seconds = 0;                ///< wall time limit, after which the child is killed; 0: none
+  std::uint64_t addresses = 0;              ///< address space limit [bytes]; 0: none
   const std::atomic<bool>* stop = nullptr;  ///< if it becomes true, the child is killed; nullptr: never
 };
 
-/// Calls `work` in a child process and returns the bytes that `work` returned. This process survives whatever happens
-/// to the child (a crash, an endless loop, a runaway allocation). If the child fails, run_isolated() throws
-/// std::runtime_error with the reason, or with the text of the exception that `work` threw; if `stop` became true, it
-/// throws Error(interrupted). Other threads of this process do not exist in the child: `work` must not wait for them.
+/// Calls `work` in a child process and returns the bytes that `work` returned. The calling process survives any failure
+/// of the child (a crash, an endless loop, a runaway allocation). If `work` throws, throws std::runtime_error with the
+/// text of that exception; if the child fails otherwise, with the reason. If `stop` becomes true, throws
+/// Error(interrupted). The child has only the calling thread: `work` must not wait for other threads.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

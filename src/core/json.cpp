@@ -13,9 +13,9 @@ namespace weft {
 template <class Json>
 Json parse_json(std::string_view text) {
   if (nests_too_deep(text)) throw std::runtime_error("expected at most 128 levels of lists and objects, got more");
-  constexpr std::size_t kMaxKeyComparisons = 200'000'000;  // statistics of 100,000 frames take 40 million
+  constexpr std::size_t kMaxKeyComparisons = 200'000'000;  // the statistics of 100,000 frames need 40 million
   std::size_t comparisons = 0;
-  std::array<std::size_t, kMaxDepth + 2> key_counts{};  // keys so far, of the current object at each depth
+  std::array<std::size_t, kMaxDepth + 2> key_counts{};  // number of keys so far in the current object of each depth
   return Json::parse(text, [&](int depth, nlohmann::json::parse_event_t event, Json&) {
     using Event = nlohmann::json::parse_event_t;
     const auto level = static_cast<std::size_t>(depth);

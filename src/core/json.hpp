@@ -11,18 +11,18 @@
 
 namespace weft {
 
-/// Throws std::exception if the text is no JSON, nests too deep, or has too many keys in its objects: nlohmann::json
-/// copies, compares and writes recursively, and nlohmann::ordered_json compares each key with all earlier keys of its
-/// object.
+/// Throws std::exception if the text is no JSON, nests too deep, or has too many keys in its objects. Depth is limited
+/// because nlohmann::json copies, compares and writes recursively. The number of keys is limited because
+/// nlohmann::ordered_json compares each key with all earlier keys of its object.
 template <class Json = nlohmann::ordered_json>
 Json parse_json(std::string_view text);
 
 extern template nlohmann::ordered_json parse_json(std::string_view);
 extern template nlohmann::json parse_json(std::string_view);
 
-/// The value of a key; `otherwise` if `json` is no object, lacks the key, or has a value there that is no T:
-/// std::string, double, or int within its range. The value() of nlohmann::json throws if `json` is no object or the
-/// type differs, which becomes an internal error if nobody catches it.
+/// Returns the value of a key; `otherwise` if `json` is no object, if it lacks the key, or if the value is no T
+/// (std::string, double, or an int within its range). Use it instead of nlohmann::json::value(), which throws if `json`
+/// is no object or the type differs.
 template <class T, class Json>
 T value_or(const Json& json, const char* key, T otherwise) {
   if (!json.is_object()) return otherwise;
@@ -35,7 +35,7 @@ T value_or(const Json& json, const char* key, T otherwise) {
     fits = found->is_number();
   } else {
     static_assert(std::is_same_v<T, int>);
-    // nlohmann::json compares unsigned numbers as signed ones: from 2^63 they would count as negative.
+    // Reading an unsigned number of 2^63 or more as std::int64_t would give a negative number.
     fits = found->is_number_unsigned()
                ? std::in_range<int>(found->template get<std::uint64_t>())
                : found->is_number_integer() && std::in_range<int>(found->template get<std::int64_t>());
@@ -48,8 +48,8 @@ nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);
 
 enum class JsonLetters { all, ascii };
 
-/// JSON as text, on one line if `indent` is negative. Bytes that are not UTF-8, as in names of files, become U+FFFD, as
-/// JSON cannot hold them. JsonLetters::ascii escapes all letters beyond ASCII.
+/// JSON as text, on one line if `indent` is negative. Bytes that are not UTF-8, such as in names of files, become
+/// U+FFFD, because JSON cannot represent them. JsonLetters::ascii escapes all letters beyond ASCII.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1, JsonLetters letters = JsonLetters::all);
 
 /// The same for JSON with sorted keys.

@@ -27,14 +27,14 @@ State& state() {
 // Carriage return and "erase to the end of the line" (ECMA-48 EL).
 constexpr std::string_view kEraseLine = "\r\x1b[K";
 
-// Writes each line by one call, so that lines of other processes on the same terminal do not mix in. A failure of
-// standard error cannot be reported anywhere and must not stop a run.
+// Writes each line by one call, so that it is not mixed with lines of other processes on the same terminal. Ignores
+// failures: a failure of standard error cannot be reported and must not stop a run.
 void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-// Passes a text to the handler, without the lock, as the handler may wait for a lock that another thread holds while it
-// logs. Returns false if there is no handler.
+// Passes a text to the handler; returns false if there is none. Releases the lock first: the handler may wait for a
+// thread that itself waits here to log.
 bool handled(std::string_view text, const State& s, std::unique_lock<std::mutex>& lock) {
   const auto handle = s.handle;
   if (!handle) return false;
@@ -52,7 +52,7 @@ void print(State& s, std::string_view text) {
   }
 }
 
-/// Passes a text to the handler. Without a handler, prints and keeps the text unless the list contains it already.
+/// Passes a text to the handler. Without a handler, prints the text and adds it to `list`, unless it is there already.
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
   std::unique_lock lock(s.mutex);

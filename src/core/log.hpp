@@ -1,4 +1,4 @@
-// Messages for people on standard error, in whole lines and in order. Safe from all threads.
+// Messages for the user on standard error, in whole lines and in order. Thread-safe.
 #pragma once
 
 #include <functional>
@@ -8,19 +8,19 @@
 
 namespace weft::log {
 
-/// `text` with escapes for what a terminal would interpret as commands, for example in the name of a file. `kept`: the
-/// control characters that stay.
+/// `text` with control characters escaped, because a terminal would interpret them as commands; names of files may
+/// contain them. `kept`: ASCII control characters that are not escaped.
 std::string without_controls(std::string_view text, std::string_view kept = "\n\t");
 
 void info(std::string_view line);
 
-/// Prints `warning: text` and keeps the text for the summary at the end; the same text again is ignored.
+/// Prints `warning: text` and keeps the text for the summary at the end of a run. Ignores a text that is kept already.
 void warn(std::string_view text);
 
-/// Like warn(), with `note: text`, for intended changes that the user should know of.
+/// Like warn(), but prints `note: text`; for intended changes that the user should know of.
 void note(std::string_view text);
 
-/// Sends following messages to `handle`, in the thread that reports them; they are neither printed nor kept.
+/// Passes all later messages to `handle`, in the thread that reports them, instead of printing and keeping them.
 /// An empty `handle` restores the default.
 void set_handler(std::function<void(std::string_view text)> handle);
 
@@ -28,7 +28,8 @@ std::vector<std::string> warnings();
 
 std::vector<std::string> notes();
 
-/// Shows `line` in place below the other lines, for a progress bar; an empty line removes it. For terminals only.
+/// Shows `line`, such as a progress bar, below all other lines, in place of the one shown before. An empty `line` only
+/// removes that one. For terminals only.
 void status(std::string_view line);
 
 }  // namespace weft::log

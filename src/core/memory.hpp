@@ -5,7 +5,7 @@
 
 namespace weft {
 
-/// Largest resident memory of this process so far [bytes].
+/// Maximum resident memory of this process so far [bytes].
 std::int64_t peak_memory_bytes();
 
 /// Current resident memory [bytes].

@@ -6,7 +6,7 @@
 namespace weft {
 
 int edit_distance(std::string_view from, std::string_view to) {
-  // Rows of the usual table: the one before the last (for swaps), the last, and the current one.
+  // Rows of the dynamic-programming table: row i − 2 (needed for swaps), row i − 1, and the current row i.
   std::vector<int> before(to.size() + 1), last(to.size() + 1), row(to.size() + 1);
   for (std::size_t j = 0; j <= to.size(); ++j) row[j] = static_cast<int>(j);
   for (std::size_t i = 1; i <= from.size(); ++i) {

@@ -6,7 +6,7 @@
 namespace weft {
 namespace {
 
-/// Position behind the string that begins at `at` with a quote.
+/// Position behind the string whose opening quote is at `at`.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const std::string_view triple_quote = quote == '"' ? "\"\"\"" : "'''";
@@ -15,7 +15,7 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
     if (text[at] == '\\' && quote == '"') {
       ++at;
     } else if (long_string && text.substr(at, 3) == triple_quote) {
-      // The string may end with one or two quotes of its own.
+      // The content may end with one or two quotes, directly before the closing three.
       at += 3;
       for (int k = 0; k < 2 && at < text.size() && text[at] == quote; ++k) ++at;
       return at;
@@ -29,9 +29,9 @@ std::size_t end_of_string(std::string_view text, std::size_t at) {
 }  // namespace
 
 bool nests_too_deep(std::string_view text) {
-  std::vector<int> open;  // levels that each open bracket adds: one, and one per dot of the key before it
+  std::vector<int> open;  // for each open bracket, the levels that it adds: one, plus one per dot of the key before it
   int depth = 0;          // sum of `open`
-  int dots = 0;           // number of dots in the current key, and in a number after it
+  int dots = 0;           // number of dots in the current key and in its value
   for (std::size_t at = 0; at < text.size();) {
     const char c = text[at];
     if (c == '"' || c == '\'') {

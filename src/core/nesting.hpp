@@ -1,18 +1,17 @@
-// Nesting depth of TOML and JSON, checked before any parser or destructor recurses.
+// Limits the nesting depth of TOML and JSON before a recursive parser or destructor could overflow the stack.
 #pragma once
 
 #include <string_view>
 
 namespace weft {
 
-/// Maximum nesting depth of JSON, and of one header or one key with its value of TOML: lists, tables, and the
-/// components of a dotted key. No scene has more than ten. Each level takes less than 1 kB of a stack of 8 MB.
+/// Maximum nesting depth of JSON; in TOML, of one header or of one key with its value. Lists, tables and components of
+/// a dotted key count as levels. No scene has more than ten. Each level takes less than 1 kB of a stack of 8 MB.
 inline constexpr int kMaxDepth = 128;
 
-/// Whether TOML or JSON text nests deeper than kMaxDepth. Behind the first mistake of a text, where the parser stops,
-/// the result is arbitrary. A TOML document that passes is at most about three times as deep as kMaxDepth, for two
-/// reasons. A key counts without the header above it. Each component of a header may be a list of tables, which has two
-/// levels.
+/// Whether TOML or JSON text nests deeper than kMaxDepth. Text behind the first syntax error is counted arbitrarily;
+/// the parser stops at that error. A TOML document that passes nests at most about 3 kMaxDepth levels: a key is counted
+/// without the header above it, and each component of a header may be a list of tables, which has two levels.
 bool nests_too_deep(std::string_view text);
 
 }  // namespace weft

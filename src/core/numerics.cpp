@@ -5,7 +5,7 @@ namespace {
 
 constexpr Numerics chosen() {
   Numerics chosen;
-#ifdef WEFT_CHANGED_NUMERICS  // defined by tests/tools/change_numerics.sh, as a statement
+#ifdef WEFT_CHANGED_NUMERICS  // tests/tools/change_numerics.sh defines it, for example as newton.slow_after *= 10
   chosen.WEFT_CHANGED_NUMERICS;
 #endif
   return chosen;

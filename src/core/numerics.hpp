@@ -1,182 +1,189 @@
-// The tuned constants of a time step. Constants of one algorithm (untangling, stretch limits, single precision) are in
-// the file of that algorithm.
+// The tuned constants of a time step. Constants that belong to one algorithm (untangling, stretch limits, single
+// precision) are in the file of that algorithm.
 #pragma once
 
 namespace weft {
 
-/// Tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m², spacings of 1 cm to 1 m,
-/// steps of 1 to 40 ms. "Larger:" precedes the measured effect of a larger value, "0:" that of 0. Members without a
-/// unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member is ten times as
-/// large.
+/// Tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m², particle spacings of 1 cm to
+/// 1 m, steps of 1 to 40 ms. "Larger: X" means that a larger value was measured to cause X; "Smaller:" and "0:"
+/// likewise. Members without a unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a
+/// member changes.
 struct Numerics {
   /// The linear solver (src/physics/solver).
   struct Linear {
-    /// A particle is stiff if the trace of its 3×3 block of the matrix exceeds this value times the sum of
-    /// `LinearSystem::norm_weights` over its cloth. With any stiff particle, the multigrid levels correct each
+    /// A particle is stiff if the trace of its 3×3 diagonal block of the matrix exceeds this value times the sum of
+    /// `LinearSystem::norm_weights` over its cloth. If any particle is stiff, the multigrid levels correct each
     /// aggregate as a whole instead of interpolating between aggregates (Preconditioner). Larger: systems with slender
-    /// cells or a viscosity of 1e4 N·s/m are not solved; smaller: soft cloth takes twice as many iterations.
+    /// cells or a viscosity of 1e4 N·s/m are not solved. Smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
-    /// The last max(`min_error_window`, n / `error_window_divisor`) of n iterations estimate the error. Fewer: solves
-    /// end on a plateau, and cloth with a viscosity of 1e4 N·s/m gains energy.
+    /// After n iterations, the last max(`min_error_window`, n / `error_window_divisor`) of them estimate the error.
+    /// Fewer: solves end where the error only stagnates, and cloth with a viscosity of 1e4 N·s/m gains energy.
     int min_error_window = 3;
     int error_window_divisor = 5;
-    /// Maximum number n of cloth aggregates on the coarsest level; one per cloth if there are more cloths. The dense
-    /// factorisation of that level takes 9 n³ multiplications.
+    /// Maximum number n of cloth aggregates on the coarsest multigrid level; with more than n cloths, one aggregate per
+    /// cloth. The dense factorisation of that level takes 9 n³ multiplications.
     int coarsest_aggregates = 70;
   } linear;
 
   /// Newton's method (src/physics/integrator).
   struct Newton {
-    /// Allowed linear error, relative to the allowed Newton error. A diagonal block (a cloth or rigid body) whose error
-    /// is below this fraction of the allowed Newton error is not solved again (but see `slow_after`). 1: fewer
-    /// iterations, but more strain.
+    /// Allowed error of a linear solve, relative to the allowed error of Newton's method. A diagonal block (a cloth or
+    /// rigid body) whose Newton error is below this fraction of the allowed one is left out of the next linear solve
+    /// (but see `slow_after`). 1: fewer iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on `solver.linear_tolerance` for the midpoint rule, which damps nothing. Larger:
     /// flat sheets fold in free fall.
     double midpoint_tightening = 0.1;
     /// `slope_left`: slope (residual · direction) at which a line search ends, relative to the slope at its start.
-    /// Smaller: more evaluations; larger: more iterations. `line_trials`: maximum number of evaluations.
+    /// Smaller: more evaluations. Larger: more Newton iterations. `line_trials`: maximum number of evaluations.
     double slope_left = 0.5;
     int line_trials = 6;
-    /// Newton iterations after which the trajectory is checked for contacts that only the solve reveals.
+    /// Number of Newton iterations after which a solve is interrupted, to find contacts on its new trajectory early.
     int check_after = 4;
-    /// Newton iterations after which a solve counts as slow. Friction then keeps its normal forces. Velocity errors
-    /// below unseen_velocity() or, with implicit Euler, below `velocity_ratio` times the local velocity error are then
-    /// allowed. From half of this number on, each linear solve includes all diagonal blocks. A solve also continues at
-    /// most this many times from cloth that was pushed apart (0: tests/bench/scenes/ring.toml takes four times the
-    /// steps). Larger: friction and normal forces, or cloths that press on each other, oscillate.
+    /// Number of Newton iterations after which a solve counts as slow. In a slow solve, friction keeps its normal
+    /// forces, and velocity errors are allowed up to unseen_velocity() or, with implicit Euler, up to `velocity_ratio`
+    /// times the local velocity error. From half of this number on, each linear solve includes all diagonal blocks.
+    /// Larger: friction and normal forces, or cloths that press on each other, oscillate. The same number limits how
+    /// often a step is solved further after cloth was pushed apart. 0: tests/bench/scenes/ring.toml takes four times
+    /// the steps.
     int slow_after = 20;
     double velocity_ratio = 0.5;
-    /// Time for which a velocity error is assumed to displace cloth [s]. Shorter: most of a run's error comes from the
-    /// solver; longer: more iterations.
+    /// Time for which a velocity error is assumed to displace cloth [s]. Smaller: most of a run's error comes from the
+    /// solver. Larger: more iterations.
     double lasting_time = 0.15;
-    /// Visibility thresholds of acceleration [m/s²] and velocity [m/s]. As bounds of errors, both are multiplied by
-    /// `solver.newton_tolerance`.
+    /// Visibility thresholds: smaller errors of acceleration [m/s²] and velocity [m/s] are not visible. As bounds of
+    /// solver errors, both are multiplied by `solver.newton_tolerance`.
     double unseen_acceleration = 0.01;
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
-    /// Friction, relative to its limit, above which a diagonal block counts as about to slide.
+    /// Ratio of friction to its limit above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
-    /// Newton's method reuses the matrix rows of a cloth while no particle has moved farther than this since their
+    /// Newton's method reuses the matrix rows of a cloth until a particle has moved farther than this since their
     /// assembly, in particle spacings. Larger: more iterations.
     double stale_motion = 0.005;
   } newton;
 
   /// Step sizes from `time.tolerance` (src/physics/integrator/step_control.cpp), and after rejections.
   struct Steps {
-    /// Error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
+    /// Local error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
     double aim = 0.7;
-    /// Minimum and maximum ratio of a step to the one before; after a rejection, the maximum is 1. A larger maximum:
-    /// BDF2 amplifies earlier errors.
+    /// Minimum and maximum ratio of the length of a step to that of the step before; after a rejection, the maximum is
+    /// 1. A larger maximum: BDF2 amplifies earlier errors.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Shortest step that the error control chooses [s]. Steps that are not solved are halved below it; the run ends if
-    /// such a step is not solved either.
+    /// Shortest step that the error control chooses [s]. If a step is not solved, it is halved even below this length;
+    /// if a step below this length is not solved, the run ends.
     double min_step = 1e-5;
-    /// Maximum speed of cloth at rest [m/s]; see StepLoop::may_rest().
+    /// If any particle is faster than this, cloth does not count as at rest [m/s]; see StepLoop::may_rest().
     double rest_velocity = 0.02;
   } steps;
 
   /// Contacts (src/physics/collision).
   struct Contact {
-    /// Detection distance, relative to the largest activation distance. Smaller: contacts are found late in a step.
+    /// Ratio of the detection distance to the largest activation distance. Smaller: contacts are found late in a step.
     double detection = 1.5;
-    /// Verlet margin m of near features, in detection distances: motion up to which the search reuses its lists.
-    /// Larger: longer lists; smaller: more searches. Four other bounds follow from m, in detection distances:
-    /// - 2 m: margin of candidate pairs; without margin if a vertex moves farther than that in a step,
-    /// - m / 2: motion up to which `search.coherence` keeps closest points,
-    /// - m: distance between an obstacle's arc and its chord above which a step is halved,
-    /// - m: motion of all obstacles in a step below which shorter steps find no more space.
+    /// Verlet margin m of near pairs, in detection distances: the search reuses its list of near pairs until a vertex
+    /// has moved farther than this. Larger: longer lists. Smaller: more searches. Four other bounds follow from m, also
+    /// in detection distances:
+    /// - 2 m: Verlet margin of candidate pairs; if a vertex moves farther than this in a step, the margin is 0,
+    /// - m / 2: `search.coherence` keeps closest points until a vertex has moved farther than this,
+    /// - m: if the arc of a turning obstacle deviates from its chord by more than this, the step is halved,
+    /// - m: if no obstacle moves farther than this in a step, shorter steps would find no more space for cloth.
     double margin = 0.25;
     /// Maximum contact thickness of cloth other than ropes, in particle spacings. Larger: a sheared sheet collides with
     /// itself.
     double thickness_of_spacing = 0.25;
-    /// Minimum contact stiffness in m/h² (m: weighted mean mass of the contact's particles, or of the lighter side
-    /// against a rigid body; h: `time.step`). In one step of implicit Euler, a particle then penetrates by at most a
-    /// hundredth of its motion without contact.
+    /// Minimum contact stiffness, in m/h². h: `time.step`. m: weighted mean mass of the contact's particles; if a rigid
+    /// body touches cloth or another such body, that of the lighter side. Thus a particle penetrates in one step of
+    /// implicit Euler by at most a hundredth of its motion without contact.
     double inertial_stiffness = 100;
-    /// Stiffening of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation distance
-    /// r. 10: tips penetrate; 1000: more iterations.
+    /// Factor `stiffening` of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation
+    /// distance r. 10: tips penetrate; 1000: more iterations.
     double stiffening = 100;
-    /// Width w of the ramps along which the stiffness of a pair falls to zero (stiffness_fraction()). 0: contacts
-    /// switch on and off; larger: only separating planes keep crossing creases apart. Ramps:
-    /// - the sine of the angle outside of the wedge of an edge or vertex (`Proximity::outside_wedge`), from 0 to w,
-    /// - of edge pairs with cloth, the fold: the sum of the sines inside of both wedges, from 2 w to w / 2,
-    /// - of edge pairs with cloth, the place along an edge, from the fraction w to the end.
+    /// Width w of the ramps along which the stiffness of a near pair falls to zero (stiffness_fraction()). 0: contacts
+    /// switch on and off. Larger: only separating planes keep crossing creases apart. The stiffness falls
+    /// - while the sine of the angle outside of an edge's or vertex's wedge (`Proximity::outside_wedge`) grows to w,
+    /// - for edge pairs with cloth, while the fold (sum of the sines inside of both wedges) falls from 2 w to w / 2,
+    /// - for edge pairs with cloth, while the closest point moves from the fraction w of an edge to its end.
     double ramp_width = 0.1;
     double flat_fold() const { return 0.5 * ramp_width; }
     /// Slip velocity below which friction sticks [m/s]. If contacts are springs, it is at least `stick_spacings` [1/s]
-    /// times the smallest particle spacing. Larger: cloth creeps down slopes; smaller: a stiffer system.
+    /// times the smallest particle spacing. Larger: cloth creeps down slopes. Smaller: a stiffer system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
-    /// Slip velocity, in stick velocities, from which the coefficient is that of sliding friction.
+    /// Slip velocity from which the friction coefficient is that of sliding, in stick velocities.
     double slide_velocity = 5;
-    /// Closing velocity from which BDF2 treats a contact as a full impact [m/s]; below, in proportion to the velocity.
-    /// Larger: impacts in short steps rebound.
+    /// Closing velocity from which BDF2 treats a contact as a full impact [m/s]; below it, as an impact in proportion
+    /// to the velocity. Larger: impacts in short steps rebound.
     double impact_velocity = 0.05;
-    /// How often in a step a contact that has begun to slide may stick again when it slides back. 0:
-    /// tests/bench/scenes/ribbons_in_half_pipe.toml takes 1.4 times the iterations; 20: friction of 10 does not settle.
+    /// How often a contact that slides may stick again in one step when its slip turns back. 0:
+    /// tests/bench/scenes/ribbons_in_half_pipe.toml takes 1.4 times the iterations. 20: friction with a coefficient of
+    /// 10 does not settle.
     int max_resticks = 2;
     /// Time in which the activation distance of a new contact grows from the gap to its full value [s]. 0: in steps of
-    /// 1 ms or less, surfaces that are already close when a contact appears fly apart, and gain energy.
+    /// 1 ms or less, surfaces that are already close when a contact appears fly apart and gain energy.
     double range_growth_time = 5e-3;
-    /// Stiffness of contacts that push pinched cloth out while its exit is blocked, relative to that of other contacts.
+    /// Stiffness of contacts that push pinched cloth out while an obstacle blocks its way out, relative to that of
+    /// other contacts.
     double blocked_exit_factor = 0.05;
   } contact;
 
   /// Separating planes, which guarantee that nothing intersects (src/physics/collision/response).
   struct Separation {
     /// Minimum gap between two triangles along the normal of their separating plane, at the end of a step [m]. Smaller:
-    /// rounding decides; larger: thin cloth fails.
+    /// rounding errors decide. Larger: thin cloth fails.
     double least_gap = 1e-6;
-    /// Pushing apart restores the gap max(2 `least_gap`, min(`restored_gap`, half of the gap at the start)) [m].
+    /// Pushing apart restores a gap of max(2 `least_gap`, min(`restored_gap`, half of the gap at the start)) [m].
     double restored_gap = 2e-4;
-    /// Rounds of pushing apart. Then particles move back: in `rounds` / 2 rounds by half of their motion, in `rounds`
-    /// more to where the step began. Fewer: particles move back farther than necessary.
+    /// Maximum number of rounds of pushing apart. After them, particles move back: by half of their motion in up to
+    /// `rounds` / 2 rounds, then to the start of the step in up to `rounds` rounds. Smaller: particles move back
+    /// farther than necessary.
     int rounds = 24;
   } separation;
 
-  /// Velocity constraints of Etzmuß et al. (2001), if `contact.response` selects them.
+  /// Velocity constraints of Etzmuß et al. (2001), if `contact.response` selects them: a contact of a particle with an
+  /// obstacle is a wall that the particle may not pass (VelocityConstraints).
   struct Walls {
-    /// Fraction of a missing distance that a step restores (γ of their Eq. 4).
+    /// If a particle is closer to an obstacle than the minimum distance, a step restores this fraction of the missing
+    /// distance (γ of their Eq. 4).
     double correction = 0.2;
-    /// A wall does not constrain a particle if the sine of the angle between its normal and the span of the normals of
-    /// earlier walls is smaller.
+    /// Minimum sine of the angle between the normal of a wall and the span of the normals of the walls before it.
+    /// Below, the wall adds no constraint.
     double min_independent_sine = 0.05;
     /// Maximum number of changes of a particle's constraints in a step (`flips`), of solves in a step (`solves`), and
     /// of walls per particle (`max_walls`).
     int flips = 3;
     int solves = 6;
     int max_walls = 8;
-    /// Changes of constraints below these bounds need no further solve: of the constraint force per mass [m/s²], and of
-    /// friction relative to its limit.
+    /// A change of constraints that is smaller than these bounds needs no further solve. Bounds: of the constraint
+    /// force per mass [m/s²], and of friction relative to its limit.
     double negligible_acceleration = 0.5;
     double negligible_change = 0.2;
   } walls;
 
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
-    /// A retry ends before a compromise:
-    /// - after so many rejections of a step, cloth may count as pinched, and much added energy is accepted,
+    /// Number of tries after which the step loop accepts a compromise:
+    /// - after so many rejections of a step, cloth may count as pinched, and pushing apart may add much energy,
     /// - after so many halvings of a trajectory, the search for its separating planes ends (0: a tenth more
     ///   iterations),
-    /// - after so many repeats of a step with obstructed pins released, pinned particles may be pushed.
+    /// - after so many tries of a step in which obstructed pins are released, pinned particles may be pushed.
     int max_retries = 3;
-    /// Strain that pushing apart may add. The solve continues if pushing apart adds more than this, or more energy than
-    /// Energy::doubtful_gain. After the last continuation, only added energy rejects the step. Larger: single frames
-    /// show strain of 0.1 and more.
+    /// Maximum strain that pushing apart may add. If pushing apart adds more, or more energy than
+    /// Energy::doubtful_gain, the solve continues from the pushed positions. After the last such continuation, only
+    /// added energy can reject the step. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;
-    /// Energy gain, relative to the kinetic and elastic energy at the start of the step, above which an unfinished
-    /// solve starts anew with fixed normal forces.
+    /// If an unfinished solve adds more energy than this, relative to the kinetic and elastic energy at the start of
+    /// the step, the step is solved again with fixed normal forces.
     double diverged_energy_ratio = 3;
   } repair;
 
-  /// Pinned particles that an obstacle or other cloth keeps from their targets: they lag
-  /// (src/physics/simulation/yielding_pins.cpp).
+  /// Pinned particles that an obstacle or other cloth keeps from their targets. Such particles lag: a force pulls them
+  /// back (src/physics/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Maximum speed of a returning particle relative to its target [m/s].
+    /// Maximum speed of a lagging particle relative to its target [m/s].
     double return_velocity = 1;
     /// Maximum force on a lagging particle of mass m: max(`acceleration` m, W / n, min(W / k, `most_acceleration` m)).
-    /// W: `cloth_weight_factor` times the weight of the cloth; n, k: number of all and of lagging particles of the pin.
+    /// W: `cloth_weight_factor` times the weight of the cloth. The pin has n particles, k of which lag.
     double acceleration = 2000;  // [m/s²]
     double cloth_weight_factor = 3;
     double most_acceleration = 20000;  // [m/s²]
@@ -184,24 +191,27 @@ struct Numerics {
 
   /// Rigid bodies that move by forces (forces/rigidity.hpp).
   struct Bodies {
-    /// Squared angular frequency of their stretching [1/`time.step`²]. Smaller: an impact of 1 m/s compresses them by
-    /// more than 1e-6 m; larger: rounding in single precision.
+    /// Squared angular frequency at which the body stretches elastically, in 1/`time.step`². Smaller: an impact of 1
+    /// m/s compresses the body by more than 1e-6 m. Larger: rounding errors in single precision.
     double rigidity = 1e4;
-    /// Contact thickness [m], at most `thickness_of_size` times the smallest component of RigidFrame::deviations().
-    /// Smaller: bodies at rest on each other rattle; larger: gaps are visible.
+    /// Contact thickness [m]; reduced to `thickness_of_size` times the smallest component of RigidFrame::deviations()
+    /// if that is smaller. Smaller: bodies at rest on each other rattle. Larger: gaps are visible.
     double thickness = 5e-4;
     double thickness_of_size = 0.1;
   } bodies;
 
-  /// Energy without a source, relative to EnergyBound::energy_in_play(): kinetic and elastic energy at the start, plus
-  /// the ranges that the potential energy and the work of pins have covered so far.
+  /// Bounds of energy without a source. Gains in a run are relative to EnergyBound::energy_in_play(): the kinetic and
+  /// elastic energy at the start, plus the ranges that the potential energy and the work of pins have covered so far.
   struct Energy {
-    /// `failing_gain`: gain above which a run fails (if cloth can touch something, only with the midpoint rule, as
-    /// the others damp contact). Also the work of the residual above which a run warns. `doubtful_gain`: gain above
-    /// which a run warns. Also the energy that pushing apart may add, relative to that at the start of the step.
+    /// If the gain exceeds this value, the run fails; but if cloth can touch something, only with the midpoint rule, as
+    /// the other methods damp contacts. Also, the run warns if the work of the residual exceeds this value, relative to
+    /// the energy in play plus the largest kinetic and elastic energy so far.
     double failing_gain = 0.3;
+    /// If the gain exceeds this value, the run warns. Also the maximum energy that pushing apart may add, relative to
+    /// the kinetic and elastic energy at the start of the step. Also the maximum work of the residual of a diagonal
+    /// block in a step, relative to the kinetic energy of the block.
     double doubtful_gain = 0.1;
-    /// Energy that is never an error [J/kg]: enough to lift cloth by 1 cm.
+    /// Energy per mass that is never an error [J/kg]: enough to lift cloth by 1 cm.
     double negligible = 0.1;
   } energy;
 };

@@ -1,5 +1,5 @@
-// Deterministic parallel loops: work is divided into chunks of a fixed size, and partial results are combined in the
-// order of chunks, so that the same input gives the same bits on any number of threads.
+// Deterministic parallel loops. They divide work into chunks of a fixed size and combine partial results in the order
+// of chunks. Thus the same input gives the same bits on any number of threads.
 #pragma once
 
 #include <algorithm>
@@ -12,29 +12,30 @@
 
 namespace weft {
 
-/// Sets the maximum number of threads of the loops below; 0: all cores. Call before any loop runs.
+/// Sets the maximum number of threads of the loops below; 0: as many as cores. Call it before any loop runs.
 void set_thread_count(int threads);
 int thread_count();
 
-/// Measures what the loops below would gain from threads. It counts on one thread, where a loop takes the time of all
-/// its chunks.
+/// Estimates how much several threads would speed up the loops below. Measured on one thread, where the time of a loop
+/// is the sum of the times of its chunks. Counts only loops of several chunks that do not run inside another loop.
 struct LoopCounts {
   static constexpr std::array<std::size_t, 4> kThreads{2, 4, 8, 16};
 
-  std::int64_t loops = 0, chunks = 0;  ///< loops of several chunks, not inside other loops; their chunks
+  std::int64_t loops = 0, chunks = 0;  ///< number of counted loops, and of their chunks
   double seconds = 0;                  ///< wall time of these loops
-  /// Wall time of these loops on each number of kThreads, if chunks take equal times and threads start at once.
+  /// Estimated wall time of these loops on each number of threads of kThreads, if all chunks of a loop take equal times
+  /// and threads start without delay.
   std::array<double, kThreads.size()> seconds_on{};
 };
-/// Counters of the loops below; null: nothing is counted. Set it only while thread_count() is 1.
+/// The counts to which the loops below add; null: none. Set it only while thread_count() is 1.
 inline LoopCounts* counted_loops = nullptr;
 
-/// Counts a loop during its lifetime if it has several chunks.
+/// Counts a loop of several chunks: its wall time is the lifetime of this object.
 class CountedLoop {
  public:
   explicit CountedLoop(std::size_t chunks) : chunks_(chunks), counts_(chunks > 1 ? counted_loops : nullptr) {
     if (counts_ == nullptr) return;
-    counted_loops = nullptr;  // loops inside of this one do not count
+    counted_loops = nullptr;  // do not count loops inside of this one
     timer_.restart();
   }
   ~CountedLoop() {
@@ -58,11 +59,11 @@ class CountedLoop {
   WallTimer timer_;
 };
 
-/// Items per chunk, so that a chunk takes 10 to 50 µs: the first for vectors and lists of pairs, the second for more
-/// expensive items (contacts, leaves). Changing them changes the bits of sums.
+/// Numbers of items per chunk with which a chunk takes 10 to 50 µs. kGrainSize: for vectors and lists of pairs;
+/// kFineGrainSize: for more expensive items (contacts, leaves of hierarchies). Other values change the bits of sums.
 inline constexpr std::size_t kGrainSize = 1024, kFineGrainSize = 256;
 
-/// Refers to a function of a number, which must outlive it.
+/// Reference to a function of an index. The function must outlive the reference.
 class FunctionOfIndex {
  public:
   template <class Function>
@@ -76,8 +77,8 @@ class FunctionOfIndex {
   void (*call_)(const void* called, std::size_t index);
 };
 
-/// Calls run(c) for each c below `chunks`, on several threads in any order, and waits for all of them. It is compiled
-/// once for all loops: TBB's code for each loop would take a tenth of the time of a build.
+/// Calls run(c) for each c below `chunks`, on several threads in any order, and returns when all calls have returned.
+/// No template: to instantiate TBB's code for each loop would take a tenth of the build time.
 void run_chunks(std::size_t chunks, FunctionOfIndex run);
 
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each, or fewer in the last. Chunks
@@ -88,7 +89,7 @@ void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
              FunctionOfIndex([&](std::size_t c) { body(c * chunk, std::min(count, (c + 1) * chunk)); }));
 }
 
-/// Calls both functions, at the same time if there are several threads. They must not depend on each other.
+/// Calls both functions, concurrently if there are several threads. They must not depend on each other.
 template <class One, class Other>
 void parallel_invoke(const One& one, const Other& other) {
   if (thread_count() == 1) {
@@ -99,7 +100,7 @@ void parallel_invoke(const One& one, const Other& other) {
   }
 }
 
-/// Sum of body(begin, end) over the chunks of [0, count), of numbers or vectors; added in the order of chunks.
+/// Sum of body(begin, end), a number or vector, over the chunks of [0, count); added in the order of chunks.
 template <class Body>
 auto parallel_sum(std::size_t count, std::size_t chunk, const Body& body) {
   using Sum = decltype(body(std::size_t{0}, count));

@@ -1,4 +1,4 @@
-// Deterministic parallel loops that append to lists, or find a maximum.
+// Deterministic parallel loops that append to lists, find a maximum or test a condition.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,9 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each; with one thread, once for
-/// all of [0, count). The body appends its results to `list`; `out` receives all of them in the order of items.
-/// A function append(List&, const List&) must append the second list to the first.
+/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each; on one thread, once for
+/// all of [0, count). `body` appends its results to `list`. `out` gets all results, in the order of items. `List` needs
+/// a function append(List&, const List&) that appends the second list to the first.
 template <class List, class Body>
 void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;

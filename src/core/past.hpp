@@ -7,9 +7,9 @@
 
 namespace weft {
 
-/// Positions at an earlier time, and their weight. For entries k with positions xₖ and weights wₖ, v = rate (x − Σ wₖ
-/// xₖ), where `rate` [1/s] is dv/dx of the method. The rate of any quantity q of the positions is rate (q(x) − Σ wₖ
-/// q(xₖ)). If a body turns rigidly, this rate of a length is zero, however large the angle per step; ∂q/∂x v is not.
+/// Positions xₖ at an earlier time, and their weight wₖ in the velocity of a method: v = r (x − Σ wₖ xₖ), where r [1/s]
+/// is dv/dx of the method. Likewise, dq/dt of any quantity q(x) is r (q(x) − Σ wₖ q(xₖ)). If q is a length and the body
+/// turns rigidly, this value is zero, however large the angle per step; ∂q/∂x v is not.
 struct Past {
   std::span<const Vec3> x;
   double weight = 0;

@@ -16,9 +16,10 @@
 namespace weft {
 namespace {
 
-// [s]; long enough to be steady, short enough to notice when contacts slow the simulation down.
+// Time over which the pace is averaged [s]: long enough for a steady estimate, short enough to follow the pace when
+// contacts slow the simulation down.
 constexpr double kPaceWindow = 30;
-constexpr std::chrono::milliseconds kBarInterval{200};         // smooth for the eye
+constexpr std::chrono::milliseconds kBarInterval{200};
 constexpr std::chrono::milliseconds kHeartbeatInterval{5000};  // a log of one hour stays below a thousand lines
 
 constexpr auto kSimulate = static_cast<std::size_t>(Stage::simulate);
@@ -63,7 +64,7 @@ std::optional<double> RemainingTime::seconds() const {
     const int advanced = last.done[stage] - first.done[stage];
     if (left <= 0) continue;
     all_done = false;
-    // A stage without progress, such as drawing before the first wanted frame, has no known pace.
+    // A stage without progress has no known pace: for example, drawing before the first frame to draw is simulated.
     if (advanced > 0) slowest = std::max(slowest.value_or(0.0), left * span / advanced);
   }
   return all_done ? 0.0 : slowest;
@@ -71,15 +72,15 @@ std::optional<double> RemainingTime::seconds() const {
 
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns) {
-  // Each frame of each stage counts the same: the bar moves from the start, and is full only when all frames are
-  // written.
+  // The bar gives each frame of each stage the same weight. So it moves from the start, and is full only when all
+  // frames are written.
   const int all = std::max(1, totals[kSimulate] + totals[kDraw] + totals[kWrite]);
   const double fraction = static_cast<double>(done[kSimulate] + done[kDraw] + done[kWrite]) / all;
   constexpr int kCells = 12;
   const int filled = std::clamp(static_cast<int>(fraction * kCells), 0, kCells);
   std::string line =
       fmt::format("[{:#>{}}{:->{}}] {:3.0f} %", "", filled, "", kCells - filled, std::floor(100 * fraction));
-  // The remaining time comes before the counts, because it matters most, and a narrow terminal cuts the end.
+  // The remaining time comes before the counts, because a narrow terminal cuts the end of the line.
   if (seconds_left) line += fmt::format("  {} left", format_duration(*seconds_left));
   if (totals[kSimulate] > 0) line += fmt::format("  sim {}", done[kSimulate]);
   if (totals[kWrite] > 0) line += fmt::format("  drawn {}  written {}", done[kDraw], done[kWrite]);

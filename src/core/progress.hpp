@@ -1,4 +1,4 @@
-// Progress and remaining time of a run: a bar on terminals, otherwise a line every few seconds.
+// Progress and remaining time of a run: on terminals a bar, otherwise a line every few seconds.
 #pragma once
 
 #include <array>
@@ -16,13 +16,14 @@ namespace weft {
 enum class Stage : std::size_t { simulate, draw, write };
 inline constexpr std::size_t kStages = 3;
 
-/// Frames per stage.
+/// A number of frames for each stage.
 using StageCounts = std::array<int, kStages>;
 
 /// "48 s", "3:07 min", "1:02:45 h".
 std::string format_duration(double seconds);
 
-/// Estimates the remaining time from the last half minute, because cloth becomes slower as layers touch.
+/// Estimates the remaining time from the pace of the last half minute, because frames take longer as layers of cloth
+/// come into contact.
 class RemainingTime {
  public:
   explicit RemainingTime(StageCounts totals) : totals_(totals) {}
@@ -30,8 +31,9 @@ class RemainingTime {
   /// Records that `done` frames were finished `seconds` after the start. Times must not decrease.
   void sample(double seconds, const StageCounts& done);
 
-  /// Seconds left: those of the slowest stage, because stages overlap. Stages without a frame in the last half minute
-  /// have no known pace; returns nothing if no stage with frames left has a known pace. 0 if all frames are done.
+  /// Remaining time [s], that of the slowest stage, because stages work in parallel; 0 if all frames are done. A stage
+  /// that has finished no frame in the last half minute has no known pace, and is ignored. Nothing if this holds for
+  /// all stages with frames left.
   std::optional<double> seconds() const;
 
  private:
@@ -43,11 +45,12 @@ class RemainingTime {
   std::deque<Sample> samples_;
 };
 
-/// `[#####-------]  47 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to less than `columns`.
+/// A line such as `[#####-------]  47 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to less than `columns`
+/// characters.
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns);
 
-/// `60 of 126 frames simulated, 57 of 126 drawn, 55 written after 12 s, about 15 s left`.
+/// A line such as `60 of 126 frames simulated, 57 of 126 drawn, 55 written after 12 s, about 15 s left`.
 std::string progress_line(const StageCounts& done, const StageCounts& totals, double seconds,
                           std::optional<double> seconds_left);
 
@@ -56,13 +59,14 @@ class Progress {
  public:
   enum class Style { automatic, bar, plain, none };
 
-  /// `totals`: frames of each stage. Automatic: a bar if standard error is a terminal that is not `dumb`, else lines.
+  /// `totals`: number of frames of each stage. Style::automatic shows a bar if standard error is a terminal whose TERM
+  /// is not `dumb`, otherwise lines.
   Progress(Style style, StageCounts totals);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Counts one more frame of `stage`; does nothing if the stage has no frames. Safe from all threads.
+  /// Counts one more frame of `stage`. Does nothing if the stage has no frames. Thread-safe.
   void advance(Stage stage) {
     const auto s = static_cast<std::size_t>(stage);
     if (totals_[s] > 0) done_[s].fetch_add(1, std::memory_order_relaxed);
@@ -78,7 +82,7 @@ class Progress {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool stopping_ = false;
-  std::thread thread_;  // last member: starts when all others exist
+  std::thread thread_;  // last member, because its thread uses all others
 };
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-// Request to stop, which long computations poll.
+// The request to stop a run. Long computations poll it.
 #pragma once
 
 #include <time.h>
@@ -14,7 +14,7 @@ namespace weft {
 inline std::atomic<long long> stop_requested_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-/// Time after a request within which a frame may still finish [ns]; most frames do, so that they are not lost.
+/// Time that a frame may still take after a request [ns]. Most frames end within it, and so are not lost.
 inline constexpr long long kStopGrace = 3'000'000'000;
 
 /// Time on the monotonic clock [ns]. Safe in a signal handler.
@@ -24,11 +24,11 @@ inline long long monotonic_ns() {
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// Of the program that uses the library: what it throws ends the computation; empty: none.
+/// A check, which a program that uses the library may set. If the check throws, its exception ends the computation.
 inline std::function<void()> host_check;
 
-/// Throws Error(interrupted) if a stop was requested more than kStopGrace ago, or what host_check throws. Loops that
-/// may run longer than kStopGrace call this function in each iteration.
+/// Throws what host_check throws; throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops
+/// that may run longer than kStopGrace call this function in each iteration.
 inline void end_if_stopped() {
   if (host_check) host_check();
   const long long requested = stop_requested_at.load(std::memory_order_relaxed);

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Data that the signal handler reads: fixed memory, no locks. A run has far fewer than 64 files open at once.
+// Paths that the signal handler reads: in fixed memory without locks. A run has far fewer than 64 files open at once.
 struct Slot {
   enum State : int { free, claimed, active };
   std::atomic<int> state{free};
@@ -74,7 +74,7 @@ bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
 
-// Removes a temporary file or folder if no process holds its lock: the one that made it was killed.
+// Removes a temporary file or folder if no process holds its lock: then the process that created it was killed.
 void remove_abandoned(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -83,8 +83,9 @@ void remove_abandoned(const fs::path& path) {
   ::close(descriptor);
 }
 
-// Creates a folder and removes what killed processes have left in it, once per folder: if somebody removes the folder
-// later, further output is not wanted there. Returns false, with the reason, if the folder cannot be created.
+// At the first call for a folder, creates it and removes what killed processes have left in it. Does not create it
+// again at later calls: if somebody has removed the folder, output is not wanted there. Returns false, with the reason
+// in `error`, if the folder cannot be created.
 bool prepare_once(const fs::path& folder, std::error_code& error) {
   static std::mutex mutex;
   static std::set<fs::path> prepared;
@@ -111,7 +112,7 @@ fs::path normalise(const fs::path& file) {
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
-  // Without RENAME_NOREPLACE, the file system may still have hard links.
+  // If the file system lacks RENAME_NOREPLACE, it may still have hard links.
   if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0;
   if (errno == EEXIST) return false;
   struct stat status {};
@@ -122,8 +123,8 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0;
 }
 
-// Creates the file or folder and locks it. Tries again if a process that cleans up removes it before it is locked, for
-// half a second at most: that process may have to wait for a processor while it holds the lock.
+// Creates the file or folder and locks it. Another process that cleans up the folder may lock and remove it in between;
+// then tries again, for half a second at most, because that process may have to wait for a processor.
 int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -133,7 +134,7 @@ int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
     const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno != ENOENT) return -1;
     if (descriptor < 0) continue;
-    // On a file system without locks, no process cleans up either.
+    // If the file system has no locks, no process cleans up (remove_abandoned()), so the lock is not needed.
     if ((lock(descriptor) || errno != EWOULDBLOCK) && has_name(path, descriptor)) return descriptor;
     ::close(descriptor);
     errno = EBUSY;
@@ -157,8 +158,8 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
 
 TemporaryName::~TemporaryName() {
   const fs::path path = path_;
-  // No file descriptor may be left. unlink() needs none; remove_all() needs some for a folder, so release() closes one
-  // first.
+  // The process may have no free file descriptor. unlink() needs none. remove_all() of a folder needs some, so
+  // release() closes one first.
   const bool removed = path.empty() || ::unlink(path.c_str()) == 0;
   release();
   std::error_code ignored;
@@ -174,7 +175,8 @@ void TemporaryName::release() {
 
 namespace {
 
-// Renaming onto a folder would fail after all the work, and onto /dev/null would replace the device.
+// Refuses folders and devices: renaming onto a folder would fail at the end of the work, and renaming onto /dev/null
+// would replace the device.
 const fs::path& require_file_name(const fs::path& final_name) {
   std::error_code ignored;
   const auto status = fs::status(final_name, ignored);
@@ -191,7 +193,6 @@ TemporaryFile::TemporaryFile(fs::path final_name)
 
 void TemporaryFile::commit(Flush flush) {
   const bool replaces = may_replace(final_name_);
-  // Without the flush, a crash of the machine soon after the rename can leave an empty file under the final name.
   const bool good =
       (flush == Flush::no || ::fsync(temporary_.descriptor()) == 0 || errno == EINVAL) &&
       (replaces ? std::rename(path().c_str(), final_name_.c_str()) == 0 : rename_to_free_name(path(), final_name_));
@@ -243,7 +244,7 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
-  // If several machines draw parts of one film, each writes the same scene file beside it.
+  // Several machines may draw parts of one film. Each writes the same scene file beside the film.
   const auto is_there = [&] { return !may_replace(file) && holds(file, content); };
   if (is_there()) return;
   try {

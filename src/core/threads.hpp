@@ -3,7 +3,7 @@
 
 namespace weft {
 
-/// In the order of shaders/weave.glsl. `denim`: a twill with undyed weft. `none`: pressed fibres, or leather.
+/// In the same order as in shaders/weave.glsl. `denim`: a twill with undyed weft. `none`: felt or leather.
 enum class Threads { plain, twill, denim, knit, none };
 
 }  // namespace weft

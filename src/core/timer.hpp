@@ -6,7 +6,7 @@
 
 namespace weft {
 
-/// Seconds of wall time since construction or the last restart.
+/// Measures wall time since construction or the last restart.
 class WallTimer {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
@@ -47,9 +47,9 @@ struct StageTime {
   }
 };
 
-/// If true, a stage is charged with the CPU time of all threads, including helpers in parallel loops; this is correct
-/// only if the process runs nothing else. If false, only with that of the calling thread, because other threads draw
-/// and encode beside a simulation. Set it before any stage runs.
+/// Selects the CPU time that a Stopwatch adds to its stage. False: that of the calling thread alone, because other
+/// threads draw and encode while one simulates. True: that of all threads, to include the helper threads of parallel
+/// loops; correct only if the process does nothing else. Set it before any stage runs.
 inline bool charge_all_threads = false;
 
 /// Adds the wall and CPU time of a scope to those of a stage.

@@ -1,4 +1,4 @@
-// The decoder of pictures in the shared library. The program that uses the library sets it.
+// The decoder of pictures in the shared library, which the program that uses the library sets.
 #include <stdexcept>
 #include <utility>
 #include <weft/pictures.hpp>

@@ -54,7 +54,7 @@ Scene Scene::parse(std::string_view toml, const std::vector<std::string>& change
 Scene Scene::with(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = data_->changes;
   all.insert(all.end(), changes.begin(), changes.end());
-  // The absolute path, as the current folder may have changed since; mistakes name the file as it was given.
+  // Load with the absolute path, because the working folder may have changed. Mistakes show the path as given.
   scene::LoadResult loaded = scene::load_text(data_->text, data_->scene.file, all);
   loaded.file = data_->file;
   return Scene(checked(std::move(loaded), std::move(all)));

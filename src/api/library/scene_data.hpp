@@ -1,4 +1,4 @@
-// The data behind the public scene, for the library and the Python module.
+// The private data of the public scene, for the library and the Python module.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@ namespace weft {
 
 struct Scene::Data {
   scene::Scene scene;
-  std::string text;            ///< TOML as given
-  std::filesystem::path file;  ///< as given
+  std::string text;            ///< TOML without the changes
+  std::filesystem::path file;  ///< path as given
   std::vector<std::string> changes;
 };
 

@@ -6,7 +6,7 @@
 
 namespace weft::library {
 
-/// Returns data whose objects are views of the snapshot. The data keep the snapshot alive.
+/// Returns data whose objects are views of the snapshot. The data own the snapshot.
 Frame::Data view(frame::SnapshotPtr snapshot);
 
 }  // namespace weft::library

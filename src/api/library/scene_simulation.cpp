@@ -16,7 +16,7 @@
 namespace weft {
 namespace {
 
-// Adds a second key to each driven obstacle with fewer: only obstacles with two keys or more count as moving.
+// Gives each driven obstacle at least two keys, because only obstacles with two keys or more count as moving.
 scene::Scene with_driven(scene::Scene scene, const SimulationOptions& options) {
   for (const std::string& name : options.driven) {
     const auto found = std::ranges::find(scene.obstacles, name, &scene::Obstacle::name);

@@ -1,4 +1,4 @@
-// The data behind the public classes, for the libraries and the Python module.
+// The private data of the public classes, for both libraries and the Python module.
 #pragma once
 
 #include <functional>
@@ -27,13 +27,13 @@ struct Frame::Data {
   std::vector<std::vector<Vec3>> velocities;             ///< per cloth
   std::vector<std::vector<float>> strains;               ///< per cloth
   std::vector<std::vector<Vec3>> contact_forces;         ///< per cloth
-  std::vector<Object> objects;                           ///< views of the members, and of `viewed` or `snapshot`
+  std::vector<Object> objects;                           ///< views of the members above, and of `viewed` or `snapshot`
   std::shared_ptr<const void> viewed;                    ///< positions and meshes; null for a simulation of a Scene
   std::shared_ptr<const frame::FrameSnapshot> snapshot;  ///< for drawing; null for a simulation of a Model
 };
 
 struct Simulation::Impl {
-  /// Makes the objects of the current state, and keeps alive the data that they view (`viewed` or `snapshot`).
+  /// Returns data with the objects of the current state; the data own what these objects view.
   using MakeFrame = std::function<Frame::Data(const simulation::Simulation& now)>;
 
   /// `heading_of_state`: first line of a saved state; see heading_of(). Throws std::invalid_argument if the options do
@@ -48,8 +48,8 @@ struct Simulation::Impl {
 
   std::unique_ptr<simulation::Simulation> simulation;
   std::string heading;
-  std::vector<std::size_t> driven;  // numbers of the driven bodies
-  std::vector<Vector> weather;      // gravity and wind of the last set_weather(); empty: there was none
+  std::vector<std::size_t> driven;  // indices of the driven bodies
+  std::vector<Vector> weather;      // gravity and wind of the last call of set_weather(); empty: it was not called
   MakeFrame make_frame;
   std::optional<Frame> current;
 };
@@ -58,7 +58,7 @@ struct Simulation::Impl {
 
 namespace weft::library {
 
-// Views points as another type of the same size, which holds the same numbers.
+// Views points as another type of the same layout.
 template <class To, class From>
 std::span<const To> view_as(const std::vector<From>& points) {
   static_assert(sizeof(To) == sizeof(From));
@@ -67,16 +67,16 @@ std::span<const To> view_as(const std::vector<From>& points) {
 
 Report report_of(const simulation::FrameReport& report);
 
-/// Makes a frame. Adds views of velocities, strains and forces to its first objects, which are cloths.
+/// Makes a frame. Adds views of velocities, strains and contact forces to its first objects, which are the cloths.
 Frame make_frame(Frame::Data data);
 
-/// First line of a saved state, which identifies the model or scene (`hash`) and the driven bodies.
+/// First line of a saved state. It identifies the library version, the model or scene (`hash`) and the driven bodies.
 std::string heading_of(std::uint64_t hash, const SimulationOptions& options);
 
-/// Throws the public exception that corresponds to an error of the program.
+/// Throws the exception of weft/errors.hpp that corresponds to `error`, or std::runtime_error.
 [[noreturn]] void throw_public(const Error& error);
 
-/// Returns what `work` returns. If `work` throws Error, throws the corresponding exception of errors.hpp.
+/// Returns the result of `work`. If `work` throws Error, calls throw_public().
 template <class Work>
 auto with_public_errors(const Work& work) {
   try {

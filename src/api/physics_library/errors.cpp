@@ -9,7 +9,7 @@
 namespace weft::library {
 namespace {
 
-// Removes a number such as ":12" from the end of a text, and returns it.
+// Removes a suffix such as ":12" from a text, and returns its number.
 std::optional<int> take_number(std::string_view& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;
@@ -21,15 +21,15 @@ std::optional<int> take_number(std::string_view& text) {
   return number;
 }
 
-// Whether a text looks like a key, such as "cloth.band".
+// Whether a text has the form of a key, such as "cloth.band".
 bool is_key(std::string_view text) {
   const auto fits = [](char c) { return std::isspace(static_cast<unsigned char>(c)) == 0 && c != ':'; };
   return text.find('.') != std::string_view::npos && std::ranges::all_of(text, fits) &&
          std::islower(static_cast<unsigned char>(text.front())) != 0;
 }
 
-// Splits a message such as "scenes/a.toml:12:8: cloth.band: expected ..." into place, key and text. The place may be
-// missing.
+// Splits a message such as "scenes/a.toml:12:8: cloth.band: expected ..." into file, line, column, key and text. Line
+// and column, or all before the text, may be missing.
 Mistake mistake_of(std::string_view text) {
   const std::string_view first_line = text.substr(0, text.find('\n'));
   std::size_t end = first_line.find(": ");

@@ -1,4 +1,4 @@
-// The members of the public material beside those of the physics.
+// Table of the members of a material: public member, member of the physics, bounds.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace weft::library {
 struct MaterialMember {
   double Material::*given;
   double model::Material::*physics;
-  double low, high;  ///< bounds, those of scenes (src/film/scene/material_rules.cpp)
+  double low, high;  ///< bounds, the same as for scenes (src/film/scene/material_rules.cpp)
   const char* what;  ///< for messages
 };
 

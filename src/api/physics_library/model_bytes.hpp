@@ -1,4 +1,4 @@
-// A public model as bytes, to compare and to copy it.
+// A public model as bytes: to hash it for saved states, and to pickle it.
 #pragma once
 
 #include <string>

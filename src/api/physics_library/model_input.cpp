@@ -43,8 +43,8 @@ void check_range(double value, double low, double high, const std::string& objec
   if (!(value >= low && value <= high)) refuse(object, "{} from {:g} to {:g}, got {:g}", what, low, high, value);
 }
 
-// The edges of a cloth must have one or two triangles. Those of a body may have any number, as is common in meshes from
-// other programs.
+// How many triangles may share an edge: one or two in a cloth, any number in a body, because meshes of other programs
+// often have such edges.
 enum class Edges { any, of_a_sheet };
 
 mesh::Mesh mesh_of(const Mesh& given, Edges edges, const std::string& object) {
@@ -93,7 +93,8 @@ void check_vertices_are_used(const mesh::Mesh& mesh, const std::string& object) 
   if (loose != used.end()) refuse(object, "vertices that triangles use, got number {} alone", loose - used.begin());
 }
 
-// Meshes of other programs often have a vertex for each side of a seam of their texture.
+// Refuses vertices at the same place: they would touch at the start. Meshes of other programs often have two at a seam
+// of the texture.
 void check_vertices_are_apart(const mesh::Mesh& mesh, const std::string& object) {
   std::map<std::array<double, 3>, std::size_t> places;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -104,7 +105,7 @@ void check_vertices_are_apart(const mesh::Mesh& mesh, const std::string& object)
   }
 }
 
-// Makes the flat fabric the rest shape of a cloth, from the first step on.
+// Sets the rest shape of a cloth to the flat fabric.
 void use_rest(const std::vector<RestPoint>& rest, model::Cloth& cloth) {
   if (rest.size() != cloth.start.size())
     refuse(cloth.name, "as many rest points as particles ({}), got {}", cloth.start.size(), rest.size());
@@ -198,7 +199,7 @@ std::size_t number_of(const std::string& name, const Objects& objects, const cha
   refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names, ", "), name);
 }
 
-// `held`: cloth and number of each particle that a pin holds, to which this function adds.
+// Adds a pin to its cloth, and its particles to `held`, which lists cloth and index of all pinned particles.
 void add_pin(const Pin& given, std::set<std::pair<std::string, int>>& held, model::Model& model) {
   model::Cloth& cloth = model.cloths[number_of(given.cloth, model.cloths, "cloth")];
   model::Pin& pin = cloth.pins.emplace_back();

@@ -1,4 +1,4 @@
-// Converts the public model to that of the physics.
+// Checks a public model and converts it to a model of the physics.
 #pragma once
 
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace weft::library {
 
-/// Converts a pose. Throws std::invalid_argument that names `object` if a coordinate is not finite or beyond ±1e5 m, or
-/// the rotation is no unit quaternion.
+/// Converts a pose. If a coordinate is not finite or beyond ±1e5 m, or if the rotation is no unit quaternion, throws
+/// std::invalid_argument with the name `object`.
 motion::Pose pose_of(const Pose& given, const std::string& object);
 
-/// Gravity [m/s²] and wind [m/s]. Throw std::invalid_argument that names `object` if a component is out of range.
+/// Convert gravity [m/s²] and wind [m/s]. If a component is out of range, throw std::invalid_argument with the name
+/// `object`.
 Vec3 gravity_of(const Vector& given, const std::string& object);
 Vec3 wind_of(const Vector& given, const std::string& object);
 
-/// Converts a model. `driven`: names of the bodies that the caller will move by Simulation::drive(). Throws
-/// std::invalid_argument that names the object and what is wrong: a value, a name, a reference, or a mesh.
+/// Converts a model. `driven`: names of the bodies that the caller will move by simulation::Simulation::drive(). If a
+/// value, a name, a reference or a mesh is not valid, throws std::invalid_argument with the name of the object.
 model::Model physics_of(const Model& given, const std::vector<std::string>& driven);
 
 }  // namespace weft::library

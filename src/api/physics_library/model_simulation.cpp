@@ -13,7 +13,7 @@
 namespace weft {
 namespace {
 
-// Data that stay the same during a run and that all frames share.
+// Data that do not change during a simulation. All frames share them.
 struct Meshes {
   explicit Meshes(const model::Model& model) {
     for (const model::Cloth& cloth : model.cloths) {

@@ -51,7 +51,7 @@ void Simulation::Impl::restore(std::string_view bytes) {
   simulation->restore(reader.bytes);
 }
 
-// Number of a rigid body. Throws std::invalid_argument with the names of all of them if there is none of this name.
+// Index of a rigid body. If none has this name, throws std::invalid_argument with the names of all rigid bodies.
 std::size_t Simulation::Impl::body(std::string_view name) const {
   std::vector<std::string> names;
   const std::vector<model::Body>& bodies = simulation->model().bodies;

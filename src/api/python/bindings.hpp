@@ -9,14 +9,14 @@ namespace py = pybind11;
 
 /// Scenes, simulations, frames, and the exceptions of errors.hpp.
 void bind_simulation(py::module_& module);
-/// Models made in memory.
+/// Models built in memory, with their materials.
 void bind_model(py::module_& module);
 /// Error estimates, frame caches, comparison of pictures.
 void bind_tools(py::module_& module);
 /// Drawing of frames.
 void bind_drawing(py::module_& module);
 
-/// Releases the lock of the interpreter during a call, so that other threads can run.
+/// Releases the global interpreter lock (GIL) during a call, so that other threads of Python can run.
 using ReleaseGil = py::call_guard<py::gil_scoped_release>;
 
 }  // namespace weft::python

@@ -27,8 +27,8 @@ render::Quality quality_of(const std::string& name) {
   throw std::invalid_argument("quality: expected \"draft\", \"preview\" or \"final\", got \"" + name + "\"");
 }
 
-/// Draws frames as `weft run` does, but computes a camera that the scene does not place from the first drawn frame, not
-/// from the whole run. Only the thread that created the renderer can use it.
+/// Draws frames as `weft run` does, with one difference: if the scene does not place the camera, the renderer places it
+/// for the first frame that it draws, not for the whole run. Only the thread that created the renderer can use it.
 class Renderer {
  public:
   Renderer(const Scene& scene, const std::string& quality) {

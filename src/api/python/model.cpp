@@ -24,7 +24,8 @@ namespace {
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// The rows of an array with as many columns as `Row` has numbers. Raises ValueError with the shape of any other array.
+// The rows of an array, which must have as many columns as `Row` has numbers. Raises ValueError with the shape if the
+// array has another one.
 template <class Row, class Array>
 std::vector<Row> rows_of(const Array& array, const char* name) {
   constexpr std::size_t kColumns = std::tuple_size_v<Row>;
@@ -45,7 +46,8 @@ std::vector<Row> rows_of(const Array& array, const char* name) {
 
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-// Raises ValueError with the type of an array of anything but integers, such as a mask.
+// Converts an array of integers. Raises ValueError with the type of the elements if they are no integers, such as those
+// of a mask.
 Integers integers_of(const py::object& given, const char* name) {
   const py::array array = py::array::ensure(given);
   if (!array) throw py::value_error(fmt::format("{}: expected an array of integers", name));
@@ -101,7 +103,7 @@ void add_pin(Model& model, const std::string& cloth, const py::object& particles
   model.pins.push_back(std::move(pin));
 }
 
-// A tuple, as a change of one number in a list would change a copy alone.
+// Returns a tuple, not a list: assigning to an element of a list would only change a copy.
 template <Vector Model::*member>
 py::tuple vector_of(const Model& model) {
   return py::tuple(py::cast(model.*member));
@@ -167,7 +169,7 @@ void bind_model(py::module_& module) {
                     "What is simulated, made in memory. Positions are arrays n x 3 (m), triangles m x 3, "
                     "counter-clockwise seen from the front. Values are checked when a Simulation is made.")
       .def(py::init<>())
-      // Also for copy.deepcopy().
+      // copy.deepcopy() uses it, too.
       .def(py::pickle([](const Model& model) { return py::bytes(library::bytes_of(model)); },
                       [](const py::bytes& bytes) { return library::model_of(bytes.cast<std::string>()); }))
       .def_readwrite("fps", &Model::fps, "Frames per second.")

@@ -23,12 +23,12 @@
 namespace weft::python {
 namespace {
 
-// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too. Raises TypeError for a value
-// that TOML does not have, such as None or a set. `path`: key of the change.
+// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too. Raises TypeError if TOML has no
+// such type, as for None or a set. `path`: key of the change, for messages.
 std::string toml_of(const py::handle& value, const std::string& path) {
   if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")(), path);
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  // Plain numbers, as subclasses may have texts of their own.
+  // Convert to plain numbers first: a subclass may have a repr() that is no TOML.
   if (py::hasattr(value, "__index__")) return py::repr(value.attr("__index__")());
   if (py::hasattr(value, "__float__")) return py::repr(value.attr("__float__")());
   if (py::isinstance<py::dict>(value)) {
@@ -83,7 +83,7 @@ Scene change(const Scene& scene, const py::dict& changes) {
   return scene.with(texts);
 }
 
-/// An object of a frame. It holds the frame too, since the data of the object belong to the frame.
+/// An object of a frame. It also owns the frame, to which the data of the object belong.
 struct FrameObject {
   Frame frame;
   const Object* object;
@@ -97,7 +97,7 @@ FrameObject find_object(const Frame& frame, const std::string& name) {
   }
 }
 
-// A read-only view of numbers that `owner` keeps alive.
+// A read-only array that views numbers of `owner` and keeps `owner` alive.
 template <class Number>
 py::array view(const Number* numbers, std::vector<py::ssize_t> shape, const py::object& owner) {
   py::array_t<Number> array(std::move(shape), numbers, owner);
@@ -105,7 +105,7 @@ py::array view(const Number* numbers, std::vector<py::ssize_t> shape, const py::
   return array;
 }
 
-// An array of rows, one for each std::array of a span. `field`: the member of Object that is this span.
+// An array with one row for each std::array of a span. `field`: the member of Object with this span.
 template <auto field>
 py::array rows(const py::object& self) {
   const auto& span = self.cast<const FrameObject&>().object->*field;
@@ -137,7 +137,7 @@ void bind_errors(py::module_& module) {
                     "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")
       .def_readonly("key", &Mistake::key, "Key, such as \"cloth.band.material.thickness\"; may be empty.")
       .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".")
-      // Exceptions of worker processes come as pickles.
+      // Worker processes send exceptions as pickles.
       .def(py::pickle(
           [](const Mistake& mistake) {
             return MistakeState(mistake.file, mistake.line, mistake.column, mistake.change, mistake.key, mistake.text);
@@ -146,7 +146,7 @@ void bind_errors(py::module_& module) {
             const auto& [file, line, column, change, key, text] = state;
             return Mistake{file, line, column, change, key, text};
           }));
-  // These references are never released, because the interpreter may end before this library.
+  // Never release these references: the interpreter may end before this library is unloaded.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
   static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
   static const py::handle simulation_error =
@@ -174,7 +174,7 @@ void bind_errors(py::module_& module) {
   });
 }
 
-// Text, changes and absolute path, with which worker processes make it again.
+// Pickled form of a scene: text, changes and absolute path.
 using SceneState = std::tuple<std::string, std::vector<std::string>, std::filesystem::path>;
 
 void bind_scene(py::module_& module) {
@@ -260,8 +260,8 @@ void bind_frame(py::module_& module) {
           py::arg("name"), "Whether an object has this name.");
 }
 
-/// A simulation that threads of Python share. Each member is called with the lock of the interpreter; advance()
-/// releases it. Handlers of signals run within advance(), too.
+/// A simulation that threads of Python share. All members are called with the global interpreter lock held; advance()
+/// releases it while it computes. So another thread, or a signal handler within advance(), may call members meanwhile.
 class GuardedSimulation {
  public:
   GuardedSimulation(const std::variant<Model, Scene>& of, const std::vector<std::string>& driven,
@@ -296,7 +296,7 @@ class GuardedSimulation {
     return std::visit([&](const auto& given) { return Simulation(given, options); }, of);
   }
 
-  // Refuses a use of the simulation within another one.
+  // Throws if the simulation is already in use.
   class Use {
    public:
     explicit Use(bool& is_used) : is_used_(is_used) {
@@ -316,7 +316,7 @@ class GuardedSimulation {
   bool is_used_ = false;
 };
 
-// Lets Ctrl-C end a frame. The interpreter runs the handlers of signals in the main thread alone.
+// Makes Ctrl-C interrupt a frame. Only in the main thread does the interpreter run signal handlers.
 void check_signals() {
   using Clock = std::chrono::steady_clock;
   const auto main = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();

@@ -24,7 +24,7 @@ namespace {
 
 using library::with_public_errors;
 
-/// Errors by name of the quantity.
+/// The error of each quantity, by its name.
 using Errors = std::map<std::string, double>;
 
 Errors errors_of(const run_error::Errors& errors) {
@@ -36,7 +36,7 @@ Errors errors_of(const run_error::Errors& errors) {
 
 struct ErrorEstimate {
   Errors all;
-  std::map<std::string, std::optional<Errors>> parts;  // none: unknown
+  std::map<std::string, std::optional<Errors>> parts;  // by source of error; nullopt: not known
   bool chaotic = false;
   double cpu_s = 0;
 };
@@ -54,11 +54,11 @@ ErrorEstimate estimate_error(const Scene& public_scene, bool with_mesh_error) {
   });
 }
 
-/// The frames of a cache, as Frame objects without the data that a cache does not store.
+/// The frames of a cache as Frame objects, without velocities, strains and contact forces.
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)
-      // Absolute, so that frames are found after os.chdir(), too.
+      // Use the absolute path, which stays valid after os.chdir().
       : reader_(with_public_errors(
             [&] { return std::make_unique<cache::Reader>(std::filesystem::current_path() / folder); })) {}
 

@@ -18,8 +18,8 @@
 namespace weft::assets {
 namespace {
 
-/// Maximum time between samples of the motion [s]. Linear interpolation then has an error of 0.0001 of the distance,
-/// for a camera that circles its target by 90 degrees in a second.
+/// Maximum time between samples of the motion [s]. If a camera circles its target by 90 degrees in a second, linear
+/// interpolation between the samples has an error of 0.0001 of its distance from the target.
 constexpr double kMaxSampleInterval = 0.02;
 
 /// Longer shots are treated as damaged [s].
@@ -27,7 +27,7 @@ constexpr double kMaxShotLength = 3600;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// Value of a channel at a time [ticks]; constant before the first and after the last key.
+/// Value of a channel at a time [ticks]. It is constant before the first and after the last key.
 template <class Key, class Between>
 auto value_at(std::span<const Key> keys, double ticks, const Between& between) {
   const auto next = std::ranges::find_if(keys, [&](const Key& key) { return key.mTime > ticks; });
@@ -80,8 +80,8 @@ aiMatrix4x4 world_at(const aiNode& node, const aiAnimation* animation, double ti
   return world;
 }
 
-/// All key times of the nodes from the camera to the root [s], with further times in between, at most
-/// kMaxSampleInterval apart.
+/// Sample times [s]: all key times of the nodes from the camera to the root, and times in between, so that they are at
+/// most kMaxSampleInterval apart.
 std::vector<double> times_of(const aiNode& node, const aiAnimation& animation) {
   const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1;
   std::set<double> keys;
@@ -121,7 +121,7 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);
-  // The side vector of a camera without roll is horizontal; so is that of a camera upside down.
+  // Without roll, the side vector is horizontal; also if the camera is upside down, which the sign of `up` shows.
   const double tilt = kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y())));
   constexpr double kSinglePrecision = 1e-6;
   camera.roll = std::max(camera.roll, up.y() < -kSinglePrecision ? 180 - tilt : tilt);

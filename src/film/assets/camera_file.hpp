@@ -1,4 +1,4 @@
-// Reads cameras and their motion from files.
+// Reads cameras and their motion from glTF files.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,18 @@
 
 namespace weft::assets {
 
-/// A moving camera of a file, sampled at one or more times that are close enough for linear interpolation in between.
+/// A camera of a file, sampled at one or more times. Between the samples, linear interpolation is accurate enough.
 struct LoadedCamera {
   std::vector<double> times;    ///< [s], increasing
   std::vector<Vec3> positions;  ///< [m], in axes with y up
   std::vector<Vec3> forward;    ///< viewing directions, unit length
   double field_of_view = 0;     ///< vertical [degrees]
-  double roll = 0;              ///< largest angle between the camera's side vector and the horizontal, 180 if it is
-                                ///< upside down [degrees]
+  /// Largest roll of all samples [degrees]: the angle between the side vector of the camera and the horizontal, or 180
+  /// minus this angle if the camera is upside down.
+  double roll = 0;
 };
 
-/// Reads the camera on the node `object` of a glTF file (empty: the only camera), and the first animation that moves
+/// Reads the camera on the node `object` of a glTF file (empty: the only camera), with the first animation that moves
 /// it. `where` names the scene entry, such as "scenes/a.toml:12:8: camera.shot". Throws Error(asset_unreadable) with
 /// `where`, the file and the reason.
 LoadedCamera load_camera(const std::filesystem::path& file, const std::string& object, const std::string& where);

@@ -12,9 +12,9 @@
 
 namespace weft::assets {
 
-/// Interpretation of the lengths and axes of a file.
+/// How to interpret the lengths and axes of a file.
 struct FileAxes {
-  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, or 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
 };
@@ -22,26 +22,25 @@ struct FileAxes {
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
   std::vector<std::string> warnings;  ///< each names scene entry, file, and mesh, bone or clip
-  double scale = 1;                   ///< applied metres per unit of the file
+  double scale = 1;                   ///< metres per unit of the file that were applied
 };
 
-/// Reads hierarchy, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada, X, B3D, BVH and
+/// Reads skeleton, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada, X, B3D, BVH and
 /// others of assimp. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
 /// Error(asset_unreadable) with `where`, the file, and the mesh, bone or clip.
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 
-/// Reads only the skeleton and the clips. The file must have at least one clip. Arguments and exceptions are those of
-/// load_character().
+/// Reads only skeleton and clips, at least one clip. Arguments and exceptions are those of load_character().
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
 
 /// Whether the extension of a file is .bvh, in upper or lower case.
 bool is_bvh(const std::filesystem::path& file);
 
-/// Scales every length of a character by `scale` and rotates every direction by `axes`, a signed permutation.
+/// Multiplies all lengths of a character by `scale`, and rotates all directions by `axes`, a signed permutation.
 void transform(character::Character& character, double scale, const Mat3& axes);
 
-/// The rotation to the axes of the scene, for a file whose up axis is `up` (0 x, 1 y, 2 z).
+/// The rotation from the axes of a file to those of the scene. `up`: up axis of the file (0 x, 1 y, 2 z).
 Mat3 turn_up(int up, scene::UpAxis scene_up);
 
 }  // namespace weft::assets

@@ -23,13 +23,13 @@ namespace {
 
 using character::Affine;
 
-/// Maximum number of vertices of all parts with all copies, before merging: far more than collision can handle.
+/// Maximum number of vertices of all meshes before merging; far more than collision can handle.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// Maximum distance between the skin in the rest pose of the nodes and in its bind pose that causes no warning [m].
+/// Largest distance between the skin in the rest pose of the nodes and in its bind pose that causes no warning [m].
 constexpr double kMaxBindError = 0.05;
 
-/// Maximum difference of the sum of a vertex's weights from 1 that causes no warning. Smaller errors come from
+/// Largest difference of the sum of a vertex's weights from 1 that causes no warning. Such differences come from
 /// rounding, and from formats that store few bits.
 constexpr double kWeightSlack = 0.02;
 
@@ -47,9 +47,9 @@ bool invertible(const Affine& map) {
 /// A node, and the index of its parent in the same list.
 using NodeWithParent = std::pair<const aiNode*, Index>;
 
-/// All nodes, parents first. The parents come from mParent, since assimp 5.2 lists the bones of Half-Life models as
-/// children of one node and stores their parents only in mParent. If mParent does not lead to all nodes, uses the lists
-/// of children.
+/// All nodes, parents first. The parents come from mParent, since assimp 5.2 lists all bones of Half-Life models as
+/// children of one node and has their parents only in mParent. If mParent does not lead to all nodes, the lists of
+/// children are used instead.
 std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
   using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
   // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
@@ -131,8 +131,7 @@ class CharacterReader {
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
-      // In FBX and glTF, a mesh can have the name of a bone: of nodes with the same name, the first without a mesh
-      // counts.
+      // In FBX and glTF, a mesh can have the name of a bone: a name means the first node without a mesh that has it.
       const auto [named, is_new] = targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
       if (!is_new && nodes_[named->second]->mNumMeshes > 0 && node->mNumMeshes == 0)
         named->second = static_cast<Index>(nodes_.size());
@@ -150,7 +149,7 @@ class CharacterReader {
     const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
                                    [](const aiFace& face) { return face.mNumIndices >= 3; });
     if (!faces) return;
-    // The bones of a skinned mesh determine its place, so it is read only once, even if several nodes show it.
+    // Read a skinned mesh only once, even if several nodes refer to it: its bones determine its place.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)
@@ -173,11 +172,11 @@ class CharacterReader {
   }
 
   /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the transform from mesh to world in
-  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights. The stored bone
-  /// offsets apply to vertices after this transform, so that all meshes share one space.
+  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights. Vertices are
+  /// stored after this transform, and bone offsets are adapted to it, so that all meshes share one space.
   std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
-    std::vector<std::pair<Index, Affine>> bones;  // node and offset of bones with weights
+    std::vector<std::pair<Index, Affine>> bones;  // node and offset of each bone with weights
     double most = 0;
     for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
       double total = 0;
@@ -221,9 +220,9 @@ class CharacterReader {
     return weight.mWeight;
   }
 
-  /// Warns if the rest pose of the nodes moves skin away from its bind pose, for example because of pivots that assimp
-  /// ignores. FBX binds a mesh at its node. Other formats define only the bones relative to each other; there,
-  /// `placing` gives the bind pose.
+  /// Warns if the rest pose of the nodes moves the skin away from its bind pose, for example because of pivots that
+  /// assimp ignores. In FBX, the node of the mesh gives the bind pose. Other formats define only the bones relative to
+  /// each other; for them, `placing` gives the bind pose.
   void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
     if (mesh.mNumBones == 0) return;
     const std::optional<double> metres = metres_per_unit(scene_);
@@ -251,7 +250,7 @@ class CharacterReader {
         mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
   }
 
-  /// Normalises weights to a sum of 1. Vertices without weights are bound to the node of the mesh.
+  /// Scales the weights of each vertex to a sum of 1. Vertices without weights are bound to the node of the mesh.
   void normalise_weights(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
     std::size_t unweighted = 0;
     double furthest = 1;
@@ -297,7 +296,7 @@ class CharacterReader {
                                                mesh.mName.C_Str(), mesh.mNumVertices, v));
         corners.push_back(static_cast<Index>(base + v));
       }
-      // A mirroring transform turns faces inside out; reversing the order of corners corrects this.
+      // A mirroring transform turns faces inside out: reverse the order of their corners.
       if (mirrored) std::reverse(corners.begin(), corners.end());
       append_face(soup_, corners);
     }
@@ -328,8 +327,8 @@ class CharacterReader {
     if (name != of_node) targets_.morphs.emplace(name, group);
   }
 
-  /// Merges copies of a vertex with the same position, weights and displacements, so that seams of textures or normals
-  /// do not cut the surface. Drops vertices without faces.
+  /// Merges vertices with the same position, weights and displacements: files have several for one point at seams of
+  /// textures or normals, which would cut the surface. Drops vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
     std::vector<Index> renamed(soup_.positions.size(), -1);
@@ -364,7 +363,7 @@ class CharacterReader {
     soup_.positions = std::move(positions);
   }
 
-  /// Writes all data that determine the motion of a vertex to `key`, as bytes.
+  /// Writes all data that determine the position of a vertex over time to `key`, as bytes.
   void write_key(std::size_t v, std::string& key) const {
     const auto append_number = [&](double number) {
       number += 0.0;  // 0 and -0 are equal
@@ -397,8 +396,8 @@ class CharacterReader {
     return uv.allFinite() ? placed_uv(*scene_.mMaterials[mesh.mMaterialIndex], uv) : Vec2(Vec2::Zero());
   }
 
-  /// Copies materials and texture coordinates from the soup before its vertices were merged. The list of triangles is
-  /// the same before and after merging.
+  /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged,
+  /// which has the same list of triangles.
   void color_faces(const Soup& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
@@ -417,8 +416,7 @@ class CharacterReader {
       if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
   }
 
-  /// FBX states its unit and up axis. For other formats, assimp itself converts to y up, and to metres if it knows the
-  /// unit.
+  /// Reads unit and up axis of FBX. For other formats, assimp converts to y up, and to metres if it finds the unit.
   void read_units() {
     read_.metres_per_unit = metres_per_unit(scene_);
     std::int32_t up = 0;

@@ -1,4 +1,4 @@
-// Converts assimp's scene to a character.
+// Converts a file that assimp has read (aiScene) to a character.
 #pragma once
 
 #include <assimp/scene.h>
@@ -13,25 +13,25 @@
 
 namespace weft::assets {
 
-/// A character in the unit and axes of its file, and the unit and up axis that the file states.
+/// A character in the unit and axes of its file.
 struct ReadCharacter {
   character::Character character;
-  std::optional<double> metres_per_unit;
-  std::optional<int> up;              ///< up axis: 0 x, 1 y, 2 z
-  std::vector<std::string> warnings;  ///< repaired or skipped parts, by name
+  std::optional<double> metres_per_unit;  ///< as the file states
+  std::optional<int> up;                  ///< up axis as the file states: 0 x, 1 y, 2 z
+  std::vector<std::string> warnings;      ///< about repaired or skipped parts, with their names
 };
 
 /// Selects meshes of a file for a character, by their names or those of their nodes.
 struct MeshChoice {
-  std::vector<std::string> only;       ///< empty: all
+  std::vector<std::string> only;       ///< meshes to use; empty: all
   std::vector<std::string> without;    ///< meshes to leave out
-  std::vector<std::string> elsewhere;  ///< meshes that cloths use, left out too; unknown names are allowed
+  std::vector<std::string> elsewhere;  ///< meshes that cloths use, also left out; may contain unknown names
 };
 
 /// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share one list of bones. A
-/// mesh without bones is copied for each node that shows it, and bound to a bone at that node. Searches pictures
-/// beside `file`, and reads none if `file` is empty. Throws std::runtime_error that names the unusable part: indices
-/// out of range, non-finite numbers, bones without a node, key times that run backwards, unknown names in `choice`.
+/// mesh without bones is copied for each node that refers to it, and each copy is bound to a bone at its node. Searches
+/// pictures beside `file`; reads none if `file` is empty. Throws std::runtime_error that names the unusable part:
+/// indices out of range, non-finite numbers, bones without a node, key times that decrease, unknown names in `choice`.
 ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
 
 /// Serialises a character for transfer between two processes of the same program, and back.

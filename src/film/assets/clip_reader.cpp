@@ -13,13 +13,13 @@
 namespace weft::assets {
 namespace {
 
-/// Ticks per second of files that do not state this rate; value of assimp's documentation.
+/// Ticks per second of files that do not state them; the default in the documentation of assimp.
 constexpr double kDefaultTicksPerSecond = 25;
 
 /// Longer clips are treated as damaged [s].
 constexpr double kMaxClipLength = 86400;
 
-/// Keys past the end by less than this fraction of the clip's length are rounding errors, without a warning.
+/// Keys past the end of a clip by less than this fraction of its length are rounding errors and cause no warning.
 constexpr double kEndSlack = 1e-4;
 
 Vec3 to_value(const aiVector3D& v) {
@@ -64,7 +64,7 @@ struct ClipReader {
     return t;
   }
 
-  /// Appends a key. Of several keys at the same time, the last counts.
+  /// Appends a key. Of several keys at the same time, the last is used.
   template <class Value>
   void append(character::Curve<Value>& curve, double t, const Value& value, const std::string& channel) const {
     if (!curve.times.empty() && t < curve.times.back())
@@ -96,7 +96,7 @@ struct ClipReader {
             to_curve<Vec3>(std::span(from.mScalingKeys, from.mNumScalingKeys), channel)};
   }
 
-  /// Reads morph weights; each key lists targets and their weights.
+  /// Reads the weights of morph targets. Each key lists targets and their weights.
   void read_morphs(const aiMeshMorphAnim& from, const ClipTargets::Morphs& targets, character::Clip& clip) {
     const std::string channel = from.mName.C_Str();
     std::vector<character::MorphChannel> channels(static_cast<std::size_t>(targets.count));
@@ -117,8 +117,9 @@ struct ClipReader {
   }
 };
 
-/// For some FBX nodes, assimp inserts a chain of helper nodes above them, named after the node. If a channel
-/// nevertheless has the whole transform of such a node, the helpers get identity channels in the clip.
+/// For some FBX nodes, assimp inserts a chain of helper nodes above them, named after the node; each helper has a part
+/// of the transform. If a channel nevertheless has the whole transform of such a node, the helpers get identity
+/// channels, so that nothing applies twice.
 void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
                            character::Clip& clip) {
   if (from.mNumPositionKeys == 0 || from.mNumRotationKeys == 0) return;

@@ -32,7 +32,7 @@ constexpr std::string_view kStart = "glTF";
 // Binary layout: "glTF", version, length; then chunks: length, "JSON" or "BIN\0", content.
 constexpr std::size_t kHeader = 12, kChunkHeader = 8;
 
-/// Parts of names of extensions that change looks alone, or that are read.
+/// Parts of names of extensions that a file may require: they change only the appearance, or are supported.
 constexpr std::array kRead = {"_materials_",           "_texture_", "_technique", "_lights_", "_xmp",
                               "KHR_mesh_quantization", "VRM"};
 
@@ -66,11 +66,12 @@ Gltf split(const std::filesystem::path& file) {
   return gltf;
 }
 
-/// The value of a key, or the entry of a list; null if there is none.
+/// The value of a key; null if there is none.
 const Json& part_of(const Json& json, const char* key) {
   static const Json kNone;
   return json.is_object() && json.contains(key) ? json[key] : kNone;
 }
+/// The entry of a list; throws if there is none.
 const Json& entry_of(const Json& gltf, const char* list, int number) {
   const Json& entries = part_of(gltf, list);
   if (!entries.is_array() || number < 0 || std::cmp_greater_equal(number, entries.size()))
@@ -78,7 +79,7 @@ const Json& entry_of(const Json& gltf, const char* list, int number) {
   return entries[static_cast<std::size_t>(number)];
 }
 
-/// Throws for extensions that a file requires and that are not read.
+/// Throws if a file requires an extension that is not supported.
 void check_extensions(const Json& gltf) {
   for (const Json& required : part_of(gltf, "extensionsRequired")) {
     if (!required.is_string()) continue;
@@ -108,7 +109,7 @@ std::string base64_decoded(std::string_view text) {
   return bytes;
 }
 
-/// Type of the components of an accessor.
+/// An integer type of the components of an accessor.
 struct Component {
   int code;
   std::size_t bytes;
@@ -135,14 +136,14 @@ std::size_t components_of(const Json& accessor) {
   throw std::runtime_error(fmt::format("expected SCALAR or VEC2 to VEC4 as the type of integers, got \"{}\"", type));
 }
 
-/// Rewrites a glTF file as a binary one in which what assimp reads as floats are floats.
+/// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats.
 class Rewriter {
  public:
   Rewriter(Json& gltf, std::string data, const std::filesystem::path& file) : gltf_(gltf), file_(file) {
     own_data_ = std::move(data);
   }
 
-  /// The bytes of the new file; nullopt if nothing is to change.
+  /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
@@ -161,7 +162,8 @@ class Rewriter {
     return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
   }
 
-  /// Replaces accessors of integers by those of floats. Those that assimp reads as integers, or converts, stay.
+  /// Replaces accessors of integers by new accessors of floats. Joints and colours keep theirs, since assimp reads
+  /// joints as integers and converts colours.
   void use_floats(Json& accessors) {
     if (!accessors.is_object()) return;
     for (auto& [name, accessor] : accessors.items()) {
@@ -189,7 +191,7 @@ class Rewriter {
     return new_accessors_[accessor] = static_cast<int>(gltf_["accessors"].size()) - 1;
   }
 
-  /// The values of an accessor of integers, with what its sparse part replaces.
+  /// The values of an accessor of integers, including the replacements of its sparse part.
   std::vector<double> values_of(const Json& accessor) {
     const std::size_t components = components_of(accessor), count = size_of(accessor, "count");
     const bool normalised = accessor.contains("normalized") && accessor["normalized"] == true;
@@ -214,7 +216,7 @@ class Rewriter {
     return values;
   }
 
-  /// `from`: names a view of a buffer, and an offset in it.
+  /// Reads integers as numbers. `from`: an accessor or a part of one, which gives the buffer view and the offset in it.
   std::vector<double> integers(const Json& from, const Component& type, std::size_t count, std::size_t components,
                                bool normalised) {
     const Json& view = entry_of(gltf_, "bufferViews", value_or<int>(from, "bufferView", -1));
@@ -291,7 +293,7 @@ class Rewriter {
   std::string own_data_;
   const std::filesystem::path& file_;
   std::map<int, std::string> buffers_;
-  std::map<int, int> new_accessors_;  // by accessors of integers
+  std::map<int, int> new_accessors_;  // accessor of floats by that of integers
   std::string floats_;
 };
 
@@ -306,7 +308,7 @@ std::optional<std::string> readable_gltf(const std::filesystem::path& file) {
   try {
     if (!parts.text.empty()) gltf = parse_json<Json>(parts.text);
   } catch (const std::exception&) {
-    // assimp says what is wrong
+    // assimp reports the mistake when it reads the file
   }
   check_extensions(gltf);
   if (auto bytes = Rewriter(gltf, parts.data, file).rewritten()) return bytes;

@@ -1,4 +1,4 @@
-// glTF files as assimp 5.2 can read them.
+// Rewrites glTF files that assimp 5.2 reads wrongly.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +7,14 @@
 
 namespace weft::assets {
 
-/// Bytes of a binary glTF file for assimp to read in place of `file`; nullopt if assimp reads the file itself: if it is
-/// no glTF, or has nothing that assimp 5.2 reads wrongly. Such bytes differ from the file in two ways:
-/// - Integers in attributes and in channels of animations become floats. assimp copies their bytes into its floats.
-/// - Files in binary layout with an ending such as .vrm, which assimp takes for OBJ, are passed on as they are.
-/// Throws std::runtime_error for glTF with an extension that it requires and that is not read, such as a compression,
-/// and for JSON that is nested too deeply.
+/// Returns bytes of a binary glTF file that assimp reads in place of `file`, or nullopt if assimp can read the file
+/// itself. Two kinds of files need this:
+/// - Files with integers in attributes or in channels of animations: they become floats. assimp would copy the bytes of
+///   the integers into its floats.
+/// - Files in binary layout with another ending than .glb, such as .vrm, which assimp would read as OBJ: their bytes
+///   are returned unchanged.
+/// Throws std::runtime_error if a glTF file requires an extension that is not supported, such as a compression, or if
+/// its JSON is nested too deeply.
 std::optional<std::string> readable_gltf(const std::filesystem::path& file);
 
 }  // namespace weft::assets

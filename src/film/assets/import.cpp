@@ -27,8 +27,9 @@
 namespace weft::assets {
 namespace {
 
-/// Opens only regular files, also among those that a file refers to (materials, buffers): pipes and devices may never
-/// end. assimp 5.2 passes the names in glTF files on as they are there: percent-encoded.
+/// Opens files for assimp, also those that a file refers to (materials, buffers). Opens only regular files, since pipes
+/// and devices may never end. Also tries decoded names, since assimp 5.2 does not decode the percent-encoded names in
+/// glTF files.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override { return !find(file).empty(); }
@@ -51,8 +52,8 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-/// If binary PLY data start with a byte that equals a line feed, assimp 5.2 drops this byte as a part of the header.
-/// Returns the bytes of such a file with an additional line feed for assimp to drop; nullopt for all other files.
+/// If the data of a binary PLY file start with the byte of a line feed, assimp 5.2 reads this byte as a part of the
+/// header. Returns the bytes of such a file with an additional line feed before the data; nullopt for all other files.
 std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
   constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
@@ -101,7 +102,7 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
 
 std::optional<double> metres_per_unit(const aiScene& scene) {
   if (scene.mMetaData == nullptr) return std::nullopt;
-  // Assimp 5.2 stores a float, other versions a double.
+  // assimp 5.2 stores a float, other versions a double.
   float single = 0;
   double centimetres = 0;
   if (scene.mMetaData->Get("UnitScaleFactor", single))

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using character::Material;
 
-/// The type of texture that colours a surface: the physically based one if it exists.
+/// The type of the texture with the colour of the surface: base colour (physically based) if it exists, else diffuse.
 std::optional<aiTextureType> picture_type(const aiMaterial& material) {
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
     if (material.GetTextureCount(type) > 0) return type;
@@ -47,8 +47,7 @@ bool is_picture(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") || image::is_targa(bytes);
 }
 
-/// Folders in which programs store the pictures of a file: first those beside the file, then those one folder above,
-/// both in the order of names.
+/// Folders in which programs store pictures: those beside the file, then those one folder above, each sorted by name.
 std::vector<fs::path> picture_folders(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::vector<fs::path> folders;
@@ -67,8 +66,8 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
   return folders;
 }
 
-/// Finds a picture file: tries the path as given, then its file name beside `file` and in the usual picture folders,
-/// because FBX and Collada store paths of the machine that wrote them.
+/// Finds a picture file. Tries the path as given, then its file name beside `file` and in picture_folders(), because
+/// FBX and Collada store paths of the machine that wrote them.
 std::optional<fs::path> find_file(const std::string& texture_path, const fs::path& file) {
   std::string plain = texture_path.starts_with("file://") ? texture_path.substr(7) : texture_path;
   std::ranges::replace(plain, '\\', '/');
@@ -84,14 +83,15 @@ std::optional<fs::path> find_file(const std::string& texture_path, const fs::pat
   return std::nullopt;
 }
 
-/// If FBX declares a picture without name or content, assimp returns the name of the current folder.
+/// Whether a path names no picture: assimp returns the current folder if FBX declares a picture without name or
+/// content.
 bool is_nameless(const std::string& texture_path) {
   return texture_path.empty() || texture_path == "." || texture_path == "./" || texture_path == ".\\";
 }
 
 constexpr const char* kNameless = "neither named nor held by the file";
 
-/// Bytes of a picture; empty, with `reason`, if it cannot be read.
+/// The bytes of a picture. If it cannot be read, returns none and sets `reason`.
 std::string read_picture(const aiScene& scene, const aiString& texture_path, const fs::path& file,
                          std::string& reason) {
   std::string bytes;
@@ -174,7 +174,8 @@ Vec2 placed_uv(const aiMaterial& material, const Vec2& uv) {
   aiUVTransform placing;
   const bool is_gltf = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS;
   if (!type || !is_gltf || material.Get(AI_MATKEY_UVTRANSFORM(*type, 0), placing) != AI_SUCCESS) return uv;
-  // assimp has turned the offset into one for v upward and a rotation about the middle of the picture, by -angle.
+  // Undo a conversion by assimp, which changes the offset so that it applies to v upward and to a rotation by −angle
+  // about the middle of the picture.
   const double cos = std::cos(placing.mRotation), sin = -std::sin(placing.mRotation);
   const Vec2 scale(placing.mScaling.x, placing.mScaling.y),
       offset(placing.mTranslation.x - scale.x() / 2 * (1 - cos + sin),
@@ -208,7 +209,7 @@ std::vector<Material> read_materials(const aiScene& scene, const fs::path& file,
       same->materials.push_back(material.name);
       same->pictures.emplace_back(texture_path.C_Str());
     } else if (*type == aiTextureType_DIFFUSE) {
-      // Files often keep a dark or black colour along with a picture that replaces it.
+      // Ignore the colour: files often have a dark or black one in addition to a picture that replaces it.
       material.color = Vec3::Ones();
     }
   }

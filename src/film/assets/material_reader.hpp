@@ -1,4 +1,4 @@
-// Reads materials of assimp's scenes.
+// Reads the materials of a file from assimp (aiScene).
 #pragma once
 
 #include <assimp/scene.h>
@@ -11,17 +11,16 @@
 
 namespace weft::assets {
 
-/// Base colour and picture of each material. A picture is embedded, or it is a file, searched at the stored path,
-/// beside `file`, and in picture folders (such as `textures`) beside `file` or one folder above. Unusable pictures are
-/// skipped with a warning.
+/// Reads base colour and picture of each material. A picture is embedded, or it is a file: it is searched at the stored
+/// path, beside `file`, and in picture folders (such as `textures`) beside `file` or one folder above. Skips unusable
+/// pictures with a warning.
 std::vector<character::Material> read_materials(const aiScene& scene, const std::filesystem::path& file,
                                                 std::vector<std::string>& warnings);
 
-/// The set of texture coordinates that the picture of a material uses.
+/// Index of the texture coordinates that the picture of a material uses; a mesh can have several sets.
 unsigned uv_channel(const aiMaterial& material);
 
-/// Texture coordinates, v upward, where the texture transform of glTF (KHR_texture_transform) places them in the
-/// picture.
+/// Applies the texture transform of glTF (KHR_texture_transform) to texture coordinates, v upward.
 Vec2 placed_uv(const aiMaterial& material, const Vec2& uv);
 
 }  // namespace weft::assets

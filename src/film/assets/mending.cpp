@@ -18,7 +18,7 @@
 namespace weft::assets {
 namespace {
 
-/// Detached pieces with a smaller fraction of the whole area are removed.
+/// Detached pieces with a smaller fraction of the area of the surface are removed.
 constexpr double kMaxSmallPieceArea = 0.02;
 /// Detached vertices move toward the mean of their triangles' centroids, by this fraction of the distance.
 constexpr double kCutGap = 0.2;
@@ -53,8 +53,8 @@ void keep_triangles(LoadedMesh& loaded, const std::vector<std::uint8_t>& kept) {
   if (!loaded.uv.empty()) loaded.uv.resize(to);
 }
 
-/// Keeps only the vertices that triangles use, in the order of use. `from`: for each current vertex, the vertex of the
-/// loaded mesh that it copies.
+/// Keeps only the vertices that triangles use, in the order of use. `from`: for each current vertex, the vertex from
+/// which it takes its colour and groups.
 void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
   std::vector<Index> renamed(loaded.mesh.positions.size(), -1), kept;
   for (Triangle& t : loaded.mesh.topology.triangles)
@@ -131,8 +131,7 @@ std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   return joints;
 }
 
-/// Orients the triangles of each connected piece like the majority of its area. Returns the number of flipped
-/// triangles.
+/// Orients each connected piece like the majority of its area. Returns the number of flipped triangles.
 std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   // Neighbours of each triangle, and whether they face the same way.
@@ -167,8 +166,8 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
   return turned;
 }
 
-/// Detaches triangles that `joints` do not join at edges of more than two triangles, or of two that face opposite ways:
-/// gives them vertices of their own, and moves these away. Removes small detached pieces.
+/// At each edge of more than two triangles, or of two that face opposite ways, detaches the triangles that `joints` do
+/// not join: gives them vertices of their own, and moves these away from the edge. Removes small detached pieces.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -208,8 +207,7 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
     areas[piece_of[at(cut_triangles[t][0])]] += area(loaded, t);
     whole += area(loaded, t);
   }
-  // One copy of each vertex stays in place: the copy in the largest piece or, within a piece, the one with the most
-  // corners.
+  // One copy of each vertex stays in place: that in the largest piece or, within a piece, that of the most triangles.
   std::map<Index, std::pair<double, Index>> kept_copies;
   std::vector<int> use_count(from.size(), 0);
   for (const Triangle& t : cut_triangles)
@@ -242,8 +240,7 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// Removes third triangles that cut() cannot detach from an edge, because other triangles connect them to the joined
-/// two.
+/// Removes third triangles that cut() cannot detach, since other triangles connect them to the two joined ones.
 void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
@@ -322,8 +319,8 @@ class EdgeCollapser {
     return all;
   }
 
-  /// Merges vertex b into a and removes the triangles that contain both. Does nothing and returns false if this would
-  /// change the border, join separate parts, flip or flatten a triangle, or leave a triangle without its UVs.
+  /// Merges vertex b into a, and removes the triangles that contain both. Does nothing and returns false if this would
+  /// change the border, join separate parts, reverse or flatten a triangle, or make the UVs discontinuous.
   bool collapse(Index a, Index b, std::vector<std::uint8_t>& kept) {
     const bool border_edge = on_border_.contains(std::minmax(a, b));
     if (is_on_border(b) && !border_edge) return false;
@@ -360,8 +357,8 @@ class EdgeCollapser {
     return true;
   }
 
-  /// Flips the longest edge of a flat triangle if the UVs are continuous across it, and if the smaller height of its
-  /// two triangles increases.
+  /// Flips the longest edge of a flat triangle if the UVs are continuous there and the smaller height of both triangles
+  /// grows.
   bool flip(std::size_t t) {
     std::size_t k = 0;
     for (std::size_t i = 1; i < 3; ++i)
@@ -400,7 +397,7 @@ class EdgeCollapser {
     return ab.cross(bc).norm() / std::max({ab.norm(), bc.norm(), ca.norm()});
   }
 
-  /// Whether triangle t would reverse its orientation or lose its area if its vertex b moved to a.
+  /// Whether triangle t would reverse its orientation or lose its area if its vertex b moved to vertex a.
   bool would_flip(std::size_t t, Index b, Index a) const {
     const std::vector<Vec3>& x = loaded_.mesh.positions;
     Triangle after = triangles_[t];
@@ -450,7 +447,7 @@ MendingReport mend_sheet(LoadedMesh& loaded, double flattest) {
     std::iota(from.begin(), from.end(), 0);
     keep_vertices(loaded, from);
   }
-  // Collapsing and flipping may leave other flat triangles.
+  // Repeat, since collapsing and flipping can make other triangles flat.
   for (int round = 0; round < kMaxCollapseRounds; ++round) {
     const std::size_t collapsed = EdgeCollapser(loaded, kHeightMargin * flattest).run();
     mended.collapsed += collapsed;

@@ -38,8 +38,8 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   return first;
 }
 
-/// Merges vertices at exactly the same position (0 and -0 are equal) and drops unused ones. Vertices are ordered by
-/// their first use in faces. `joined` counts merged copies. Returns the new index of each vertex, or −1.
+/// Merges vertices at exactly the same position (0 and −0 are equal), drops unused ones, and orders them by their first
+/// use in faces. `joined` counts merged copies. Returns the new index of each vertex, or −1.
 std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   const std::vector<Index> first = first_at_same_place(soup.positions);
   std::vector<Index> renamed(first.size(), -1);
@@ -62,7 +62,7 @@ std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   return renamed;
 }
 
-/// Copies colours and groups of vertices; `renamed`: new index of each vertex, or −1.
+/// Copies colours and groups of vertices. `renamed`: new index of each vertex, or −1.
 void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
   const std::size_t count = result.mesh.positions.size();
   for (std::size_t v = 0; v < renamed.size(); ++v) {
@@ -81,7 +81,7 @@ void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, Loade
   }
 }
 
-/// UVs of the triangles of make_topology(). `soup`: with vertices not yet merged; merging keeps the list of triangles.
+/// UVs of the triangles of make_topology(). `soup`: with vertices not yet merged, which has the same list of triangles.
 std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   std::vector<std::array<Vec2, 3>> corners;
   if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
@@ -91,7 +91,7 @@ std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   return corners;
 }
 
-/// A border vertex, and the distance within which other border vertices are welded to it [m].
+/// A border vertex, and the distance within which other border vertices are merged with it [m].
 struct BorderVertex {
   Index vertex;
   double weld_distance;
@@ -113,7 +113,7 @@ std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double ratio) {
 Welded weld_borders(LoadedMesh& loaded, double ratio) {
   const std::vector<Vec3>& x = loaded.mesh.positions;
   std::vector<BorderVertex> border = border_of(loaded.mesh, ratio);
-  // Sorts along x, so that only vertices near each other in this order are compared.
+  // Sort along x, so that only vertices near each other in this order are compared.
   std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
   DisjointSets sets(x.size());
   Welded welded;

@@ -15,11 +15,11 @@
 namespace weft::assets {
 namespace {
 
-/// Maximum size of the positions of all files [bytes]: far more than is practical.
+/// Maximum size of the positions of all files [bytes]; far more than is practical.
 constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 
-/// The vertex indices of the faces of an OBJ file as text; empty for other files. The file itself is read, because
-/// assimp gives each corner a vertex of its own.
+/// The vertex indices of the faces of an OBJ file, as text; empty for other files. Reads the file itself, because
+/// assimp makes a separate vertex for each corner.
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
   if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;
@@ -41,7 +41,7 @@ void check_same_faces(const Source& source, const std::filesystem::path& first_f
   if (other.positions.size() != first.positions.size())
     fail("vertices", first.positions.size(), other.positions.size());
   if (other.quads.size() != first.quads.size()) fail("quads", first.quads.size(), other.quads.size());
-  // The triangles of a polygon depend on its shape, which may change: only its corners must be the same.
+  // Compare only the corners of polygons: their division into triangles depends on their shape, which may change.
   const bool same = other.polygons == first.polygons && other.quads == first.quads &&
                     face_numbers(source.file) == face_numbers(first_file);
   if (!same && other.triangles.size() != first.triangles.size())
@@ -49,7 +49,7 @@ void check_same_faces(const Source& source, const std::filesystem::path& first_f
   if (!same) source.fail("expected faces over the same vertices as in the first file of the sequence, got others");
 }
 
-/// Splits groups of coincident vertices where this file has vertices of a group at different positions.
+/// Splits groups of coincident vertices if this file has vertices of a group at different positions.
 void split_groups(const std::vector<Vec3>& positions, std::vector<Index>& groups) {
   std::map<std::pair<Index, std::array<double, 3>>, Index> known;
   for (std::size_t v = 0; v < groups.size(); ++v) {

@@ -25,8 +25,8 @@ namespace {
 
 using Transform = Eigen::Matrix4d;
 
-/// Triangles with a smaller ratio area / (longest side)² count as having no area: their normal only reflects rounding
-/// errors of assimp's single precision.
+/// Triangles with a smaller ratio area / (longest side)² count as having no area: their normals are only rounding
+/// errors of the single precision of assimp.
 constexpr double kMinFaceArea = 1e-7;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -44,7 +44,7 @@ Transform to_eigen(const aiMatrix4x4& m) {
   return result;
 }
 
-/// Appends the bones of a mesh as vertex groups; groups of the same name are merged.
+/// Appends the bones of a mesh as vertex groups. Bones of the same name form one group.
 void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
   for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
     const auto known = std::ranges::find(soup.group_names, bone->mName.C_Str());
@@ -75,7 +75,7 @@ void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Tra
       soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
   }
   append_groups(soup, part, base);
-  // A mirroring transform turns faces inside out; reversing the order of corners corrects this.
+  // A mirroring transform turns faces inside out: reverse the order of their corners.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
   std::vector<Index> corners;
   for (const aiFace& face : std::span(part.mFaces, part.mNumFaces)) {
@@ -92,7 +92,7 @@ void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Tra
   }
 }
 
-/// A node and its map to the world.
+/// A node and its transform to the world.
 using PlacedNode = std::pair<const aiNode*, Transform>;
 
 std::vector<PlacedNode> placed_nodes(const aiNode& root) {
@@ -112,9 +112,10 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
   return nodes;
 }
 
-/// Transform from mesh to world. Without bones: of the mesh's node. With bones: (bone's node to world) × (bone offset)
-/// of the bone with the largest sum of weights; bones with a nearly singular transform are ignored. Characters use the
-/// same rule (character_reader.cpp), because glTF places skinned meshes by their bones, whichever node refers to them.
+/// Transform from mesh to world. For a mesh without bones, it is that of its node. Otherwise, it is (bone's node to
+/// world) × (bone offset) of the bone with the largest sum of weights, without bones whose transform is nearly
+/// singular. Characters use the same rule (character_reader.cpp), because glTF places skinned meshes by their bones,
+/// whichever node refers to them.
 Transform placement_of(const aiMesh& part, const Transform& of_node,
                        const std::unordered_map<std::string, Transform>& placed) {
   Transform placing = of_node;
@@ -126,7 +127,7 @@ Transform placement_of(const aiMesh& part, const Transform& of_node,
     if (!(total > most) || found == placed.end()) continue;
     const Transform held = found->second * to_eigen(bone->mOffsetMatrix);
     const double size = held.topLeftCorner<3, 3>().norm();
-    constexpr double kMinVolumeRatio = 1e-9;  // minimum |det M| / ‖M‖³; nearly singular transforms are ignored
+    constexpr double kMinVolumeRatio = 1e-9;  // minimum |det M| / ‖M‖³ of a transform that is used
     if (!held.allFinite() ||
         !(std::abs(held.topLeftCorner<3, 3>().determinant()) > kMinVolumeRatio * size * size * size))
       continue;
@@ -172,7 +173,7 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Soup soup;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
-  std::unordered_map<std::string, Transform> placed;  // by name; of nodes with the same name, the first without a mesh
+  std::unordered_map<std::string, Transform> placed;  // by name; of several nodes, the first without a mesh
   for (const bool has_mesh : {false, true})
     for (const auto& [node, to_world] : nodes)
       if ((node->mNumMeshes > 0) == has_mesh) placed.emplace(node->mName.C_Str(), to_world);

@@ -1,4 +1,4 @@
-// Raw faces of a file, before any merging or removal.
+// The faces of a file before any merging or removal.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@
 
 namespace weft::assets {
 
-/// Triangles and quads. Several vertices may have the same position; all indices are in range.
+/// The faces of a file. Several vertices may have the same position; all indices are in range.
 struct Soup {
   std::vector<Vec3> positions;  ///< in metres if the file states its unit
-  std::vector<Vec2> uv;         ///< per position, v upward; NaN if its mesh has none
-  std::vector<Vec3> colors;     ///< per position; NaN if its mesh has none
-  /// Weight of a vertex in a group or bone; `group` and `vertex`: indices into group_names and positions.
+  std::vector<Vec2> uv;         ///< per position, v upward; NaN if its mesh in the file has none
+  std::vector<Vec3> colors;     ///< per position; NaN if its mesh in the file has none
+  /// Weight of a vertex in a vertex group or bone. `group` and `vertex`: indices into group_names and positions.
   struct Weight {
     Index group, vertex;
     double weight;
@@ -27,23 +27,22 @@ struct Soup {
   std::vector<std::string> group_names;
   std::vector<mesh::Triangle> triangles;
   std::vector<mesh::Quad> quads;
-  /// Faces that are no quads, before they are divided into `triangles`: of each, the number of its corners, then these.
+  /// The faces other than quads, before their division into triangles: for each, its number of corners, then these.
   std::vector<Index> polygons;
-  std::vector<int> up;  ///< up axis of the file or its format, 0 x, 1 y, 2 z; empty: not stated
+  std::vector<int> up;  ///< one entry, the up axis of the file or its format: 0 x, 1 y, 2 z; empty: not stated
 };
 
-/// Reads the meshes whose name or whose node's name is `object` (empty: all), transformed to the world. Triangulates
-/// polygons with more than four corners; ignores points and lines. Throws std::runtime_error with assimp's message, or
-/// with the existing names if there is no such object. Damaged files can crash assimp or block it for ever: call this
-/// function through run_isolated.
+/// Reads the meshes that `object` names by their own name or that of their node (empty: all), transformed to the world.
+/// Ignores points and lines. Throws std::runtime_error with the message of assimp or, if no mesh has the name, with the
+/// existing names. Damaged files can crash assimp or block it for ever: call this only through run_isolated().
 Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
 
-/// Appends a polygon; one with more than four corners is triangulated.
+/// Appends a face. A face that is no quad is divided into triangles.
 void append_face(Soup& soup, std::span<const Index> corners);
 
-/// The surface of a soup: quads if the soup contains only quads and both halves of each have an area, else triangles.
-/// Triangles without area (a repeated corner, or all corners on a line), also with each of `later_positions`, are left
-/// out and counted.
+/// The surface of a soup: quads if the soup has only quads and both halves of each have an area, else triangles.
+/// Triangles without area (a repeated corner, or all corners on a line) are removed and counted, unless they have an
+/// area at any of `later_positions`.
 mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions = {});
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
 
-/// Refuses a PLY header without an end, which blocks assimp 5.2 until the time limit, and triangle strips, of which it
-/// reads only one triangle each.
+/// Refuses two kinds of PLY files: those whose header has no end, which block assimp 5.2 until the time limit, and
+/// those with triangle strips, of which assimp reads only one triangle each.
 void check_ply_header(const Source& source) {
   constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
   const std::string start = read_start(source.file, kHeaderBytes);
@@ -29,13 +29,13 @@ void check_ply_header(const Source& source) {
     source.fail("expected faces, got triangle strips (tristrips), which are not read; export the file with faces");
 }
 
-/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s). Thus only
-/// files that block it for ever exceed the limit.
+/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s), so that
+/// only files that block it for ever exceed the limit.
 unsigned time_limit(std::uintmax_t bytes) {
   return 5 + static_cast<unsigned>(bytes >> 20);
 }
 
-/// Wall time limit / CPU time limit; large, since many processes can share a machine.
+/// Wall time limit / CPU time limit. It is large, since many processes may share a machine.
 constexpr unsigned kWallFactor = 20;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A geometry file before it is read: reasons to refuse it, and the time limit for reading it.
+// Checks files before they are read, and reads them in a child process with a time limit.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace weft::assets {
 
-/// Maximum file size: larger files are scans, too detailed for collision in every frame.
+/// Maximum file size [bytes]. Larger files are scans, which are too detailed for collision in every frame.
 inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 
-/// A file with a coordinate of at least this size counts as damaged [m]: no scene is a thousand kilometres wide.
+/// Limit of coordinates [m]. A file with a larger one counts as damaged: no scene is a thousand kilometres wide.
 inline constexpr double kMaxCoordinate = 1e6;
 
-/// A file, and the texts that identify it in messages.
+/// A file, and the texts that name it in messages.
 struct Source {
   std::filesystem::path file;
   std::string where;          ///< scene entry that names it, such as "scenes/a.toml:12:8: obstacle.chair"
@@ -25,15 +25,15 @@ struct Source {
 
   /// Throws Error(asset_unreadable) with `where` and the file.
   [[noreturn]] void fail(const std::string& why) const;
-  /// The text of fail(), for a warning.
+  /// The text that fail() throws; also used for warnings.
   std::string describe(const std::string& what) const;
 
-  /// Throws for files that are missing, empty, too large, or known to block the reader for ever.
+  /// Throws like fail() if the file is missing, empty, too large, or would block assimp for ever.
   void check() const;
-  /// Calls check(), then `read` in a child process, and returns its result. If the child fails or exceeds its limits of
+  /// Calls check(), then `read` in a child process, and returns its result. If the child fails or exceeds its limits on
   /// time and memory, throws like fail() with the reason.
   std::string read(const std::function<std::string()>& read) const;
-  /// Returns the result of `work`. Any exception that is not an Error becomes fail(), since it is caused by the file.
+  /// Returns the result of `work`. Turns any exception other than Error into fail(), since the file causes it.
   template <class Work>
   auto checked(const Work& work) const {
     try {

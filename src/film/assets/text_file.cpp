@@ -33,7 +33,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-// A line of OBJ without a comment behind its numbers. Other lines may have '#' in names.
+// A line of OBJ without the comment after its numbers. Other lines stay as they are: names may contain #.
 std::string_view without_comment(std::string_view line) {
   constexpr std::array<std::string_view, 6> kWithNumbers{"v", "vt", "vn", "f", "l", "p"};
   const std::string_view start = trimmed(line);
@@ -41,7 +41,7 @@ std::string_view without_comment(std::string_view line) {
   return std::ranges::count(kWithNumbers, keyword) > 0 ? line.substr(0, line.find('#')) : line;
 }
 
-// A line of BVH before its frames.
+// A line of the hierarchy of BVH, in the usual spelling.
 std::string usual_bvh_line(std::string_view line) {
   constexpr std::array<std::string_view, 14> kUsual{"HIERARCHY", "ROOT",      "JOINT",     "OFFSET",    "CHANNELS",
                                                     "End",       "Site",      "MOTION",    "Xposition", "Yposition",
@@ -61,7 +61,7 @@ std::string usual_bvh_line(std::string_view line) {
   return text;
 }
 
-// Lines of BVH between "MOTION" and the frames.
+// A line of BVH between "MOTION" and the frames, in the usual spelling.
 std::string usual_bvh_header(std::string_view line) {
   std::string name;
   const std::size_t colon = line.find(':');

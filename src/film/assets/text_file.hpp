@@ -1,4 +1,4 @@
-// OBJ and BVH files as assimp 5.2 can read them.
+// Rewrites OBJ and BVH files that assimp 5.2 refuses or misreads.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,10 @@
 
 namespace weft::assets {
 
-/// Text for assimp to read in place of `file`; nullopt if assimp reads the file itself. The text differs from the file
-/// in what assimp 5.2 refuses or misreads:
-/// - It begins after the byte order mark, which assimp takes for a part of the first line.
-/// - OBJ: lines of vertices, faces and lines end before a comment.
+/// Returns text that assimp reads in place of `file`, or nullopt if assimp can read the file itself. The text differs
+/// from the file as follows:
+/// - All formats: it has no byte order mark, which assimp would read as a part of the first line.
+/// - OBJ: it has no comments at the ends of lines with vertices, faces and lines.
 /// - BVH: keywords and names of channels have their usual spelling, such as "Frame Time:" for "frametime:", and spaces
 ///   in names of joints are underscores.
 std::optional<std::string> readable_text(const std::filesystem::path& file);

@@ -19,7 +19,7 @@ namespace {
 template <class Archive>
 constexpr bool kReading = std::is_same_v<Archive, ByteReader>;
 
-// An enumeration or boolean as one byte; throws if the byte exceeds `last`, the largest value of the type.
+// Serialises an enumeration or boolean as one byte. Throws if the byte exceeds `last`, the largest value of the type.
 template <class Archive, class Value>
 void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
@@ -36,12 +36,13 @@ void serialize_flag(Archive& archive, bool& flag) {
   serialize_byte(archive, flag, true);
 }
 
-// Limit on coordinates [m]. Pictures are drawn in single precision, in which products of four coordinates must be
-// finite. For comparison, an object that falls for an hour is 6.4e7 m away.
+// Maximum magnitude of a coordinate [m]. Pictures are drawn in single precision, in which products of four coordinates
+// must be finite. For comparison: an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// Throws if a number is not finite or its magnitude exceeds kFarthest. Used for all numbers (also angles, fractions,
-// intensities) except (u, v) and heat, which need only be finite, and those of the report, which are not checked.
+// Throws if a number is not finite or its magnitude exceeds kFarthest. All numbers are checked, also angles, fractions
+// and intensities, with two exceptions: (u, v) and heat need only be finite, and the numbers of the report are not
+// checked.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))
     throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
@@ -73,7 +74,7 @@ void serialize_optional(Archive& archive, std::optional<Value>& value) {
   serialize_finite(archive, *value);
 }
 
-// Serialises entries as byte planes (codec.hpp), without their number: for reading, the caller has sized the list.
+// Serialises entries as byte planes (codec.hpp), without their number. Before reading, the list must have its size.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();
@@ -143,12 +144,12 @@ void serialize(Archive& archive, Textures& textures) {
         frame::Texture texture = pointer ? *pointer : frame::Texture{};
         serialize_values(archive, texture.width, texture.height);
         serialize_plain(archive, texture.rgba);
-        constexpr int kMaxTextureSide = 1 << 15;  // exclusive [pixels]
+        constexpr int kMaxTextureSide = 1 << 15;  // exclusive limit [pixels]
         const bool sized = texture.width > 0 && texture.height > 0 && texture.width < kMaxTextureSide &&
                            texture.height < kMaxTextureSide;
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
           throw std::runtime_error("a picture has the wrong number of bytes");
-        // The pointer changes only when reading: paints find their textures by pointer.
+        // Only reading replaces the pointer: when writing, paints find their textures by this pointer.
         if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
       kMinTextureBytes);
@@ -243,7 +244,7 @@ void serialize(Archive& archive, frame::Light& light) {
 }
 
 // The frame and time of the report are not stored here, since the snapshot has them. All members are named, so that a
-// new member causes a compile error: then serialise it and raise kFormatVersion.
+// new member causes a compile error. Then serialise the new member and raise kFormatVersion.
 template <class Archive>
 void serialize(Archive& archive, simulation::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,
@@ -379,7 +380,7 @@ std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation:
     frame::SurfaceState state = snapshot.states[s];
     const std::vector<Vec3>& start = surfaces.positions.at(s);
     if (state.positions.size() != start.size()) throw std::logic_error("a surface has lost or gained vertices");
-    // Compares bits, as −0 and 0 compare equal.
+    // Compares bits: −0 and 0 would be equal as numbers.
     bool moved = std::memcmp(state.positions.data(), start.data(), start.size() * sizeof(Vec3)) != 0;
     serialize_flag(writer, moved);
     if (moved) serialize_planes(writer, state.positions);

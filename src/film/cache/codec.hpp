@@ -5,8 +5,8 @@
 //   surfaces  the stage (surroundings); list of textures; list of surfaces; for each surface the positions in frame 0
 //             (count u64, then byte planes, see below)
 //   frame     time; list of cameras; list of lights; the report; for each surface a byte, 0 if its positions are those
-//             of frame 0, or 1, followed by the positions (byte planes); then a byte, 0 if it has no values of the heat
-//             map, or 1, followed by these values (byte planes of f32)
+//             of frame 0, else 1, followed by the positions (byte planes); then a byte, 0 if it has no values of the
+//             heat map, else 1, followed by these values (byte planes of f32)
 //   state     bytes of Simulation::save
 //
 // The serialize() functions in codec.cpp define the members of each part and their order. An optional value is stored
@@ -37,7 +37,7 @@ struct Surfaces {
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  std::uint64_t scene_hash = 0;  ///< of the scene for which the file of the frame was written; set by Reader
+  std::uint64_t scene_hash = 0;  ///< of the scene for which the frame was written; set by Reader
 };
 
 Surfaces surfaces_of(const frame::FrameSnapshot& first);
@@ -46,7 +46,7 @@ std::string encode_surfaces(const Surfaces& surfaces);
 /// Throws std::runtime_error with the defect.
 Surfaces decode_surfaces(std::string_view payload);
 
-/// `surfaces`: those of frame 0 of the same run.
+/// `surfaces`: of frame 0 of the same run.
 std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces);
 

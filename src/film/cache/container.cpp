@@ -19,10 +19,10 @@ static_assert(std::endian::native == std::endian::little && sizeof(std::size_t) 
               "plain values are written as they are in memory");
 
 constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;  // [bytes]; container.hpp has the layout
-// Compression level. The last mantissa bits of positions do not compress at any level; levels 3 and above take longer
-// without gain.
+// Compression level of Zstandard. The last mantissa bits of positions do not compress at any level; levels from 3 on
+// take longer and give no smaller files.
 constexpr int kLevel = 1;
-// A block of Zstandard holds at most 128 KiB and takes at least 4 bytes; only damaged files claim a higher ratio.
+// A block of Zstandard holds at most 128 KiB and takes at least 4 bytes. Only damaged files claim a higher ratio.
 constexpr std::uint64_t kMaxCompressionRatio = 32768;
 
 struct Header {

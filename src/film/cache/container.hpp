@@ -25,7 +25,7 @@ enum class Kind : std::uint32_t { surfaces = 1, frame = 2, state = 3 };
 
 struct Label {
   Kind kind = Kind::surfaces;
-  std::int32_t frame = 0;
+  std::int32_t frame = 0;  ///< number; 0 for surfaces
   std::uint64_t scene_hash = 0;
 };
 
@@ -34,13 +34,15 @@ struct Content {
   std::string payload;
 };
 
+/// The bytes of a file: the header and the compressed payload.
 std::string pack(const Label& label, std::string_view payload);
 
-/// Checks what verify() checks and the size of the payload, and decompresses it; checks neither the label nor the
+/// Decompresses a payload. First checks what verify() checks and the size of the payload, but neither the label nor the
 /// content of the payload. Throws std::runtime_error with the defect.
 Content unpack(std::string_view bytes);
 
-/// Checks magic bytes, version, stored size and checksum without decompressing. Throws std::runtime_error.
+/// Checks magic bytes, version, stored size and checksum without decompressing. Throws std::runtime_error with the
+/// defect.
 Label verify(std::string_view bytes);
 
 }  // namespace weft::cache

@@ -68,7 +68,7 @@ Manifest parse(const Json& json, const std::string& file) {
   require(is_plain_name(manifest.scene), "scene: expected a name");
   manifest.title = json.at("title").get<std::string>();
   manifest.scene_hash = parse_hash(json.at("scene_hash").get<std::string>());
-  // Caches of older builds have neither of these two keys.
+  // Older caches of this format version have neither of these two keys.
   if (json.contains("simulation_hash"))
     manifest.simulation_hash = parse_hash(json.at("simulation_hash").get<std::string>());
   if (json.contains("former_hashes"))

@@ -15,11 +15,11 @@ struct Manifest {
   std::string scene;  ///< name of the scene
   std::string title;  ///< may be empty
   std::uint64_t scene_hash = 0;
-  std::uint64_t simulation_hash = 0;         ///< hash of the simulation's inputs; scenes with equal hashes share frames
-  std::vector<std::uint64_t> former_hashes;  ///< of earlier scenes with equal simulations; frames may have their looks
+  std::uint64_t simulation_hash = 0;  ///< hash of the inputs of the simulation; scenes with equal hashes share frames
+  std::vector<std::uint64_t> former_hashes;  ///< scene hashes of earlier versions of the scene with the same simulation
   double fps = 25;
-  int frame_count = 1;               ///< of the scene; the cache may contain fewer
-  int preroll_frames = 0;            ///< simulated before frame 0 and not stored
+  int frame_count = 1;               ///< in the scene; the cache may contain fewer
+  int preroll_frames = 0;            ///< number of frames that are simulated before frame 0 and not stored
   int width = 1280, height = 720;    ///< default size of pictures [pixels]
   std::string camera;                ///< default camera; may be empty
   std::vector<std::string> cameras;  ///< names
@@ -30,7 +30,8 @@ struct Manifest {
 
 std::string manifest_text(const Manifest& manifest);
 
-/// Throws std::runtime_error with the defect. Names `file` if another version of Weft has made it.
+/// Throws std::runtime_error with the defect, or Error(asset_unreadable) that names `file` if another version of Weft
+/// has made it.
 Manifest parse_manifest(std::string_view text, const std::string& file = "manifest.json");
 
 }  // namespace weft::cache

@@ -23,7 +23,7 @@ inline std::string frame_file(int frame) {
   return fmt::format("frame_{:05}.weft", frame);
 }
 
-/// The frame whose file has this name; nullopt if it is not the file of a frame.
+/// The number of the frame whose file has this name; nullopt if the name is not that of a frame file.
 inline std::optional<int> frame_of(std::string_view name) {
   constexpr std::string_view kBefore = "frame_", kAfter = ".weft";
   if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return std::nullopt;

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Reads a file. Throws before reading the whole file if it does not begin with kMagic, as any other file may be large.
+// Reads a file. If it does not begin with kMagic, throws before reading all of it, since such a file may be large.
 std::string read_container(const fs::path& file) {
   const std::string start = read_start(file, kMagic.size());
   if (start.size() == kMagic.size() && start != kMagic) throw std::runtime_error("it is no file of a frame cache");
@@ -78,7 +78,7 @@ std::string Reader::read_part(const char* name, Kind kind, std::optional<int> fr
 
 std::string Reader::scene_text() const {
   const fs::path file = folder_ / kSceneFile;
-  // Runs copy this file to their output folder, so a link must not expose a file from elsewhere.
+  // Runs copy this file to their output folder. A link could thereby expose a file from elsewhere.
   std::error_code ignored;
   if (fs::is_symlink(file, ignored))
     throw Error(ExitCode::asset_unreadable, "{}: broken: expected a file of the cache, got a link", file.string());

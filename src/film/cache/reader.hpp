@@ -12,14 +12,15 @@
 
 namespace weft::cache {
 
-/// Bytes of Simulation::save.
+/// A solver state: the bytes of Simulation::save.
 struct SolverState {
-  int frame = 0;  ///< frame of the state; negative in the preroll
+  int frame = 0;  ///< number; negative in the preroll
   std::string bytes;
 };
 
-/// Which looks (colours, cameras, lights) of frames the reader accepts: only those of the scene, or also those of
-/// former scenes. Frames with former looks exist until a run with --resume replaces them.
+/// Whose looks (colours, cameras, lights) of frames the reader accepts: only those of the present scene, or also those
+/// of its earlier versions (Manifest::former_hashes). Frames with earlier looks exist until a run with --resume
+/// replaces them.
 enum class Looks { of_scene, any };
 
 /// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
@@ -30,7 +31,7 @@ class Reader {
 
   const std::filesystem::path& folder() const { return folder_; }
   const Manifest& manifest() const { return manifest_; }
-  /// The effective scene as TOML, for people.
+  /// The effective scene as TOML, for display.
   std::string scene_text() const;
 
   /// Frames below frame_count whose files exist now, ascending. Each call reads the folder again.
@@ -44,7 +45,7 @@ class Reader {
   /// Checks the file of a frame without decompressing it. Returns the hash of the scene whose looks the frame has.
   std::uint64_t verify(int frame) const;
 
-  /// nullopt if no state is stored.
+  /// The stored solver state; nullopt if there is none.
   std::optional<SolverState> state() const;
 
  private:
@@ -58,7 +59,7 @@ class Reader {
   std::optional<Surfaces> surfaces_;  // absent if frame 0 did not exist when the reader was created
 };
 
-/// Whether the folder has a manifest, readable or not.
+/// Whether the folder contains a manifest, readable or not.
 bool is_cache(const std::filesystem::path& folder);
 
 }  // namespace weft::cache

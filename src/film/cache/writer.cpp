@@ -29,7 +29,7 @@ bool is_name_of_cache(std::string_view name) {
          name == kLockFile || name == kOutputsFile || frame_of(name);
 }
 
-/// First bytes of a file of this name as Weft writes it; nullopt if they are not fixed.
+/// The first bytes of a file of this name if Weft has written it; nullopt if they are not fixed.
 std::optional<std::string_view> beginning_of(std::string_view name) {
   if (name == kManifestFile) return kManifestStart;
   if (name == kOutputsFile) return "-";
@@ -37,8 +37,8 @@ std::optional<std::string_view> beginning_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// Whether a file begins as Weft writes it. Zero bytes count too: the machine may have crashed before the content was
-/// on disk.
+/// Whether a file begins as Weft writes it, or with zero bytes: the machine may have crashed before the content was on
+/// disk.
 bool begins_as_written(const fs::path& file) {
   const auto beginning = beginning_of(file.filename().string());
   if (!beginning) return false;
@@ -46,9 +46,10 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether Weft has written a file. The first bytes of the file show this; for the scene, the first bytes of the
-/// manifest or of the surfaces do. Empty files count too, as nothing is lost with them, and so do temporary files of a
-/// cache, by their names.
+/// Whether a file of the folder belongs to the cache, so that it may be removed. Its name must be one of a cache, or of
+/// a temporary file of one. A temporary file needs no other check. Of other files the first bytes must be as Weft
+/// writes them; the scene file has no fixed first bytes, so those of the manifest or of the surfaces are checked
+/// instead. Empty files belong to the cache too, since nothing is lost with them.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);
@@ -107,7 +108,7 @@ Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
                     folder_.string());
       throw Error(ExitCode::output_failed, "{}: cannot be locked: {}", file.string(), std::strerror(error));
     }
-    // The previous owner may have removed the folder in the meantime.
+    // The previous owner of the lock may have removed the folder between open() and flock().
   } while (!same_file(descriptor_, file));
 }
 
@@ -121,7 +122,8 @@ bool Lock::empty() const {
 }
 
 void Lock::clear() const {
-  // Removes the scene first, as the files beside it identify it; then the manifest, without which the rest is no cache.
+  // Removes the scene first, since is_ours() identifies it by the files beside it; then the manifest, without which the
+  // other files are no cache.
   for (const char* name : {kSceneFile, kManifestFile})
     if (is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
   for (const std::string& name : names_in(folder_))
@@ -153,7 +155,7 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const simulation::FrameRe
   }
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
-  // A file that has appeared meanwhile was made by another program: the folder is locked against other Weft processes.
+  // The lock keeps other Weft processes out, so another program has made a file that appears only now; keep it.
   if (own_frames_.insert(snapshot.frame).second) keep_if_made_meanwhile(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();
@@ -164,7 +166,7 @@ void Writer::save_state(int frame, std::string_view bytes) {
 }
 
 void Writer::write(const std::string& name, const std::string& content) {
-  // If the machine crashes before the data are on disk, readers notice it by the checksum.
+  // No flush: if the machine crashes before the data are on disk, readers find a wrong checksum.
   write_file(folder_ / name, content, Flush::no);
 }
 

@@ -1,4 +1,4 @@
-// Writes a frame cache. Each file gets its name only when it is complete.
+// Writes a frame cache. Each file gets its final name only when it is complete.
 #pragma once
 
 #include <filesystem>
@@ -25,8 +25,8 @@ class Lock {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Removes all files of a cache except the lock. It removes the manifest before the frames, so that an interrupted
-  /// call leaves no cache.
+  /// Removes all files of a cache except the lock. Removes the manifest before the frames, so that an interrupted call
+  /// leaves no cache.
   void clear() const;
   /// Removes all files of a cache and the folder.
   void remove() const;
@@ -44,14 +44,14 @@ class Writer {
   /// Writes the manifest and the scene. The folder must be empty, or a cache of the same simulation.
   Writer(const Lock& lock, Manifest manifest, std::string_view scene_text);
 
-  /// Adds a frame. Frame 0 must come first, unless the folder already has it. A file of this frame that existed when
-  /// the writer was created is replaced. If another program has created the file since, throws Error(output_failed).
+  /// Adds a frame. Frame 0 must come first, unless the folder already has it. Replaces a file of this frame that
+  /// existed when the Writer was created. Throws Error(output_failed) if another program has created the file since.
   void add(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report);
 
-  /// Replaces the stored state by the state of `frame`. All frames up to it must have been added.
+  /// Replaces the stored state by the state of `frame`. All frames up to `frame` must have been added.
   void save_state(int frame, std::string_view bytes);
 
-  /// Size of all added frames and, if frame 0 is one of them, of the data that they share [bytes].
+  /// Size of all added frames [bytes]; if frame 0 is one of them, with the data that all frames share.
   std::uintmax_t bytes_added() const { return bytes_added_; }
 
  private:

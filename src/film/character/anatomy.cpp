@@ -12,15 +12,15 @@
 namespace weft::character {
 namespace {
 
-/// Vectors shorter than this, absolutely or relative to the vector they derive from, have no reliable direction.
+/// Vectors shorter than this, absolutely or relative to the vector that they derive from, have no reliable direction.
 constexpr double kNegligibleLength = 1e-9;
 
-/// Minimum mean weight of the postures that determine the axes of a joint; a guess gets the weight that is missing. The
-/// weight of a hinge is the squared sine of its angle, so elbows bent by 13° need no guess.
+/// Minimum mean weight, over all postures, of the directions that determine an axis. If it is less, a guess gets the
+/// missing weight. The weight of a hinge is the squared sine of its angle, so that elbows bent by 13° need no guess.
 constexpr double kMinDeterminedWeight = 0.05;
 
-/// Widths of the Gaussian weights (see falloff) of standing postures [radians]: for the lean of the whole trunk, and
-/// for that of each of its bones. People lean by 2 to 5° in walking, by more than 15° if they stoop.
+/// Widths of the Gaussian weights of postures (see falloff) by their angle from upright [rad]: of the whole trunk, and
+/// of each of its bones. The trunk leans by 2 to 5° in walking, by more than 15° in stooping.
 constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 
 Vec3 unit(const Vec3& v) {
@@ -37,7 +37,7 @@ double falloff(double angle, double width) {
   return std::exp(-(angle / width) * (angle / width));
 }
 
-/// The first node below `node` whose lower-case name contains the word; -1 if there is none.
+/// The first node below `node` whose name contains the word `word` in any case; -1 if there is none.
 Index find_below(const Character& character, Index node, std::string_view word) {
   std::vector<char> below(character.nodes.size(), 0);
   below[node] = 1;
@@ -58,8 +58,8 @@ class AnatomyFinder {
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // This axis replaces the vector to the left if left and right are unknown. It depends on `up` only, so that two
-    // skeletons get the same axis.
+    // Replaces the vector to the left if left and right are unknown. It depends on `up` only, so that two skeletons get
+    // the same vector.
     level_ = up.unitOrthogonal();
   }
 
@@ -83,7 +83,7 @@ class AnatomyFinder {
     return posture.rotations[joint_index(joint)] * (own_[joint_index(joint)] * of);
   }
 
-  /// Sum over all postures of a world direction, in the axes of the joint.
+  /// Sum of a world direction over all postures, in the axes of the joint.
   template <class Direction>
   Vec3 sum(Joint joint, const Direction& direction) const {
     Vec3 sum = Vec3::Zero();
@@ -93,7 +93,7 @@ class AnatomyFinder {
   }
 
   /// Weighted sum of the directions `shown`. If their mean weight is below kMinDeterminedWeight, the directions `guess`
-  /// get the difference as their weight.
+  /// get the missing weight.
   template <class Weight, class Shown, class Guess>
   Vec3 sum(Joint joint, const Weight& weight, const Shown& shown, const Guess& guess) const {
     double weight_sum = 0;
@@ -125,14 +125,14 @@ class AnatomyFinder {
     return Joint::hips;
   }
 
-  /// Copies the mean axes of another joint.
+  /// Gives a joint the axes of another joint, averaged over all postures.
   void copy_axes(Joint joint, Joint from) {
     own_[joint_index(joint)] =
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
-  /// Aligns z with the mean bone of a joint and x, as nearly as possible, with `across`, both in the axes of the joint.
-  /// A joint without a bone gets the axes of its parent.
+  /// Gives a joint the z axis along its mean bone, and the x axis as close as possible to `across` (in the axes of the
+  /// joint). A joint without a bone gets the axes of its parent.
   void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
     if (unit(z).isZero()) return copy_axes(joint, parent);
@@ -143,8 +143,8 @@ class AnatomyFinder {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[joint_index(joint)] - p.places[joint_index(below)]);
-      // Control nodes of a rig may lie above the joint that they move, so that their bone points down. The direction of
-      // the trunk then replaces that of the bone.
+      // Control nodes of a rig may lie above the joint that they move: then their bone points down, and the direction
+      // of the trunk replaces it.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };
@@ -160,17 +160,16 @@ class AnatomyFinder {
       if (joint == Joint::hips && !hips.isZero()) return Vec3(hips);
       return shoulders.isZero() || joint == Joint::spine ? Vec3(hips + shoulders) : shoulders;
     });
-    // The line through the hip joints determines the rotation of the hips best: their x axis follows it exactly.
+    // The line through the hip joints determines the rotation of the hips best, so their x axis follows it exactly.
     const Vec3 line = unit(x), beside = z - z.dot(line) * line;
     own_[joint_index(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
   }
 
-  /// Axes of upper and lower arm or leg.
   void find_limb_axes(Joint upper, Joint lower, Joint trunk, bool right) {
     if (!skeleton_.has(upper)) return;
     const bool arm = joint_index(upper) < joint_index(on_side(Joint::left_upper_leg, right));
-    // Guess of the hinge axis: arms stretched out sideways bend forward, legs that hang straight down bend backward.
-    // From there the axis rotates with the bone along the shortest arc.
+    // Guess of the hinge axis: arms that point to the side bend forward, legs that hang straight down bend backward.
+    // For other directions of the bone, the axis rotates with it along the shortest arc.
     const auto guess = [&](const Posture& p, std::size_t) {
       const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
       const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));
@@ -220,7 +219,7 @@ class AnatomyFinder {
   std::span<const Posture> postures_;
   std::span<const Flat> flat_;
   Vec3 up_, level_;
-  std::array<Quat, kJointCount> own_;
+  std::array<Quat, kJointCount> own_;  // result: axes of the body parts, in the axes of the joints
 };
 
 }  // namespace
@@ -278,7 +277,7 @@ Posture Skeleton::at(const Pose& pose) const {
 
 Vec3 Skeleton::bone(const Posture& posture, Joint joint) const {
   const std::size_t from = joint_index(joint);
-  std::size_t last = from;  // last joint of its limb
+  std::size_t last = from;  // last joint of the limb or trunk
   if (joint <= Joint::head) {
     last = joint_index(Joint::head);
   } else {

@@ -11,21 +11,23 @@
 
 namespace weft::character {
 
-/// A skeleton. `joints`: for each of joint_names(), the node with that role; -1 if there is none.
+/// A character, and the nodes that are its joints. `joints`: for each of joint_names(), the node with that role; -1 if
+/// there is none.
 struct Rig {
   const Character& character;
   std::span<const Index> joints;
 };
 
-/// Positions and rotations of the joints of a skeleton in one pose, in the world. Missing joints have meaningless
-/// values.
+/// Positions and rotations of the joints in one pose, in world coordinates. The values of missing joints are
+/// meaningless.
 struct Posture {
   std::array<Vec3, kJointCount> places;
   std::array<Quat, kJointCount> rotations;
-  std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes of a joint; its own position if it has none
+  std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes; that of the joint if it has none
   std::array<Vec3, 2> knuckles;        ///< vector from the index to the little finger, left and right; zero if unknown
 };
 
+/// Directions and lengths of the limbs and the trunk of a rig, in given postures.
 class Skeleton {
  public:
   explicit Skeleton(const Rig& rig);
@@ -33,8 +35,8 @@ class Skeleton {
   bool has(Joint joint) const { return rig_.joints[joint_index(joint)] >= 0; }
   Posture at(const Pose& pose) const;
 
-  /// Vector from a joint to the next existing one: outward along limbs, upward along the trunk. From the last joint of
-  /// a limb or of the trunk, vector to the mean of its child nodes; zero if there are none.
+  /// Vector from a joint to the next existing joint, outward along a limb or upward along the trunk. If there is no
+  /// next joint: vector to the mean position of its child nodes; zero if it has none.
   Vec3 bone(const Posture& posture, Joint joint) const;
   /// Vector from the right hip joint to the left one; zero if one is missing.
   Vec3 across_hips(const Posture& posture) const;
@@ -42,8 +44,8 @@ class Skeleton {
   Vec3 across_shoulders(const Posture& posture) const;
   /// Midpoint between the hip joints; the position of the hips if one of them is missing.
   Vec3 middle_of_hips(const Posture& posture) const;
-  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the first
-  /// that exists of neck, head, chest and spine; without these, bone() of the hips.
+  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the neck,
+  /// else the head, the chest or the spine. If all of these are missing: bone() of the hips.
   Vec3 trunk(const Posture& posture) const;
   /// Mean length of the complete legs, thigh plus shin; 0 if none is complete.
   double leg_length(const Posture& posture) const;
@@ -58,19 +60,20 @@ class Skeleton {
   std::array<std::array<Index, 2>, 2> fingers_{};  // nodes of index and little finger, left and right; -1: unknown
 };
 
-/// How far the left and the right foot stand flat on the floor in a posture: weights from 0 (not) to 1 (fully).
+/// Weights of the left and the right foot in one posture: 1 if the foot stands flat on the floor, 0 if not.
 using Flat = std::array<double, 2>;
 
-/// Finds, for each joint, the axes of its body part, as a rotation from the coordinates of the part to those of the
-/// joint. Axes of body parts:
-/// - Hips, spine, chest, neck and head: x to their left, z up when the body stands upright. Shoulders: as the chest.
+/// Finds the axes of the body part of each joint, as a rotation from the coordinates of the part to those of the joint.
+/// Axes of body parts:
+/// - Hips, spine, chest, neck and head: x to the left of the body, z up when the body stands upright. Shoulders: as the
+/// chest.
 /// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee.
 /// - Hands: z along the bone, x out of the left palm and out of the back of the right hand.
 /// - Feet and toes: z up when they are flat on the floor, x toward the toes.
-/// The axes follow from positions alone, as means over all postures that determine them: the trunk in upright postures,
-/// hinges weighted by their bend, feet in postures in which they are flat. Neither the first pose of a file nor the
-/// pose at zero angles matters. Axes that no posture determines are guessed from neighbouring joints. `flat`: one entry
-/// per posture. `up`: unit vector.
+/// Only positions of joints determine the axes in the world; the rest pose of a file and the pose with zero angles have
+/// no effect. Each axis is a mean over the postures that determine it: upright postures for the trunk, all postures for
+/// a hinge (weighted by its bend), postures with a flat foot for the foot. If no posture determines an axis, it is
+/// guessed from neighbouring joints. `flat`: one entry per posture. `up`: unit vector.
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
                                            std::span<const Flat> flat, const Vec3& up);
 

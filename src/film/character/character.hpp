@@ -1,4 +1,5 @@
-// A body of bones and skin, and its motions. Characters from files and the built-in mannequin share this type.
+// A body: a skeleton of bones, the skin (mesh) that it moves, and motion clips. Characters from files and the built-in
+// mannequin share these types.
 #pragma once
 
 #include <array>
@@ -13,40 +14,41 @@ namespace weft::character {
 
 using Affine = Eigen::Affine3d;
 
-/// One node of the hierarchy. Joints are nodes, as is any other object of a file that has a transform.
+/// A node of the transform hierarchy: a joint, or any other object of a file that has a transform.
 struct Node {
   std::string name;
-  Index parent = -1;                  ///< -1: a root; parents precede their children
-  Affine local = Affine::Identity();  ///< node to parent, at rest
+  Index parent = -1;                  ///< -1 for a root; parents precede their children
+  Affine local = Affine::Identity();  ///< transform from node to parent at rest
 };
 
-/// Moves vertices. In any pose, a bone takes a vertex x to G · offset · x, where G is the global transform of its node.
+/// A bone of linear blend skinning. In a pose, it maps a vertex x to G · offset · x, where G is the global transform of
+/// its node.
 struct Bone {
   Index node = 0;
-  Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin is bound
+  Affine offset = Affine::Identity();  ///< transform from mesh to node in the bind pose
 };
 
 struct Influence {
   Index bone = 0;
-  double weight = 0;  ///< weights of one vertex sum to 1
+  double weight = 0;  ///< the weights of a vertex sum to 1
 };
 
-/// A blend shape: displacements of the vertices, which a pose adds times a weight.
+/// A blend shape. A pose adds its displacements, times a weight, to the vertices before skinning.
 struct MorphTarget {
   std::string name;
-  std::vector<Vec3> displacements;  ///< per vertex of the mesh as bound [m]
+  std::vector<Vec3> displacements;  ///< per vertex, in the bind pose [m]
   double weight = 0;                ///< at rest
 };
 
-/// A value given at strictly increasing times [s]. It is interpolated linearly (rotations along the shortest arc), and
-/// constant before the first and after the last time.
+/// Keys of a value at strictly increasing times [s]. Between keys, the value is interpolated linearly (a rotation along
+/// the shortest arc); before the first and after the last key, it is constant.
 template <typename Value>
 struct Curve {
   std::vector<double> times;
   std::vector<Value> values;
 };
 
-/// Motion of one node relative to its parent. An empty curve means the value at rest.
+/// Motion of one node relative to its parent. If a curve is empty, the value at rest applies.
 struct Channel {
   Index node = 0;
   Curve<Vec3> position;
@@ -66,16 +68,16 @@ struct Clip {
   std::vector<MorphChannel> morphs;
 };
 
-/// Appearance of a material of a file.
+/// A surface material: its colour and its picture (texture).
 struct Material {
-  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: transparent beyond the edge
+  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< beyond its edge; once: transparent
   std::string name;
-  Vec3 color{0.8, 0.8, 0.8};         ///< linear; multiplies the picture
+  Vec3 color{0.8, 0.8, 0.8};         ///< linear RGB; multiplied with the picture
   std::string picture;               ///< content of a PNG, JPEG or TGA file; empty: none
   int width = 0, height = 0;         ///< size of `pixels`
   std::vector<std::uint8_t> pixels;  ///< used if `picture` is empty: R G B A, sRGB, top row first; empty: none
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  bool cutout = false;  ///< transparent parts of the picture are holes
+  bool cutout = false;  ///< where the picture is transparent, the surface has holes
 };
 
 /// Materials and pictures of the triangles of a mesh.
@@ -83,18 +85,18 @@ struct Coloring {
   std::vector<Material> materials;
   std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
-  bool covers_look = false;                 ///< the scene's colour stays visible where pictures are transparent
+  bool covers_look = false;                 ///< whether the scene's colour shows where pictures are transparent
 };
 
-/// Lengths in metres; up axis as in the scene.
+/// Lengths are in metres; the up axis is that of the scene.
 struct Character {
   std::vector<Node> nodes;
   std::vector<Bone> bones;
-  mesh::Mesh mesh;                     ///< as bound; copies of a vertex that always move together are merged
-  std::vector<Index> first_influence;  ///< first index into `influences` per vertex, then the total count
+  mesh::Mesh mesh;                     ///< in the bind pose; vertices of the file that always move together are merged
+  std::vector<Index> first_influence;  ///< per vertex, its first index in `influences`; last entry: their total number
   std::vector<Influence> influences;
   std::vector<MorphTarget> morphs;
-  std::vector<std::string> materials;     ///< names in the file
+  std::vector<std::string> materials;     ///< names of all materials in the file
   std::vector<Index> material_of_vertex;  ///< per vertex; empty if there are no materials
   Coloring coloring;
   std::vector<Clip> clips;

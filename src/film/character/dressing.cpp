@@ -11,10 +11,11 @@
 namespace weft::character {
 namespace {
 
-/// Fraction of the distance from bone to skin at which a body begins to grow.
+/// Distance of the skin from the bone at the start of growth, as a fraction of the final distance.
 constexpr double kInitialGrowth = 0.1;
 
-/// Length of a terminal bone, as of head or finger, relative to the distance from its node to the mean of its vertices.
+/// Length of a terminal bone, as of head or finger, relative to the distance from its node to the mean position of its
+/// vertices.
 constexpr double kTerminalBoneRatio = 1.3;
 
 using Segment = std::array<Vec3, 2>;
@@ -41,7 +42,7 @@ Vec3 blended_point_on(const std::vector<Segment>& segments, const Vec3& x) {
   return sum / weights;
 }
 
-/// Weighted mean position of the vertices of each bone; the position of its node if it has none.
+/// Weighted mean position of the vertices of each bone; if a bone has no vertices, the position of its node.
 std::vector<Vec3> mean_positions(const Character& character, const std::vector<Vec3>& places,
                                  const std::vector<Vec3>& skin) {
   std::vector<Vec3> middle(character.bones.size(), Vec3::Zero());
@@ -57,8 +58,9 @@ std::vector<Vec3> mean_positions(const Character& character, const std::vector<V
   return middle;
 }
 
-/// Line segments of each bone: to the next bones below it; for a terminal bone, through the mean of its vertices. Bones
-/// of one node, as of several meshes, have the same segments to bones below it.
+/// Line segments of each bone: from its node to the nodes of the next bones below it; for a terminal bone, through the
+/// mean position of its vertices. If several bones have one node, as in files with several meshes, they share the
+/// segments to bones below it.
 std::vector<std::vector<Segment>> segments_of(const Character& character, const std::vector<Vec3>& places,
                                               const std::vector<Vec3>& skin) {
   std::vector<bool> has_bone(character.nodes.size(), false);
@@ -81,7 +83,7 @@ std::vector<std::vector<Segment>> segments_of(const Character& character, const 
   return segments;
 }
 
-/// Stores which pairs of bones lie on one chain, in which one bone is below the other.
+/// Which pairs of bones lie on one chain: one bone is below the other.
 class BoneChains {
  public:
   explicit BoneChains(const Character& character) : count_(character.bones.size()), on_one_chain_(count_ * count_, 0) {

@@ -1,4 +1,4 @@
-// Prepares a body for clothes that were not made for it: poses its arms and makes it thin at the start.
+// Prepares a body for clothes that were not made for it: poses its arms, and shrinks it toward its bones at the start.
 #pragma once
 
 #include <vector>
@@ -8,17 +8,19 @@
 
 namespace weft::character {
 
-/// A pose with straight arms in the frontal plane of the body. `degrees`: angle of both arms from hanging; 90 is
-/// straight out to the sides. A rig without a pair of arms keeps the pose. `up`: unit vector.
+/// Returns the pose with straight arms in the frontal plane of the body. `degrees`: angle of both arms from straight
+/// down; at 90 they point straight to the sides. If the rig has no pair of arms, the pose does not change. `up`: unit
+/// vector.
 Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up);
 
-/// Start position inside the body from which each vertex grows: the nearest points on the bones that influence it,
-/// averaged by the influence weights and, where bones branch, by the inverse fourth power of the distance. Vertices
-/// that two limbs influence equally, as between the legs, grow from the mean position of the joints of these bones.
+/// For each vertex, the point inside the body from which it grows: the mean of the nearest points on the bones that
+/// influence it, weighted by the influences. If a bone branches, its branches are weighted by the inverse fourth power
+/// of their distance. A vertex that two limbs influence equally, as between the legs, grows from the mean position of
+/// the joints of its bones.
 std::vector<Vec3> growth_start_positions(const Character& character, const Pose& pose);
 
-/// Fraction of the distance from bone to skin that a body has reached at time `t` [s] after the start of growth, which
-/// takes `duration` [s]. Rises smoothly from 0.1, at which a sleeve has clearance, to 1.
+/// Distance of the skin of a growing body from its bones, as a fraction of the final distance. `t`: time since the
+/// start of growth, which takes `duration` [s]. Rises smoothly from 0.1, which leaves clearance in a sleeve, to 1.
 double grown(double t, double duration);
 
 }  // namespace weft::character

@@ -11,13 +11,14 @@
 namespace weft::character {
 namespace {
 
-// All positions below are in cm, for a height of kTableHeight.
+// All positions in this file are in cm, for a body of the height kTableHeight.
 
 /// A colour (sRGB, 0 to 1) with the opacity `fraction`.
 struct Ink {
   Vec3 color = Vec3::Zero();
   double fraction = 0;
 
+  /// Paints the colour `over` with the opacity `by` on top.
   void add(const Vec3& over, double by) {
     const double sum = by + fraction * (1 - by);
     if (sum > 0) color = (by * over + fraction * (1 - by) * color) / sum;
@@ -25,13 +26,13 @@ struct Ink {
   }
 };
 
-/// 1 inside (`depth` > 0), 0 outside, with a soft edge of width `edge` [cm].
+/// 1 inside (`depth` > 0) and 0 outside an outline, with a soft edge of width `edge` [cm].
 double inside(double depth, double edge) {
   const double t = std::clamp(0.5 + depth / edge, 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
-/// Height y of a polyline at x = `at`. The x coordinates ascend; beyond the ends, the height is constant.
+/// The y coordinate of a polyline at x = `at`. Its x coordinates ascend; beyond its ends, y is constant.
 double height(std::span<const Vec2> line, double at) {
   if (at <= line.front().x()) return line.front().y();
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -46,7 +47,7 @@ const Vec3 kHair(0.20, 0.135, 0.095), kShoe(0.13, 0.12, 0.125), kSole(0.07, 0.06
     kBlush(0.74, 0.40, 0.33), kShade(0.30, 0.17, 0.13), kLash(0.10, 0.07, 0.055), kWhite(0.80, 0.77, 0.73),
     kIris(0.27, 0.19, 0.13), kPupil(0.05, 0.04, 0.035);
 
-/// Shoes, seen from the side; y from front to back.
+/// Shoes, seen from the side; y grows from front to back.
 Ink body_ink(double y, double z) {
   // From the toes over the instep to the heel.
   static const Vec2 kShoeline[] = {{-11.5, 9.0}, {-9.2, 3.6}, {-4, 2.8}, {1, 3.8}, {5, 5.6}, {7, 6.2}};
@@ -57,12 +58,12 @@ Ink body_ink(double y, double z) {
   return ink;
 }
 
-/// Hair, seen from the side, with strands that run to the knot and around it. Ears are slightly redder than the skin.
+/// Hair, seen from the side, with strands that run to the knot and around it; and ears, slightly redder than the skin.
 Ink head_ink(double y, double z) {
   Ink ink;
   ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
   const double back = y - kKnot.x(), up = z - kKnot.y(), r = std::hypot(back, up), angle = std::atan2(up, back);
-  // Strands fade toward the knot, where they would be finer than the picture's pixels.
+  // Strands fade toward the knot, where they would be finer than the pixels of the picture.
   const double fine = 0.5 * std::sin(31 * angle + 1) * std::sin(13 * angle + 0.3 * r) +
                       0.5 * std::sin(71 * angle + 0.5 * r) * std::sin(9 * angle + 2);
   const double coiled = 0.8 * std::sin(3 * angle + 4.6 * r) * std::sin(2 * angle + 1.3 * r + 1);

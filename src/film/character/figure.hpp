@@ -6,8 +6,8 @@
 
 namespace weft::character {
 
-/// Colours for the mesh of a mannequin at rest, z up. Pictures are projected along an axis, so that their outlines are
-/// equally sharp on coarse and fine triangles. The geometry that cloth touches does not change.
+/// Makes the colours for the mesh of a mannequin at rest, z up. Pictures are projected along an axis, so that their
+/// outlines are equally sharp on coarse and fine triangles. The mesh does not change.
 Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build);
 
 }  // namespace weft::character

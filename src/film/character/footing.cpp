@@ -9,37 +9,38 @@ namespace weft::character {
 namespace {
 
 // A foot is in contact if its ball is slower than kMaxContactSpeed [leg lengths/s] and less than kMaxContactHeight [leg
-// lengths] above the floor: 0.3 m/s and 4 cm for an adult's leg of 0.85 m. Toes in swing pass at 3 to 5 m/s; noise
-// moves standing feet in recordings at 0.05 to 0.15 m/s.
+// lengths] above the floor: 0.3 m/s and 4 cm for the leg of an adult, 0.85 m. Toes in swing move at 3 to 5 m/s; noise
+// in recordings moves standing feet at 0.05 to 0.15 m/s.
 constexpr double kMaxContactSpeed = 0.35, kMaxContactHeight = 0.05;
-/// Maximum height of the ankle of a flat foot above the standing height of ankles [leg lengths].
+/// Maximum height of the ankle of a flat foot above Footsteps::ankle_height [leg lengths].
 constexpr double kMaxFlatAnkleHeight = 0.03;
-/// Speeds are means over this time [s], half the key interval at 15 keys per second.
+/// Speeds are means over this time [s]: half of the key interval of a clip with 15 keys per second.
 constexpr double kSpeedWindow = 1.0 / 30;
 /// Shorter contacts are ignored [s].
 constexpr double kMinContactTime = 0.08;
-/// Movement of the ball that ends a contact and begins the next one, as in a shuffle [leg lengths].
+/// Movement of the ball that ends a contact and begins the next one, as in shuffling [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
-/// Slow feet are counted by height. The floor is the lowest peak of the counts that is at least this fraction of the
-/// largest count. Initial poses of recordings and outliers lie below the floor, steps and chairs above.
+/// A histogram counts the heights of slow feet. The floor is its lowest peak that is at least this fraction of its
+/// highest peak. Initial poses of recordings and outliers lie below the floor, stairs and chairs above it.
 constexpr double kMinFrequencyRatio = 0.5;
-/// Time in which feet blend from a contact into their own motion [s]; a step takes 0.4 s or more.
+/// Time in which a foot blends from a contact into its own motion and back [s]; a step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;
-/// Time before and after a key in which a correction of the hips at this key fades (see plant_feet) [s].
+/// A correction of the hips at a key fades within this time before and after the key (see plant_feet) [s].
 constexpr double kHipBlendTime = 0.25;
-/// Fraction of its length at which a leg counts as straight: the knee keeps a bend of 5°, so that it does not snap.
+/// Maximum distance from hip to ankle, as a fraction of thigh plus shin: the knee keeps a bend of 5° and does not snap
+/// straight.
 constexpr double kStraightLegRatio = 0.999;
-/// Cosine of the angle between thigh and shin of a knee bent by 155°, the limit that calf and thigh allow.
+/// Cosine of the smallest angle between thigh and shin: of a knee that is bent by 155°, where calf and thigh touch.
 constexpr double kFoldedKneeCosine = 0.906;
 
-/// The value below which `fraction` of all values lie.
+/// The value below which the fraction `fraction` of all values lies.
 double quantile(std::vector<double> values, double fraction) {
   const auto k = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + k, values.end());
   return values[static_cast<std::size_t>(k)];
 }
 
-/// Mean speeds at the keys of a track [m/s].
+/// Mean speed at each key of a track [m/s].
 std::vector<double> speeds(const std::vector<Vec3>& track, std::span<const double> times) {
   std::vector<double> speeds(track.size(), 0);
   for (std::size_t k = 0; k < track.size(); ++k) {
@@ -95,7 +96,7 @@ double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
     }
   if (slow.empty()) return lowest;
   std::ranges::sort(slow);
-  // Number of values up to kMaxContactHeight above each value.
+  // Per value, the number of values between it and kMaxContactHeight above it.
   std::vector<std::ptrdiff_t> counts;
   for (auto h = slow.begin(); h != slow.end(); ++h)
     counts.push_back(std::upper_bound(h, slow.end(), *h + kMaxContactHeight * leg) - h);
@@ -106,8 +107,8 @@ double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   return slow[k];
 }
 
-/// Extends a quantity that is known only in contacts to other keys, by values of the nearest contacts that fade with
-/// time.
+/// Extends a quantity that is defined only in contacts to all keys: outside contacts, the values at the ends of the
+/// nearest contacts fade with time.
 class ContactBlend {
  public:
   ContactBlend(const std::vector<Contact>& contacts, std::span<const double> times)
@@ -139,20 +140,20 @@ class ContactBlend {
   std::span<const double> times_;
 };
 
-/// Minimum distance from hip to ankle.
+/// Minimum distance from hip to ankle [m].
 double min_reach(const Leg& leg) {
   const double a = (leg.knee - leg.hip).norm(), b = (leg.ankle - leg.knee).norm();
   return std::sqrt(a * a + b * b - 2 * a * b * kFoldedKneeCosine);
 }
 
-/// Maximum distance from hip to ankle; a leg that is straighter in the motion may stay so.
+/// Maximum distance from hip to ankle [m]. A leg that is straighter in the motion may stay so.
 double max_reach(const Leg& leg) {
   return std::max(kStraightLegRatio * ((leg.knee - leg.hip).norm() + (leg.ankle - leg.knee).norm()),
                   (leg.ankle - leg.hip).norm());
 }
 
-/// Rise of the hips that makes the distance from hip to ankle equal to `distance`, with the ankle at `to_ankle` from
-/// the hip. Negative if the hips must move down; 0 if no rise can achieve it.
+/// Rise of the hips [m] that makes the distance from hip to ankle equal to `distance`. `to_ankle`: vector from the hip
+/// to the ankle before the rise. Negative if the hips must move down; 0 if no rise achieves this.
 double rise_for(double distance, const Vec3& to_ankle, const Vec3& up) {
   const double down = -up.dot(to_ankle), level_sq = (to_ankle + down * up).squaredNorm();
   return distance * distance > level_sq ? std::sqrt(distance * distance - level_sq) - down : 0;
@@ -165,7 +166,7 @@ double rise_of_hips(const Leg& leg, const Vec3& ankle, const Vec3& up) {
   return 0;
 }
 
-/// Smallest curve that is nowhere below the given values (>= 0) and rises and falls within kHipBlendTime.
+/// Smallest curve that is nowhere below the values `needed` (>= 0) and takes kHipBlendTime to rise and to fall.
 std::vector<double> spread_over_time(const std::vector<double>& needed, std::span<const double> times) {
   std::vector<double> result = needed;
   for (std::size_t k = 0; k < needed.size(); ++k) {
@@ -208,7 +209,7 @@ Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> post
       for (std::size_t k = contact.first; k <= contact.last; ++k) standing.push_back(ankles[right].heights[k]);
   }
   if (standing.empty()) return steps;
-  steps.ankle_height = quantile(standing, 0.25);  // low quantile, since heels rise later in a contact
+  steps.ankle_height = quantile(standing, 0.25);  // a low quantile, since the heel rises late in a contact
   for (const bool right : {false, true})
     for (const Contact& contact : steps.contacts[right])
       for (std::size_t k = contact.first; k <= contact.last; ++k)
@@ -259,7 +260,7 @@ LegTurns reach(const Leg& leg, const Vec3& ankle) {
   const Vec3 thigh = leg.knee - leg.hip, shin = leg.ankle - leg.knee, to_ankle = ankle - leg.hip;
   const double a = thigh.norm(), b = shin.norm();
   const double length = std::clamp(to_ankle.norm(), min_reach(leg), max_reach(leg));
-  // Normal of the plane in which the leg bends; for a straight leg, the axis of its hinge.
+  // Normal of the plane in which the leg bends; for a straight leg, its hinge axis.
   const Vec3 normal = (thigh.cross(shin) / (a * b) + 0.02 * leg.hinge).normalized();
   const double cosine = std::clamp((length * length - a * a - b * b) / (2 * a * b), -1.0, 1.0);
   const double now = std::atan2(thigh.cross(shin).dot(normal), thigh.dot(shin));

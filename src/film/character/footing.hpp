@@ -10,52 +10,52 @@
 
 namespace weft::character {
 
-/// A range of keys, `first` and `last` included, in which the ball of a foot stays in place.
+/// Keys `first` to `last`, both included, during which the ball of a foot stays in place.
 struct Contact {
   std::size_t first = 0, last = 0;
 };
 
 struct Footsteps {
-  std::array<std::vector<Contact>, 2> contacts;  ///< of the left and the right foot, in order
+  std::array<std::vector<Contact>, 2> contacts;  ///< of the left and the right foot, in chronological order
   std::vector<Flat> flat;                        ///< per posture
   double ankle_height = 0;                       ///< height of the ankles of flat feet [m]
 };
 
-/// Finds the contacts of a motion from the speed and the height of the toes, or of the ankles of feet without toes.
-/// `times`: of the postures, increasing [s]. `up`: unit vector. Without a complete leg or without steps there are no
-/// contacts, and ankle_height is the height of the lowest ankle; infinite without feet.
+/// Finds the contacts of a motion from the speed and the height of the toe joints, or of the ankles if feet have no
+/// toes. `times`: of the postures, increasing [s]. `up`: unit vector. Without a complete leg or without steps, there
+/// are no contacts, and ankle_height is the height of the lowest ankle (infinite without feet).
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
 /// A leg at one key. reach() also accepts an arm: `hip`, `knee` and `ankle` are then its shoulder, elbow and wrist.
 struct Leg {
   Vec3 hip, knee, ankle;
-  Vec3 ball, heel;  ///< points of the sole, below the toe joint and below the ankle
+  Vec3 ball, heel;  ///< points of the sole below the toe joint and below the ankle
   Vec3 hinge;       ///< unit vector of the axis about which the shin bends backward
 };
 
 /// The left and the right leg.
 using Legs = std::array<Leg, 2>;
 
-/// Corrections at one key. They keep feet that are in contact in place.
+/// Corrections at one key that keep the feet in contact in place.
 struct Stance {
   double rise = 0;                                          ///< of the hips [m]
   std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
   std::array<bool, 2> in_contact{};
 };
 
-/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Outside contacts no
-/// foot goes below the floor, and feet return to the motion within 0.15 s. Hips move down if a leg is too short to
-/// reach its shifted ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
+/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Within 0.15 s before
+/// and after a contact, the foot blends into the motion; no foot goes below the floor. The hips move down if a leg is
+/// too short to reach its shifted ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
-/// Rotations of the upper and the lower leg from the present pose, in world axes.
+/// Rotations of the upper and the lower leg that are applied to the present pose, in world axes.
 struct LegTurns {
   Quat upper, lower;
 };
-/// The rotations that bring the ankle to a given position, or as near to it as the leg reaches. The knee bends in the
-/// present plane of the leg.
+/// Two-bone inverse kinematics: the rotations that bring the ankle to a given position, or as near to it as the leg
+/// reaches. The knee bends in the present plane of the leg.
 LegTurns reach(const Leg& leg, const Vec3& ankle);
 
 }  // namespace weft::character

@@ -9,10 +9,10 @@
 namespace weft::character {
 namespace {
 
-/// On all fours: maximum mean of |sine| of the angle between trunk and horizontal; 0.5 is 30 degrees.
+/// On all fours: maximum of the mean |sine| of the angle between trunk and horizontal; 0.5 is 30°.
 constexpr double kMaxTrunkSlope = 0.5;
 
-/// Hands that are less than this above the lowest foot count as on the floor [leg lengths].
+/// A hand is on the floor if it is less than this above the lowest foot [leg lengths].
 constexpr double kMaxHandHeight = 0.25;
 
 double lowest_height(const Skeleton& skeleton, const Posture& posture, std::initializer_list<Joint> joints,

@@ -1,4 +1,4 @@
-// Detects motions of four-legged animals, whose forelegs have the names or places of arms.
+// Detects motions of four-legged animals: they pass for people, as forelegs have the names or places of arms.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace weft::character {
 
-/// Warning text for a motion on all fours: the trunk slopes by at most 30° on average, and a hand is near the floor for
-/// at least half of the time. None for other motions. `up`: unit vector.
+/// Returns a warning if a motion is on all fours: the trunk is at most 30° from horizontal on average, and a hand is
+/// near the floor for at least half of the postures. `up`: unit vector.
 std::optional<std::string> warn_if_on_all_fours(const Skeleton& skeleton, std::span<const Posture> postures,
                                                 const Vec3& up);
 

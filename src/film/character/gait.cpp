@@ -12,18 +12,18 @@ namespace weft::character {
 namespace {
 
 constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw, for longer legs and a catwalk gait
-constexpr double kShoulderSwing = 1.5;  ///< factor on the chest yaw, which is opposite to that of the pelvis
+constexpr double kShoulderSwing = 1.5;  ///< factor on the recorded chest yaw, which is opposite to that of the pelvis
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
-                 kHeadRoll = -0.4;           ///< ratios of pitch (chest and head to pelvis) and of roll (head to chest)
+                 kHeadRoll = -0.4;  ///< ratios of pitch (chest / pelvis, head / pelvis) and of roll (head / chest)
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
-// Hanging arms have bent elbows; walking adds kElbowRatio of the recorded difference from kElbowAtRest. The upper arms
-// keep an angle from the vertical; the forearms turn back toward the vertical by the fraction kForearmTurnRatio of this
-// angle, at most by kMaxForearmTurn. Angles in degrees.
+// Hanging arms have elbows bent by kElbowAtRest; walking adds kElbowRatio of the difference between the recorded bend
+// and kElbowAtRest. The upper arms keep an angle from the vertical. The forearms turn back toward the vertical by the
+// fraction kForearmTurnRatio of this angle, at most by kMaxForearmTurn. Angles in degrees.
 constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
-constexpr double kHandClearance =
-    8;  ///< from the skin of the hips to the middle of a hanging hand [cm], for a height of 175 cm
-// In a turn the head leads, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering: coordination and
-// control of body center of mass, head and body reorientation", 1999). Lead times [s].
+constexpr double kHandClearance = 8;  ///< hip skin to middle of a hanging hand [cm], for a height of 175 cm
+// In a turn the head rotates first, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering:
+// coordination and control of body center of mass, head and body reorientation", 1999). Lead times relative to the hips
+// [s].
 constexpr double kChestLead = 0.12, kHeadLead = 0.28;
 
 Quat axis_rotation(double angle, const Vec3& axis) {
@@ -33,16 +33,16 @@ Quat axis_rotation(double angle, const Vec3& axis) {
 /// Phase and relative size of the walking motion at one key.
 struct Sway {
   double phase = 0;
-  double size = 0;  ///< 0: standing, 1: steps as long as recorded, relative to the leg; at most 1.3
+  double size = 0;  ///< 0: standing; 1: step / leg length as recorded; at most 1.3
 };
 
-/// Builds a walk, key by key, from feet, track and curves.
+/// Computes the keys of a walk from feet, track and curves.
 class Walker {
  public:
   /// Uses the first `keys` keys of the plan.
   Walker(const Physique& body, const StepPlan& plan, double arms_out, int keys)
       : body_(body), plan_(plan), arms_out_(arms_out), keys_(keys) {
-    // Steps need keys beyond both ends.
+    // Feet and balance need keys beyond both ends.
     const int margin = 2 * plan.period();
     forearm_turn_ = turn_of_forearms();
     track_ = balance_body(body, plan, -margin, keys + margin);
@@ -68,12 +68,12 @@ class Walker {
     return {track_.phase[track_.index(key)], relative_speed * std::min(step / recorded_step, 1.3)};
   }
 
-  /// Heading of the body, `ahead` seconds later.
+  /// Heading that the body has `ahead` seconds after the key.
   Quat heading(int key, double ahead = 0) const {
     return axis_rotation(track_.yaw_at(key + static_cast<int>(std::round(ahead / plan_.key_time))), Vec3::UnitZ());
   }
 
-  /// Rotation by yaw to the left, roll with the left side up, and pitch forward [degrees].
+  /// Rotation by yaw, roll and pitch [degrees]. Positive: to the left, left side up, forward.
   static Quat tilt_rotation(double yaw, double roll, double pitch) {
     return axis_rotation(yaw * kDegree, Vec3::UnitZ()) * axis_rotation(-roll * kDegree, Vec3::UnitY()) *
            axis_rotation(pitch * kDegree, Vec3::UnitX());
@@ -100,7 +100,7 @@ class Walker {
     const double roll = size * walking::chest_roll.at(phase);
     const Quat chest = heading(k, kChestLead) *
                        tilt_rotation(size * kShoulderSwing * walking::chest_yaw.at(phase), roll, kChestNod * nod);
-    // The head turns less than the chest and against its pitch, so that the gaze stays steady.
+    // The head yaws less than the chest, and pitches and rolls against it, so that the gaze stays steady.
     const Quat head =
         heading(k, kHeadLead) * tilt_rotation(size * walking::head_yaw.at(phase), kHeadRoll * roll, kHeadNod * nod);
     global[joint_index(Joint::hips)] = hips;
@@ -119,7 +119,8 @@ class Walker {
     return static_cast<Joint>(joint_index(left) + static_cast<std::size_t>(side) * kSideJointCount);
   }
 
-  /// Rotation of the forearms relative to the upper arms: inward, unless wide hips need more clearance [degrees].
+  /// Outward rotation of the forearms relative to the upper arms [degrees]; negative (inward), unless wide hips need
+  /// more clearance.
   double turn_of_forearms() const {
     const auto at = [this](Joint joint) { return body_.joints[joint_index(joint)]; };
     const Vec3 &shoulder = at(Joint::left_upper_arm), &elbow = at(Joint::left_lower_arm), &wrist = at(Joint::left_hand);
@@ -135,7 +136,7 @@ class Walker {
     const double forward = size * (walking::arm_forward.at(phase) - 0.5 * walking::arm_forward.mean);
     const double out = arms_out_ + 0.5 * size * (walking::arm_out.at(phase) - walking::arm_out.mean);
     const double bend = kElbowAtRest + size * kElbowRatio * (walking::elbow.at(phase) - kElbowAtRest);
-    // Rotates the arm from its rest pose, 45° from the vertical.
+    // Rotates an arm from its rest pose, 45° from the vertical, to the angle `from_vertical` [degrees].
     const auto hanging = [&](double from_vertical) {
       return chest * axis_rotation(-forward * kDegree, Vec3::UnitX()) *
              axis_rotation(sign * (45 - from_vertical) * kDegree, Vec3::UnitY());
@@ -150,7 +151,7 @@ class Walker {
     global[joint_index(of_side(Joint::left_hand, side))] = lower;
   }
 
-  /// The rotation that takes one pair of directions to another, the first of them exactly.
+  /// The rotation that takes the direction along0 exactly to along1, and side0 as close as possible to side1.
   static Quat rotation_between_frames(const Vec3& along0, const Vec3& side0, const Vec3& along1, const Vec3& side1) {
     const auto axes = [](const Vec3& along, const Vec3& side) {
       Mat3 m;
@@ -162,7 +163,7 @@ class Walker {
     return Quat(Mat3(axes(along1, side1) * axes(along0, side0).transpose()));
   }
 
-  /// Two-bone inverse kinematics from hip to ankle; the knee axis is halfway between the x axes of pelvis and foot.
+  /// Two-bone inverse kinematics from hip to ankle. The knee axis is halfway between the x axes of pelvis and foot.
   void leg(std::array<Quat, kJointCount>& global, const FootState& foot, int side, const Vec3& hip) const {
     const double sign = side == 0 ? 1 : -1;
     const Vec3 hip0 = body_.joints[joint_index(of_side(Joint::left_upper_leg, side))],
@@ -175,7 +176,7 @@ class Walker {
     const Vec3 along = to_ankle.normalized();
     Vec3 axis = global[joint_index(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
     axis = (axis - axis.dot(along) * along).normalized();
-    // Law of cosines; the knee is in front.
+    // Law of cosines. Of its two solutions, takes that with the knee in front.
     const double cosine = (a * a + d * d - b * b) / (2 * a * d);
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const Vec3 thigh = a * (cosine * along + sine * along.cross(axis).normalized());
@@ -207,7 +208,7 @@ class Walker {
   const Physique& body_;
   const StepPlan& plan_;
   double arms_out_;
-  double forearm_turn_ = 0;  // outward, relative to the upper arms [degrees]
+  double forearm_turn_ = 0;  // outward rotation of the forearms relative to the upper arms [degrees]
   int keys_;
   Track track_;
   HipOffsets hips_;

@@ -18,11 +18,11 @@ struct HarmonicCurve {
 /// funding from NSF EIA-0196217; free for use in research and commercial projects worldwide): 4.4 s of straight walking
 /// at 120 Hz, two strides of the left foot and three of the right. A heel strikes when its ankle is farthest in front
 /// of the hips (Zeni et al., "Two simple methods for determining gait events", 2008); the phase is linear between
-/// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Curves of one
-/// side are fitted to both sides, with the right side half a stride later. Yaw and roll of the trunk and head have odd
-/// harmonics only, pitch of the pelvis has even ones only. A fifth harmonic of 0.6° of the pelvis yaw is left out,
-/// since it shakes cloth on the hips. All angles are in degrees. Root mean square residual: 2.5° of foot pitch, 3.4°
-/// and 2.9° of arm and elbow, below 1.7° of all other angles.
+/// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Each curve of
+/// one side is fitted to the data of both sides, those of the right shifted by half a stride. Yaw and roll of trunk and
+/// head have odd harmonics only, pitch of the pelvis has even ones only. Pelvis yaw omits a fifth harmonic of 0.6°,
+/// which shakes cloth on the hips. All angles are in degrees. Root mean square residuals: foot pitch 2.5°, arm 3.4°,
+/// elbow 2.9°, all other angles below 1.7°.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording: speed [m/s], stride time [s]
@@ -37,8 +37,8 @@ constexpr HarmonicCurve chest_yaw{0, {3.39, 0, -0.80, 0, 0.03, 0}, {-1.86, 0, -0
 constexpr HarmonicCurve chest_roll{0, {-1.54, 0, 0.35, 0, 0.03, 0}, {-0.14, 0, -0.06, 0, -0.09, 0}};
 constexpr HarmonicCurve head_yaw{0, {1.09, 0, 0.14, 0, 0.04, 0}, {-0.84, 0, -0.23, 0, -0.07, 0}};
 
-// Curves of the left side. `foot_pitch`: pitch of the line from the ankle to the ball of the foot; a larger pitch
-// raises the toes.
+// Curves of the left side. `foot_pitch`: pitch of the line from the ankle to the ball of the foot; positive raises the
+// toes.
 constexpr HarmonicCurve foot_pitch{
     -22.00, {12.48, 20.97, -0.12, -0.43, 3.08, 0.53}, {25.19, -5.71, -7.76, 2.40, 0.46, -0.92}};
 // `arm_forward`, `arm_out`: angle of the upper arm from the vertical, forward and outward. `elbow`: its bend.
@@ -49,8 +49,8 @@ constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {
 
 /// Knee flexion: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° at toe-off and 60° in initial
 /// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). A spline drawn by eye connects these
-/// values; the harmonics approximate it within 0.6°. The knee angles of the recording are not used: they are 20° larger
-/// in stance, and never below 0, where they are clipped.
+/// values; the harmonics approximate it within 0.6°. The knee angles of the recording are not usable: they are 20°
+/// larger in stance, and clipped at 0.
 constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};
 
 }  // namespace walking

@@ -10,19 +10,19 @@
 namespace weft::character {
 namespace {
 
-constexpr double kStandingKnee = 6;        ///< [degrees]; a straighter leg looks stiff and could not reach its foothold
-constexpr double kPitchRatio = 0.79;       ///< factor on the recorded foot pitch, which is too large for a mannequin
-constexpr double kReleaseFraction = 0.17;  ///< from the end of the trailing leg's support to a strike [strides]
-constexpr double kTakeoverFraction = 0.13;  ///< from a strike to the start of the leading leg's support [strides]
+constexpr double kStandingKnee = 6;         ///< [degrees]; a straighter leg looks stiff and has no reach left
+constexpr double kPitchRatio = 0.79;        ///< factor on the recorded foot pitch, too large for a mannequin
+constexpr double kReleaseFraction = 0.17;   ///< from the end of support by the trailing leg to the strike [strides]
+constexpr double kTakeoverFraction = 0.13;  ///< from the strike to the start of support by the leading leg [strides]
 constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
-constexpr double kHeelRiseLength = 0.002;   ///< smoothing length of the start of a heel's rise [m]
-constexpr double kSwingKneeShift = 13;      ///< knee bend that is moved from before toe-off into the swing [degrees]
+constexpr double kHeelRiseLength = 0.002;   ///< length over which the start of the rise of a heel is smoothed [m]
+constexpr double kSwingKneeShift = 13;  ///< knee bend added in swing, since kLateKneeRatio reduces it before [degrees]
 constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< angles [degrees] and factor in toe_pitch
 constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toes [degrees]
 constexpr double kInPlaceKneeLift = 32;  ///< additional knee bend in a step in place [degrees]
 constexpr double kToeClearRatio = 0.36;  ///< peak pitch added in swing / (downward pitch rate at toe-off × swing time)
 
-/// A value with its first and second derivative per key.
+/// A value with its first and second derivative by key.
 template <class Value>
 struct Jet {
   Value value, rate, bend;
@@ -34,7 +34,7 @@ auto jet_of(const Function& f, int key) {
   return Jet<Value>{here, Value((after - before) / 2), Value(after - 2 * here + before)};
 }
 
-/// Quintic interpolation between jets a and b, `span` keys apart, at the fraction s of the span.
+/// Quintic Hermite interpolation between the jets a and b, which are `span` keys apart, at the fraction s of the span.
 template <class Value>
 Value quintic(const Jet<Value>& a, const Jet<Value>& b, double span, double s) {
   const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
@@ -55,13 +55,14 @@ double early_bump(double s) {
   return 119.2 * s * s * s * (1 - s) * (1 - s) * (1 - s) * (1 - s);
 }
 
-/// Like bump(), with a later maximum. It ends abruptly, so that a foot that is set down does not skim the floor.
+/// Like bump(), with a later maximum. It falls steeply at the end, so that a foot that is set down does not skim the
+/// floor.
 double late_bump(double s) {
   return 28.9 * s * s * s * (1 - s) * (1 - s);
 }
 
-/// Knee bend in swing that is added to a quintic interpolation between the ends of the swing [degrees]. `s`: fraction
-/// of the swing.
+/// Knee bend in swing that is added to the quintic interpolation between toe-off and strike [degrees]. `s`: fraction of
+/// the swing.
 double knee_in_the_air(double s) {
   constexpr int fine = 1000;  // samples per stride
   const auto curve = [](int at) { return walking::knee.at(static_cast<double>(at) / fine); };
@@ -94,7 +95,7 @@ Feet::Feet(const Physique& body, const StepPlan& plan, const Track& track, const
   find_heights();
 }
 
-/// Size of the step that leaves a foothold; 0 for the last one.
+/// Size of the step that leaves a foothold; 0 for the last foothold.
 double Feet::next_size(int side, std::size_t number) const {
   return number + 1 < plan_.plants[side].size() ? plant(side, number + 1).size : 0;
 }
@@ -104,8 +105,8 @@ Vec3 Feet::hip(int side, int key) const {
   return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) + hips_[track_.index(key)][side];
 }
 
-/// Knee bend of a stance leg [degrees]: a blend of the curve after the strike and the curve before toe-off, each scaled
-/// by the size of its step. Without kLateKneeRatio, the two weights sum to 1 in steady walking.
+/// Knee bend of a stance leg [degrees]: a blend of walking::knee after the strike and before toe-off, each scaled by
+/// the size of its step. Apart from kLateKneeRatio, the two weights sum to 1 in steady walking.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
@@ -117,13 +118,13 @@ double Feet::knee(int side, std::size_t number, int key) const {
   return bend;
 }
 
-/// Distance from hip to ankle [m], by the law of cosines.
+/// Distance from hip to ankle [m] at a knee bend [degrees], by the law of cosines.
 double Feet::leg_extent(double knee) const {
   const double a = body_.thigh, b = body_.shin;
   return std::sqrt(a * a + b * b + 2 * a * b * std::cos(knee * kDegree));
 }
 
-/// Recorded foot pitch after a strike, fading to exactly 0.
+/// Recorded foot pitch after a strike [rad]; it fades to exactly 0.
 double Feet::strike_pitch(const Plant& plant, int key) const {
   const double since = plan_.strides_since_strike(plant, key);
   if (since > 0.12) return 0;
@@ -131,16 +132,17 @@ double Feet::strike_pitch(const Plant& plant, int key) const {
   return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
 }
 
-/// Pitch of the toes relative to the floor. It is 0 until the foot is pitched down by kToesFlat. Then the toes roll
-/// over their tips, by kToePitchRatio of the further pitch; a parabola over kToesRound smooths the transition.
+/// Pitch of the toes relative to the floor [rad]. It is 0 until the foot is pitched down by kToesFlat. From there on
+/// the toes roll over their tips, by kToePitchRatio of the further pitch; a parabola over kToesRound smooths the
+/// transition.
 double Feet::toe_pitch(double pitch) {
   const double beyond = -pitch - kToesFlat * kDegree, round = kToesRound * kDegree;
   if (beyond <= 0) return 0;
   return -kToePitchRatio * (beyond < round ? beyond * beyond / (2 * round) : beyond - round / 2);
 }
 
-/// Position of the ankle of a foot that rolls over the heel (the contact point moves back), or over the toe tips and
-/// bends at the ball.
+/// Position of the ankle of a rolling foot. If `pitch` > 0, the foot rolls over its round heel, so that the contact
+/// point moves back. Else it bends at the ball and rolls over the toe tips.
 Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   const auto turned = [](double forward, double up, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -159,7 +161,7 @@ Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * ahead_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
 }
 
-/// Foot pitch in stance: the heel of the trailing leg rises until the knee has its wanted bend.
+/// Foot pitch in stance [rad]: the heel of the trailing leg rises until the knee has the bend knee().
 double Feet::standing_pitch(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double share = smooth_ramp(kStance - plan_.until_off(here, key), 0.24, 0.36);
@@ -167,7 +169,7 @@ double Feet::standing_pitch(int side, std::size_t number, int key) const {
   const Vec3 from = hip(side, key);
   const double flat = (from - rolling_ankle(here, 0)).norm(), excess = flat - leg_extent(knee(side, number, key));
   const double wanted = flat - 0.5 * (excess + std::sqrt(excess * excess + kHeelRiseLength * kHeelRiseLength));
-  // Bisection: the distance from ankle to hip decreases as the heel rises.
+  // Bisection works because the distance from ankle to hip decreases monotonically as the heel rises.
   double low = -kMaxToePitch * kDegree, high = 0;
   for (int k = 0; k < 50; ++k) {
     const double middle = 0.5 * (low + high);
@@ -189,8 +191,8 @@ FootState Feet::standing(int side, std::size_t number, int key) const {
 FootState Feet::swinging(int side, std::size_t number, int key) const {
   const Plant &from = plant(side, number), &to = plant(side, number + 1);
   const double span = to.strike - from.off, s = (key - from.off) / span;
-  // Bend of the knee [degrees], forward angle of the leg from the vertical [rad], offset of the ankle from the hip to
-  // the left [m], pitch of the foot [rad].
+  // Interpolated values: bend of the knee [degrees], forward angle of the leg from the vertical [rad], offset of the
+  // ankle from the hip to the left [m], pitch of the foot [rad].
   using Values = Eigen::Vector4d;
   const auto values_of = [&](std::size_t which) {
     return [this, side, which](int at) {
@@ -203,7 +205,7 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
     };
   };
   Jet<Values> strike = jet_of(values_of(number + 1), to.strike);
-  // The heel lands abruptly: the knee has no bending speed before the strike.
+  // The velocity and acceleration of the knee do not match those after the strike: the heel lands abruptly.
   strike.rate[0] = strike.bend[0] = 0;
   Jet<Values> off = jet_of(values_of(number), from.off);
   off.bend[3] = 0;
@@ -228,17 +230,17 @@ FootState Feet::at(int side, int key) const {
   return key <= plant(side, number).off ? standing(side, number, key) : swinging(side, number, key);
 }
 
-/// Height of the pelvis above a stance leg whose knee follows its curve.
+/// Height of the pelvis above a stance leg whose knee has the bend knee() [m].
 double Feet::height_above(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const Vec3 leg = hip(side, key) - rolling_ankle(here, strike_pitch(here, key));
   const double d = leg_extent(knee(side, number, key));
-  // `leg` is computed with the middle of the pelvis at height 0.
+  // Here hip() has the middle of the pelvis at height 0, since heights_ is not computed yet.
   return std::sqrt(d * d - leg.head<2>().squaredNorm()) - leg.z();
 }
 
-/// Computes pelvis heights. In the transition between two legs the height is interpolated. At the strike of the leading
-/// leg, it has the value that the knee of this leg requires.
+/// Computes the heights of the pelvis. While neither leg determines the height, it is interpolated, with a correction
+/// such that at the strike the height is that which the knee of the leading leg requires.
 void Feet::find_heights() {
   struct Support {
     int side;

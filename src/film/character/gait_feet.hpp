@@ -8,30 +8,37 @@
 
 namespace weft::character {
 
+/// State of one foot at one key.
 struct FootState {
-  Vec3 ankle = Vec3::Zero();
-  double yaw = 0;    ///< of the foot relative to rest [rad]
-  double pitch = 0;  ///< [rad]; > 0: toes up, 0: flat
-  double toes = 0;   ///< upward bend of the toes relative to the foot [rad]
+  Vec3 ankle = Vec3::Zero();  ///< [m]
+  double yaw = 0;             ///< of the foot, relative to its direction at rest [rad]
+  double pitch = 0;           ///< [rad]; > 0: toes up, 0: flat
+  double toes = 0;            ///< upward bend of the toes relative to the foot [rad]
 };
 
-/// Positions of the hip joints relative to the middle of the pelvis, per key from the first key of the track.
+/// Positions of the left and the right hip joint relative to the middle of the pelvis [m]. One entry per key, from the
+/// first key of the track on.
 using HipOffsets = std::vector<std::array<Vec3, 2>>;
 
 /// Computes the paths of both feet and the height of the pelvis, such that knees bend as in human walking.
 ///
-/// From shortly after its strike until shortly before the strike of the other foot, the stance leg determines the
-/// height of the pelvis: its knee follows the curve walking::knee. In between, the height is interpolated. The trailing
-/// leg raises its heel as far as this curve requires. In swing, knee bend, leg direction and foot pitch are
-/// interpolated from toe-off to the strike, with matching velocities and accelerations, except for the knee at the
-/// strike and the acceleration of the pitch at toe-off. A foot in stance rolls without sliding: over its round heel,
-/// then flat, then bending about the ball, first with flat toes, then over the toe tips.
+/// The stance leg determines the height of the pelvis from shortly after its strike until shortly before the strike of
+/// the other foot: its knee follows the curve walking::knee. Between these intervals, the height is interpolated. The
+/// trailing leg then raises its heel until its knee, too, follows this curve.
+///
+/// In swing, knee bend, leg direction and foot pitch are interpolated from toe-off to the strike. At both ends, their
+/// values, velocities and accelerations match those in stance, except for the velocity and acceleration of the knee at
+/// the strike, and for the acceleration of the pitch at toe-off.
+///
+/// A foot in stance rolls without sliding, in this order: over its round heel; flat; bending about the ball, first with
+/// flat toes, then over the toe tips.
 class Feet {
  public:
-  /// All arguments must outlive the object.
+  /// All arguments must outlive the Feet.
   Feet(const Physique& body, const StepPlan& plan, const Track& track, const HipOffsets& hips);
 
-  /// Valid for keys at least one stride from both ends of the track.
+  /// State of a foot at a key, which must be at least one stride away from both ends of the track. `side`: 0 left, 1
+  /// right.
   FootState at(int side, int key) const;
   double pelvis_height(int key) const { return heights_[track_.index(key)]; }
 

@@ -9,14 +9,14 @@ namespace weft::character {
 namespace {
 
 constexpr double kKeysPerSecond = 60;
-constexpr double kHalfTrack = 0.048;     ///< ankle to midline / height; at the recorded 0.038, thighs would touch
+constexpr double kHalfTrack = 0.048;     ///< ankle to midline / body height; at the recorded 0.038, thighs touch
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
 constexpr double kFirstStepRatio = 0.65,
-                 kLastStepRatio = 0.75;        ///< lengths of the first and last step, in steady steps
-constexpr double kWeightShiftFraction = 0.45;  ///< time to shift the weight before the first step [strides]
+                 kLastStepRatio = 0.75;        ///< lengths of the first and the last step, relative to a steady step
+constexpr double kWeightShiftFraction = 0.45;  ///< time in which the weight shifts before the first step [strides]
 
-/// Rotation of the body at each step of a U-turn [degrees], toward the foot that steps first, the inner one. The inner
-/// foot (entries 0 and 2) rotates by more than the outer one, so that toes do not collide.
+/// Rotation of the body at each step of a U-turn [degrees], toward the foot that steps first (the inner foot). At the
+/// steps of the inner foot (entries 0 and 2) it is larger, so that toes do not collide.
 constexpr std::array<double, 4> kTurnAngles{54, 36, 54, 36};
 constexpr double kTurnStep = 0.11;  ///< forward distance per step of a turn [m], for a height of 1.75 m
 
@@ -27,13 +27,13 @@ Vec2 left_of(double yaw) {
   return {std::cos(yaw), std::sin(yaw)};
 }
 
-/// Size of steady steps relative to the recorded ones.
+/// Size of steady steps, relative to those of the recorded walk.
 double step_size(const Physique& body, const Pace& pace) {
   const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
   return std::clamp(pace.step_length / recorded, 0.5, 1.2);
 }
 
-/// One step: motion of the body relative to the preceding step; the foot is placed beside the body.
+/// One step: motion of the body relative to the preceding step. The foot is placed beside the body.
 struct Step {
   double forward = 0, left = 0;  ///< [m]
   double turn = 0;               ///< [rad]
@@ -87,8 +87,8 @@ class Planner {
   int next_strike_ = 0;
 };
 
-/// Adds the steps of a straight path. `left`: total offset to the left [m], over at most four steps from step `from`.
-/// Returns the side of the next foot.
+/// Adds the steps of a straight path, beginning with the foot `side`. `left`: total offset to the left [m], spread over
+/// at most four steps from step `from` on. Returns the side of the next foot.
 int add_straight_steps(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left,
                        int from) {
   const int aside = std::min(4, steps);
@@ -103,7 +103,7 @@ int add_straight_steps(Planner& planner, const Physique& body, const Pace& pace,
   return side;
 }
 
-/// Turns by 180° on a small arc; returns the side of the next foot.
+/// Adds a turn by 180° on a small arc, beginning with the foot `side`. Returns the side of the next foot.
 int add_turn_steps(Planner& planner, const Physique& body, int side) {
   const double sign = side == 0 ? 1 : -1, forward = kTurnStep * body.height / 1.75;
   for (const double turn : kTurnAngles) {
@@ -113,7 +113,7 @@ int add_turn_steps(Planner& planner, const Physique& body, int side) {
   return side;
 }
 
-/// Displacement ahead and to the left by a turn to the left, in the axes before the turn [m].
+/// Displacement of the body by a turn to the left: ahead and to the left, in the axes before the turn [m].
 Vec2 turn_displacement(const Physique& body) {
   double yaw = 0;
   Vec2 displacement = Vec2::Zero();
@@ -149,7 +149,7 @@ Physique physique_of(const Character& mannequin) {
   body.thigh = (knee - hip).norm();
   body.shin = (ankle - knee).norm();
   body.stance_forward = 1.3 * cm;
-  // The bounds select the trunk: hands at rest are farther out.
+  // The bounds select the trunk; hands at rest are farther out.
   for (const Vec3& p : mannequin.mesh.positions)
     if (p.z() > 75 * cm && p.z() < 98 * cm && p.x() < 35 * cm)
       body.hips_half_width = std::max(body.hips_half_width, p.x());
@@ -176,12 +176,12 @@ std::size_t StepPlan::plant_at(int side, int key) const {
 
 StepPlan plan_walk(const Physique& body, const Walk& walk) {
   Pace pace = pace_of(walk.speed, body.height);
-  // A whole number of steps; the first and the last are shorter.
+  // A whole number of steps covers the distance; the first and the last are shorter.
   constexpr double shorter = 2 - kFirstStepRatio - kLastStepRatio;
   const int fitting = static_cast<int>(std::round(walk.distance / pace.step_length + shorter));
   const int steps = std::max(2, fitting);
   pace.step_length = walk.distance / (steps - shorter);
-  // A distance that is too short for two steps makes them shorter, not quicker.
+  // If the distance is too short for two steps, they get shorter, not quicker.
   if (fitting >= 2) pace.step_time = pace.step_length / walk.speed;
   Planner planner(body, pace, walk.stand);
   int side = 1;

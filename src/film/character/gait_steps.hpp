@@ -1,5 +1,5 @@
-// Positions and times of the footholds of a walk. Times are counted in keyframe intervals ("keys"); a step has an even
-// number of them.
+// Positions and times of the footholds of a walk. Times are counted in keyframe intervals ("keys"). A step is half a
+// stride and has an even number of keys.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace weft::character {
 
 /// Measures of a body that a walk depends on [m]. A foot at rest has its sole flat on z = 0.
 struct Physique {
-  std::array<Vec3, kJointCount> joints;
+  std::array<Vec3, kJointCount> joints;  ///< positions at rest
   double height = 0;
   double foot_yaw = 0;  ///< of the left foot, outward [rad]
   double ankle_height = 0;
@@ -21,8 +21,8 @@ struct Physique {
   double heel_back = 0, heel_radius = 0;     ///< radius of the round heel; its centre is `heel_back` behind the ankle
   double toe_length = 0, toe_radius = 0;     ///< ball to centre of the round toe tips; their radius
   double thigh = 0, shin = 0;
-  double hips_half_width = 0;  ///< of the trunk at the height of the hanging hands
-  double stance_forward = 0;   ///< distance of the hips in front of the ankles when standing
+  double hips_half_width = 0;  ///< half width of the trunk at the height of the hanging hands
+  double stance_forward = 0;   ///< distance of the hips in front of the ankles of a standing body
 
   double leg() const { return thigh + shin; }
 };
@@ -34,30 +34,30 @@ struct Pace {
   double step_time = 0;    ///< half a stride [s]
 };
 
-/// Pace for a speed [m/s] and a body height [m]. Uses one walk ratio (step length / step rate) at all speeds, scaled by
-/// the height: 0.0062 m/(steps/min), that of the recorded walk (gait_curves.hpp). In people it is about 0.0065 and
-/// constant for speeds from 1.03 m/s (Sekiya & Nagasaki, "Reproducibility of the walking patterns of normal young
-/// adults", 1998; bound: Murakami & Otaka, "Estimated lower speed boundary at which the walk ratio constancy is
+/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is the same at all speeds:
+/// 0.0062 m/(steps/min), that of the recorded walk (gait_curves.hpp), scaled by the height. In people it is about
+/// 0.0065 (Sekiya & Nagasaki, "Reproducibility of the walking patterns of normal young adults", 1998) and constant for
+/// speeds from 1.03 m/s on (Murakami & Otaka, "Estimated lower speed boundary at which the walk ratio constancy is
 /// broken", 2017).
 Pace pace_of(double speed, double height);
 
 /// Number of keys in a step; always even.
 int keys_of_step(const Pace& pace);
 
-inline constexpr int kFarKey = 1 << 28;   ///< a key after all others
+inline constexpr int kFarKey = 1 << 28;   ///< a key number after all keys of any walk
 inline constexpr double kStance = 0.60;   ///< stance phase [strides]
 inline constexpr double kSwing = 0.40;    ///< swing phase [strides]
 inline constexpr double kOverlap = 0.10;  ///< double support after a strike [strides]
 
 /// A foothold: a position where a foot stands for some time.
 struct Plant {
-  Vec2 at = Vec2::Zero();  ///< below the ankle while the sole is flat [m]
+  Vec2 at = Vec2::Zero();  ///< point on the floor below the ankle while the sole is flat [m]
   double yaw = 0;          ///< of the body above it, 0 toward -y, + to the left [rad]
   double foot_yaw = 0;     ///< of the foot: `yaw` plus the outward rotation of the toes [rad]
-  int strike = -kFarKey;   ///< key of the heel strike; default: the first foothold, before all keys
-  int off = kFarKey;       ///< key of toe-off; default: the last foothold, after all keys
-  double aside = 0;        ///< outward detour, around the other foot, halfway through the step to this foothold [m]
-  double size = 1;         ///< size of that step, relative to a step of the recorded walk
+  int strike = -kFarKey;   ///< key of the heel strike; default, for the first foothold: before all keys
+  int off = kFarKey;       ///< key of toe-off; default, for the last foothold: after all keys
+  double aside = 0;        ///< outward detour around the other foot, halfway through the step to this foothold [m]
+  double size = 1;         ///< size of the step to this foothold, relative to a step of the recorded walk
 };
 
 /// Footholds of both feet.
@@ -68,18 +68,20 @@ struct StepPlan {
   };
   std::vector<Strike> strikes;  ///< in chronological order
   double key_time = 0;          ///< duration of a keyframe interval [s]
-  int step_keys = 0;
-  double speed = 0;  ///< steady walking speed [m/s]
+  int step_keys = 0;            ///< keys in a step
+  double speed = 0;             ///< steady walking speed [m/s]
 
+  /// Keys in a stride.
   int period() const { return 2 * step_keys; }
-  /// The foothold where this foot stands, or stood last.
+  /// Number of the foothold where this foot stands at this key, or stood last.
   std::size_t plant_at(int side, int key) const;
-  /// Strides since the heel strike, and strides until toe-off; large if the foothold has no strike or no toe-off.
+  /// Strides since the heel strike, and strides until toe-off; large if the foothold has none.
   double strides_since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
   double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
 };
 
-/// Plans a walk from standing to standing, with the optional turn halfway. Adjusts the pace to the distance.
+/// Plans a walk that begins and ends with standing, and turns halfway if `walk.turn_back`. Adjusts the pace such that a
+/// whole number of steps covers the distance.
 StepPlan plan_walk(const Physique& body, const Walk& walk);
 
 }  // namespace weft::character

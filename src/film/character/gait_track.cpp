@@ -11,10 +11,11 @@ namespace {
 constexpr double kGravity = 9.81;          // m/s²
 constexpr double kMassHeight = 0.55;       // height of the centre of mass / body height
 constexpr double kForesightStrides = 0.7;  // footholds farther in past or future have no effect [strides]
-constexpr double kRollBack = -0.01;        // backward offset of the weight at the strike [m]; < 0: forward
-constexpr double kRollForward = 0.175;     // forward offset of the weight at toe-off [m], for a height of 1.75 m
+// Offsets of bearing_point() [m], for a height of 1.75 m: backward at the strike (< 0: forward), forward at toe-off.
+constexpr double kRollBack = -0.01;
+constexpr double kRollForward = 0.175;
 
-/// Centred moving average over `width` keys (even), with half weight at both ends.
+/// Centred moving average over `width` keys (even); both end keys have half weight.
 template <class Value>
 std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   std::vector<Value> means;
@@ -30,8 +31,8 @@ std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   return means;
 }
 
-/// Mean with weights exp(-ω |τ|) in past and future, 0 from `half_width` keys on, so that a standing body does not
-/// move.
+/// Mean of p with weights exp(-ω |τ|) in past and future. The weights fade to 0 at `half_width` keys, so that a
+/// standing body does not move.
 std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_time, int half_width) {
   std::vector<double> weights;  // at a distance of d keys
   double sum = 0;
@@ -51,14 +52,14 @@ std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_t
   return means;
 }
 
-/// Fraction of the weight on a foot, 0 to 1, before normalisation over both feet.
+/// Part of the body weight on a foot, 0 to 1, not yet normalised over both feet.
 double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
   const double on = std::clamp(plan.strides_since_strike(plant, key) / kOverlap, 0.0, 1.0);
   const double off = std::clamp(plan.until_off(plant, key) / kOverlap, 0.0, 1.0);
   return std::min(on, off);
 }
 
-/// Point below the foot that bears the weight; moves forward during stance.
+/// Bearing point: the point below the foot that bears the weight. It moves forward during stance.
 Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
   const double cm = body.height / 175;
   const double back = kRollBack * (1 - smooth_ramp(plan.strides_since_strike(plant, key), 0, 0.3)) * plant.size;

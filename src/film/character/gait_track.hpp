@@ -7,7 +7,7 @@
 
 namespace weft::character {
 
-/// Values per key, from key `first`.
+/// Horizontal position and heading of the body. Each list has one value per key, from key `first` on.
 struct Track {
   int first = 0;
   std::vector<Vec2> place;    ///< middle of the hips [m]
@@ -22,9 +22,9 @@ struct Track {
 
 /// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where x is the middle of the hips, p the
 /// point that bears the weight, and ω = √(g / height of the centre of mass) (Kajita et al., "The 3D linear inverted
-/// pendulum mode", 2001). The only bounded solution is the mean of p over past and future, with weights ω/2 exp(-ω |τ|)
-/// at the time difference τ. Therefore the weight moves to the stance leg before the other foot lifts off, and the body
-/// leans into the first step and slows down before it stops.
+/// pendulum mode", 2001). The only bounded solution x is the mean of p over past and future, with weights ω/2 exp(-ω
+/// |τ|) at the time difference τ. Therefore the weight moves to the stance leg before the other foot lifts off, and the
+/// body leans into the first step and slows down before it stops. Computes the keys `first` to `last`.
 Track balance_body(const Physique& body, const StepPlan& plan, int first, int last);
 
 }  // namespace weft::character

@@ -11,15 +11,15 @@
 namespace weft::character {
 namespace {
 
-/// A body part and its names, in order of preference if a rig has several of them.
+/// A joint and its names in rigs. If a rig has several of these names, the first in this list counts.
 struct BodyPart {
   std::string name;
   std::vector<std::string> aliases;
 };
 
 // Names in the rigs of Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai;
-// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; our
-// mannequin.
+// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; the
+// built-in mannequin.
 const std::vector<BodyPart> kMiddle = {
     {"Hips", {"hips", "pelvis", "hip"}},
     {"Spine",
@@ -40,16 +40,16 @@ const std::vector<BodyPart> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// Whether a word of a node name names neither a side nor a part. Such words occur in Biped, Rigify, Source, VRM,
-/// Character Creator, Meebits, and in Mixamo if a program left out the colon.
+/// Whether a word in the name of a node says nothing about side or joint. Such words occur in Biped, Rigify, Source,
+/// VRM, Character Creator, Meebits, and in Mixamo rigs from which a program has removed the colon.
 bool is_filler_word(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
                                                   "j", "bip", "biped", "valve", "m",    "bone"};
   return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
 }
 
-/// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" contain "upper", "arm" and "l". Digits stay
-/// with the preceding word. A name of a rig before a colon is dropped.
+/// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" contain "upper", "arm" and "l". Digits
+/// belong to the preceding word. The name of a rig before a colon is dropped.
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words;
   bool inside = false;
@@ -99,7 +99,7 @@ std::vector<Index> ancestors_of(std::span<const Node> nodes, Index node) {
   return line;
 }
 
-/// Lowest common ancestor of two nodes, which may be one of them; -1 if there is none.
+/// Lowest common ancestor of two nodes; a node counts as its own ancestor. -1 if there is none.
 Index common_ancestor(std::span<const Node> nodes, Index a, Index b) {
   if (a < 0 || b < 0) return -1;
   const std::vector<Index> line = ancestors_of(nodes, a);
@@ -113,8 +113,9 @@ bool is_above(std::span<const Node> nodes, Index above, Index node) {
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// Determines the trunk from the tree. Hips: the node at which legs and spine branch, or a named node above it. Chest:
-/// the node at which the arms branch. Spine: halfway between, the lower of two candidates.
+/// Determines the joints of the trunk from the tree. Hips: the node at which legs and spine branch, or a node above it
+/// that is named as the hips. Chest: the node at which the arms branch. Spine: the node halfway between them; of two
+/// middle nodes, the lower one.
 void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   const auto at = [&](Joint joint) -> Index& { return joints[joint_index(joint)]; };
   Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
@@ -128,23 +129,24 @@ void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   if (arms >= 0 && arms == at(Joint::neck)) arms = nodes[arms].parent;
   if (!is_above(nodes, at(Joint::hips), arms)) return;
   at(Joint::chest) = arms;
-  std::vector<Index> between;  // from the chest down, without a rotation-only node at the hips
+  std::vector<Index> between;  // from the chest down, without a node at the place of the hips
   for (Index n = nodes[arms].parent; n != at(Joint::hips); n = nodes[n].parent)
     if (!nodes[n].local.translation().isZero() || nodes[n].parent != at(Joint::hips)) between.push_back(n);
   at(Joint::spine) = between.empty() ? -1 : between[between.size() / 2];
 }
 
-/// Whether all limb joints that a moving body needs were found.
+/// Whether upper and lower arms and legs are all found; a moving body needs them.
 bool has_all_limbs(const std::vector<Index>& joints) {
   return std::ranges::all_of(
       std::array{Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg},
       [&](Joint left) { return joints[joint_index(left)] >= 0 && joints[joint_index(on_side(left, true))] >= 0; });
 }
 
-/// An affix counts as the name of a rig if at least this number of nodes share it: the size of a minimal skeleton.
+/// A prefix or suffix counts as the name of a rig if at least this number of nodes share it: the size of a minimal
+/// skeleton.
 constexpr std::size_t kMinRigNodes = 15;
 
-/// Minimum length of a prefix without a separator; shorter ones are shared by chance, or name the sides of a body.
+/// Minimum length of a prefix without a separator. Shorter ones are shared by chance, or name the sides of a body.
 constexpr std::size_t kMinPrefixLength = 3;
 
 /// Prefixes that end with a separator and are shared by at least kMinRigNodes nodes, longest first.
@@ -160,8 +162,8 @@ std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
   return prefixes;
 }
 
-/// Prefixes without a separator ("EthanHips", "EthanLeftArm") that at least kMinRigNodes nodes share and that cannot be
-/// extended without losing nodes; longest first.
+/// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes nodes share,
+/// longest first. Omits a prefix if a longer one is shared by as many nodes.
 std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : names)
@@ -169,7 +171,7 @@ std::vector<std::string> prefixes_without_separator(const std::vector<std::strin
   std::vector<std::string> prefixes;
   for (const auto& [text, count] : counts) {
     if (text.size() < kMinPrefixLength || count < kMinRigNodes) continue;
-    // Entries that begin with this text follow it in order.
+    // The map is sorted, so entries that begin with this text follow it directly.
     bool is_maximal = true;
     for (auto next = counts.upper_bound(text); next != counts.end() && next->first.starts_with(text); ++next)
       is_maximal = is_maximal && next->second < count;
@@ -190,7 +192,8 @@ struct Affixes {
   }
 };
 
-/// Affixes in order: prefixes with a separator, prefixes without one, then suffixes, alone and with each prefix.
+/// Candidates in this order: prefixes with a separator, prefixes without one, then each suffix, alone and with each
+/// prefix.
 std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
   std::vector<std::string> names, reversed;
   for (const Node& node : nodes) {
@@ -276,8 +279,8 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
     for (const BodyPart& part : kSides) joints.push_back(find(side, part));
-    // Resolve ambiguous names: a "shoulder" is the upper arm if no other node is, a "foot" is the toes if there is an
-    // ankle, and a "leg" is the lower leg if no other node is.
+    // Resolves ambiguous names: a "shoulder" is the upper arm if no other node is; a "foot" is the toes if there is an
+    // ankle; a "leg" is the lower leg if no other node is.
     if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
@@ -289,9 +292,9 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
 
 namespace {
 
-/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Removes
-/// numbers only if at least kMinRigNodes names have one and almost all of them differ, unlike the numbers of spines
-/// and fingers.
+/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Does so only
+/// if at least kMinRigNodes names end with a number and almost all of these numbers differ; numbers of spines and
+/// fingers repeat.
 std::vector<Node> without_numbers(std::vector<Node> nodes) {
   const auto number_of = [](const std::string& name) {
     const std::size_t mark = name.rfind('_');
@@ -312,9 +315,9 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
   return nodes;
 }
 
-/// Joints by name. If names do not suffice, tries names without the affixes of a rig ("UnityChan_LeftArm",
-/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). Of several rigs, selects the one with most joints that influence
-/// skin or move.
+/// Finds joints by name. If this fails, removes the affixes of a rig from the names and tries again
+/// ("UnityChan_LeftArm", "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). If a file has several rigs, selects the one
+/// with most joints that influence skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<bool> is_active(character.nodes.size(), false);
   for (const Bone& bone : character.bones) is_active[bone.node] = true;

@@ -11,7 +11,7 @@
 
 namespace weft::character {
 
-/// Joints, parents first. All joints of the left side come first, then their mirror images on the right.
+/// Joints in the order trunk, left side, right side (the mirror image of the left). Parents precede their children.
 enum class Joint : std::uint8_t {
   hips,
   spine,
@@ -48,7 +48,7 @@ constexpr Joint on_side(Joint left, bool right) {
 }
 
 std::string_view name(Joint joint);
-/// The parent joint; for the hips, the hips.
+/// The parent joint; that of the hips is the hips.
 Joint parent(Joint joint);
 
 /// Names in the order of Joint: Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm,
@@ -61,15 +61,16 @@ std::string normalise_word(const std::string& name);
 /// Index of a name in joint_names(), compared by normalise_word(); -1 for other names.
 Index joint_number(const std::string& name);
 
-/// For each of joint_names(), the node with that role, found by the names of common rigs (a table in joints.cpp); -1 if
-/// there is none. Case, separators, a rig's name before a colon and words such as Bip01 or bone are ignored. The places
-/// at which limbs branch off determine hips, spine and chest. Of nodes with the same name, the first counts that
-/// `is_active`, if there is one: meshes can have the names of bones.
+/// For each of joint_names(), the node with that role; -1 if there is none. Nodes are found by the names of common rigs
+/// (a table in joints.cpp), except hips, spine and chest: the nodes at which limbs branch off determine these. Case,
+/// separators, the name of a rig before a colon, and words such as Bip01 or bone are ignored. If several nodes have the
+/// same name, which happens because meshes can have the names of bones, the first active one counts, or else the first.
+/// `is_active`: per node, whether it influences skin or moves; empty: all are active.
 std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vector<bool>& is_active = {});
 
-/// Like find_named_joints(), but also handles rigs whose node names have a prefix or suffix in common, such as the name
-/// of the rig. If upper or lower arms or legs are not found by name, the tree determines the missing joints
-/// (nameless.hpp).
+/// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix, such as the name of the
+/// rig. If not all upper and lower arms and legs are found by name, the structure of the tree determines the missing
+/// joints (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

@@ -7,14 +7,15 @@
 namespace weft::character {
 namespace {
 
-/// |x|^n, without the cost of pow for ellipses.
+/// |x|^n. Avoids the slow std::pow for ellipses.
 double power(double x, double n) {
   return n == 2 ? x * x : std::pow(std::abs(x), n);
 }
 
 /// Slopes at the knots of the cubic spline with zero slope at both ends. For inner knots i, with h and d the lengths
-/// and slopes of the chords and s the slopes at the knots: h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3
-/// (h[i] d[i-1] + h[i-1] d[i]).
+/// and slopes of the chords and s the slopes at the knots:
+/// h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3 (h[i] d[i-1] + h[i-1] d[i]).
+/// Solved by elimination, as the matrix is tridiagonal.
 std::vector<double> spline_slopes(const std::vector<double>& at, const std::vector<double>& value) {
   const std::size_t n = at.size();
   std::vector<double> slope(n, 0.0), upper(n, 0.0);
@@ -50,7 +51,7 @@ Loft::Loft(const LoftFrame& frame, const std::vector<Section>& sections, double 
     const std::vector<double> slope = at_.size() > 1 ? spline_slopes(at_, value) : std::vector<double>{0.0};
     for (std::size_t i = 0; i < slope.size(); ++i) slopes_[i][k] = slope[i];
   }
-  // Splines may overshoot between knots: sample finely and add a margin of 1 %.
+  // Splines may overshoot between knots: samples them finely and adds a margin of 1 %.
   constexpr int samples = 64;
   for (int i = 0; i <= samples; ++i) {
     const Sizes s = sizes_at(at_.front() + (at_.back() - at_.front()) * i / samples);
@@ -107,13 +108,13 @@ double BlendedBody::operator()(const Vec3& p) const {
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
   for (const Part& part : parts_) {
-    // A part changes nothing if its distance exceeds the blend width plus the current value (a carved part: minus the
-    // current value).
+    // A part has no effect if its distance exceeds the blend width plus the present value (for a carved part: minus the
+    // present value).
     const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
     const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
     double value = nothing;
     if (is_near(p)) value = part.value(p);
-    // Blends a paired part with its mirror image first, so that the field is even in x.
+    // Blends a paired part with its mirror image first, so that the field is symmetric in x.
     if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(max_distance, value + part.blend)) {
       const double image = part.value(mirrored);
       value = value == nothing ? image : smooth_min(value, image, part.blend);

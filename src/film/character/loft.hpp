@@ -10,18 +10,18 @@
 
 namespace weft::character {
 
-/// A cross-section of a loft: the superellipse |u / side|^n + |v / depth|^n = 1 about its centre, with n = `exponent`
-/// and the depth `front` for v > 0, else `back`. Lengths in metres.
+/// A cross-section of a loft: the superellipse |u / side|^n + |v / depth|^n = 1 about its centre. n is `exponent`; the
+/// depth is `front` for v > 0, else `back`. Lengths in metres.
 struct Section {
   double at = 0;        ///< position along the axis
   double u = 0, v = 0;  ///< centre
   double side = 0;      ///< half width
-  double front = 0;     ///< depth from the centre
+  double front = 0;     ///< depth, measured from the centre
   double back = 0;
   double exponent = 2;  ///< 2: an ellipse; larger: closer to a rectangle
 };
 
-/// Placement of a loft: its axis and the directions of u and v, right-handed or not.
+/// Placement of a loft: its origin, its axis, and the directions of u and v. These three directions may be left-handed.
 struct LoftFrame {
   Vec3 origin = Vec3::Zero();
   Vec3 along = Vec3::UnitZ(), u = Vec3::UnitX(), v = -Vec3::UnitY();
@@ -31,17 +31,18 @@ struct LoftFrame {
 /// sections, and half ellipsoids close the ends. A single section makes an ellipsoid.
 class Loft {
  public:
-  /// `sections` in ascending order. Caps: lengths > 0 beyond the first and the last section [m].
+  /// `sections`: in ascending order of `at`. `first_cap`, `last_cap`: lengths of the half ellipsoids beyond the first
+  /// and the last section, > 0 [m].
   Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap);
 
-  /// Distance to the surface along the ray from the nearest point of the axis [m]; negative inside.
+  /// Distance from p to the surface [m], along the ray from the nearest point of the axis through p; negative inside.
   double value(const Vec3& p) const;
 
   const Box3& bounds() const { return bounds_; }
 
  private:
   static constexpr std::size_t kSizes = 6;
-  using Sizes = std::array<double, kSizes>;
+  using Sizes = std::array<double, kSizes>;  ///< of a section: u, v, side, front, back, exponent
 
   Sizes sizes_at(double t) const;
 
@@ -56,19 +57,20 @@ class Loft {
 /// Minimum of two fields, smoothed where these differ by less than `width` [m].
 double smooth_min(double a, double b, double width);
 
-/// Union of lofts. Each loft is blended into the preceding ones over its own width [m], so that no crease remains.
+/// Smooth union of lofts. Each loft is blended into the preceding ones over its own width [m], so that no crease
+/// remains.
 class BlendedBody {
  public:
-  /// A field [m] that is negative where a part is kept.
+  /// A scalar field [m], negative where a cut part is kept.
   using Cut = std::function<double(const Vec3&)>;
 
-  /// Adds a part. A paired part exists twice, mirrored at x = 0. A cut part exists only where `cut` keeps it, with an
-  /// edge rounded over the blend width.
+  /// Adds a part. A paired part exists twice, mirrored at x = 0. If `cut` is given, the part exists only where `cut` is
+  /// negative, with an edge that is rounded over the width `blend` [m].
   void add(Loft part, double blend, bool paired, Cut cut = {}) {
     parts_.push_back({std::move(part), blend, paired, false, std::move(cut)});
   }
 
-  /// Subtracts a shape from all preceding parts, with an edge rounded over a width [m].
+  /// Subtracts a shape from all preceding parts, with an edge that is rounded over the width `blend` [m].
   void carve(Loft part, double blend, bool paired) { parts_.push_back({std::move(part), blend, paired, true, {}}); }
 
   double operator()(const Vec3& p) const;

@@ -13,7 +13,7 @@
 namespace weft::character {
 namespace {
 
-constexpr int kRemeshRounds = 8;  ///< further rounds change the smallest angle by less than a degree
+constexpr int kRemeshRounds = 8;  ///< more rounds change the smallest angle of the mesh by less than 1°
 
 constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
 
@@ -21,7 +21,7 @@ constexpr double kMaxHandEdge = 0.02;  ///< maximum edge length on head and hand
 
 constexpr double kSoleRounding = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
 
-/// The body with flat soles: all below the floor is cut off.
+/// The body with flat soles: the part below the floor is cut off.
 mesh::Field standing_on_floor(const BlendedBody& body, double height) {
   const double rim = kSoleRounding * height / 1.75;
   return [&body, rim](const Vec3& p) {
@@ -32,7 +32,7 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
 }
 
 /// Wanted edge length: shorter where the body is thin or strongly curved (arms, hands, shins, feet, neck, head, between
-/// the legs and under the arms). The face and the fingers keep their edge length in coarser bodies, to keep their
+/// the legs and under the arms). In coarser bodies, the face and the fingers keep their edge length, and thereby their
 /// shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
   const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kMaxHandEdge * unit);
@@ -46,7 +46,7 @@ mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJ
     const double neck = smooth_ramp(p.z(), 1.38 * unit, 1.52 * unit);
     const double fold = std::min((p - crotch).norm(), (p - armpit).norm());
     const double folds = 1 - smooth_ramp(fold, 0.02 * unit, 0.11 * unit);
-    // Lengths change gradually toward head and hands.
+    // Edge lengths change gradually toward head and hands.
     const double away = std::max(std::min(1.5 * unit - p.z(), 1.4 * (wrist - p.x())), 0.0);
     const double max_length = 0.5 * fine + 0.6 * away;
     const double coarse = std::min(edge * (1 - std::max({arm, 0.5 * leg, 0.3 * neck, 0.4 * folds})), max_length);
@@ -64,14 +64,14 @@ mesh::MirroredMesh make_skin(const MannequinBuild& build, const std::array<Vec3,
   const mesh::Field field = standing_on_floor(body, build.height);
   const Box3 bounds = body.bounds();
   const Vec3 spare = Vec3::Constant(kSoleRounding * build.height);
-  // Fine enough for fingers and for the gap between the thighs.
+  // Cells are fine enough for fingers and for the gap between the thighs.
   const double cell = std::min(0.7 * build.edge_length, 0.0075 * build.height / 1.75);
   mesh::Mesh half = mesh::march_half_space(field, Box3(bounds.min() - spare, bounds.max() + spare), cell);
   mesh::remesh(half, field, edge_lengths(build, joints), kRemeshRounds);
   return mesh::join_mirror_image(half);
 }
 
-/// The same joint on the other side.
+/// The number of the same joint on the other side; of a joint of the trunk, its own number.
 std::size_t mirrored(std::size_t joint) {
   if (joint < kFirstLeft) return joint;
   return joint < kFirstRight ? joint + kSideJointCount : joint - kSideJointCount;

@@ -6,8 +6,8 @@
 namespace weft::character {
 namespace {
 
-/// A finger: start position along the arm and forward [cm], lengths of its two segments, radius, bend at the root and
-/// at the middle joint [degrees].
+/// A finger: position of its root along the arm and forward [cm], lengths of its two segments and radius [cm], bend at
+/// the root and at the middle joint [degrees].
 struct Finger {
   double at, forward, first, second, radius, root, middle;
 };
@@ -18,9 +18,9 @@ constexpr Finger kRelaxedFingers[] = {
     {66.3, -2.35, 3.8, 3.5, 0.82, 19, 28},
 };
 constexpr double kPlateRoot = 16,
-                 kPlateTip = 41;  ///< bends of the plates between the fingers: the mean bends of the fingers [degrees]
+                 kPlateTip = 41;  ///< bends of the plates between fingers, means of the fingers [degrees]
 constexpr double kClosing =
-    0.040;  ///< convergence of fingers per distance from the middle [1/cm], so that they touch up to the tips
+    0.040;  ///< convergence of a finger per distance from the middle [1/cm]; fingers touch up to the tips
 
 /// Adds a rod with round ends.
 void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across, double length,
@@ -34,7 +34,7 @@ void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& al
   body.add(Loft(frame, scaled(rows, s, false), radius * s.length, end_radius * s.length), blend, true);
 }
 
-/// A flat piece: length, half widths at both ends, half thickness [cm].
+/// A flat piece that fills the gaps between fingers: length, half widths at both ends, half thickness [cm].
 struct Plate {
   double length, width, end_width, thickness;
 };
@@ -69,7 +69,7 @@ void add_hand(BlendedBody& body, const Scale& s, const LoftFrame& arm) {
     return arm.origin + s.length * (at * arm.along + out * arm.u + forward * arm.v);
   };
   const Vec3 inward = -arm.u;
-  // Plates between the fingers keep the grooves shallow: triangles between surfaces that barely touch would fold.
+  // The plates keep the grooves between fingers shallow: triangles between surfaces that barely touch would fold.
   const Vec3 first_plate = bent(arm.along, inward, kPlateRoot), second_plate = bent(arm.along, inward, kPlateTip);
   const Vec3 knuckles = place(66.5, -0.1, 0.1);
   add_plate(body, s, knuckles, first_plate, arm.v, {4.9, 3.1, 2.7, 0.55});

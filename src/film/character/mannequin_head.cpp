@@ -1,4 +1,4 @@
-// Head and hair of the mannequin in centimetres, drawn by eye. The eyes are at half the head's height.
+// Head and hair of the mannequin in centimetres, drawn by eye. The eyes are halfway up the head.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,7 +9,7 @@
 namespace weft::character {
 namespace {
 
-/// Hairline from the forehead past the temple and around the ear to the nape, as (backward, up) [cm].
+/// Hairline from the forehead along the temple and around the ear to the nape, as (backward, up) [cm].
 const Vec2 kHairline[] = {{-13, 171.4},  {-9, 170.6},   {-7.8, 169.6}, {-6.8, 168.2}, {-5.9, 166.6}, {-5.0, 165.2},
                           {-4.0, 164.1}, {-3.0, 163.3}, {-2.1, 162.9}, {-1.3, 163.2}, {-0.7, 164.2}, {0.0, 165.4},
                           {1.0, 166.3},  {2.2, 166.6},  {3.5, 166.2},  {4.5, 165.1},  {5.1, 163.4},  {5.4, 160.8},

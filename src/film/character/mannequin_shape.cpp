@@ -1,8 +1,8 @@
-// Sections of the mannequin in centimetres, for a height of 175 cm; everything scales with the height. Heights of the
-// joints and lengths of the segments are those of Drillis & Contini, "Body Segment Parameters" (1966), as fractions of
-// the height in Winter, "Biomechanics and Motor Control of Human Movement", Fig. 4.1; see mannequin_joints. Girths are
-// near those of women of ANSUR II (Gordon et al., "2012 Anthropometric Survey of U.S. Army Personnel", 2014), about one
-// size more slender, as shop-window mannequins are. All else is drawn by eye.
+// Cross-sections of the mannequin in centimetres, for a height of 175 cm; all sizes scale with the height. Heights of
+// the joints and lengths of the segments are those of Drillis & Contini, "Body Segment Parameters" (1966), as fractions
+// of the height in Winter, "Biomechanics and Motor Control of Human Movement", Fig. 4.1; see mannequin_joints. Girths
+// are close to those of women in ANSUR II (Gordon et al., "2012 Anthropometric Survey of U.S. Army Personnel", 2014),
+// but about one size more slender, as shop-window mannequins are. All else is drawn by eye.
 #include "film/character/mannequin_shape.hpp"
 
 #include <algorithm>
@@ -14,7 +14,8 @@
 namespace weft::character {
 namespace {
 
-/// From hips to collar bones; depths are measured from the plane through ears, shoulders, hips and ankles.
+/// Adds the trunk from hips to collar bones. Depths are measured from the plane through ears, shoulders, hips and
+/// ankles.
 void add_torso(BlendedBody& body, const Scale& s) {
   const auto w = [&](double woman, double man) { return s.blend(woman, man); };
   const Rows rows{
@@ -35,7 +36,7 @@ void add_torso(BlendedBody& body, const Scale& s) {
   body.add(Loft({}, scaled(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
 }
 
-/// An ellipsoid with its centre given to the left, forward and up; its half axes scale with the girth.
+/// An ellipsoid. `middle`: its centre, to the left, forward and up. Its half axes scale with the girth.
 Loft ball(const Scale& s, const Vec3& middle, double side, double depth, double half_height) {
   const LoftFrame frame{s.length * Vec3(middle.x(), -middle.y(), middle.z())};
   const double cap = half_height * s.girth;
@@ -50,7 +51,7 @@ void add_bust_and_seat(BlendedBody& body, const Scale& s) {
   body.add(ball(s, {7.8, -4.8, 88.0}, 7.6, 7.4 * s.blend(1, 0.92), 9.0), 0.06, true);
 }
 
-/// From the neck along the collar bone to the shoulder; u is up, v forward.
+/// Adds the shoulders, from the neck along the collar bones; u is up, v forward.
 void add_shoulders(BlendedBody& body, const Scale& s) {
   const double wide = s.blend(1, 1.2);
   const Rows rows{
@@ -65,7 +66,7 @@ void add_shoulders(BlendedBody& body, const Scale& s) {
 }
 
 void add_neck(BlendedBody& body, const Scale& s) {
-  // The neck leans forward; its base between the shoulders is at 0.
+  // The neck leans forward by `lean` [rad]; its base between the shoulders is at position 0 of the axis.
   LoftFrame neck;
   neck.origin = s.length * Vec3(0, 2.9, 143);
   const double lean = 0.27;
@@ -80,7 +81,7 @@ void add_neck(BlendedBody& body, const Scale& s) {
   body.add(Loft(neck, scaled(rows, s), 3 * s.length, 3 * s.length), 0.05, false);
 }
 
-/// Frame along the arm from the shoulder: u away from the body, v forward.
+/// Frame with the axis along the arm, from the shoulder on; u points away from the body, v forward.
 LoftFrame arm_frame(const Vec3& shoulder, const Vec3& wrist) {
   LoftFrame frame;
   frame.origin = shoulder;
@@ -122,7 +123,7 @@ void add_leg(BlendedBody& body, const Scale& s) {
   body.add(Loft({}, scaled(leg, s), 3.5 * s.length, 4 * s.length), 0.06, true);
 }
 
-/// Along the foot from the heel, toes slightly outward; u to the side, v up.
+/// Adds a foot. The axis runs from the heel to the toes, slightly outward; u is to the side, v up.
 void add_foot(BlendedBody& body, const Scale& s, const Vec3& ankle) {
   LoftFrame frame;
   const double out = 0.1;
@@ -130,7 +131,7 @@ void add_foot(BlendedBody& body, const Scale& s, const Vec3& ankle) {
   frame.along = Vec3(std::sin(out), -std::cos(out), 0);
   frame.u = Vec3(std::cos(out), std::sin(out), 0);
   frame.v = Vec3::UnitZ();
-  // Here the front depth is the height above the centre, and the back depth the height below it.
+  // In these rows, the depth to the front is the height above the centre, that to the back the height below it.
   const Rows rows{{-3.0, 0, 2.6, 2.7, 4.0, 3.4, 2.3},   {0, 0, 2.6, 3.0, 5.4, 3.4, 2.2},
                   {4, 0.1, 2.4, 3.2, 4.9, 3.2, 2.2},    {8, 0.2, 2.1, 3.7, 3.8, 2.9, 2.2},
                   {12, 0.1, 1.7, 4.3, 2.7, 2.5, 2.3},   {15, 0, 1.5, 4.4, 1.9, 2.2, 2.4},

@@ -8,13 +8,14 @@ namespace {
 
 using Weights = std::array<double, kJointCount>;
 
-/// max(x, 0), rounded over the length `round`.
+/// max(x, 0), with a corner that is rounded over the length `round`.
 double positive_part(double x, double round) {
   if (x <= 0) return 0;
   return x < round ? x * x / (2 * round) : x - round / 2;
 }
 
-/// Computes the weights at one point. Lengths in centimetres of a body of 175 cm, as in the tables of the shape.
+/// Computes the skinning weights at one point of the left half. Lengths are in centimetres of a body of 175 cm, as in
+/// the tables of mannequin_shape.cpp. Starts with all weight on the hips and moves it outward, joint by joint.
 class WeightBlender {
  public:
   WeightBlender(const std::array<Vec3, kJointCount>& joints, double height, const Vec3& p)
@@ -55,7 +56,7 @@ class WeightBlender {
     const Vec3 out(-along.z(), 0, along.x());  // away from the body
     const Vec3 from_shoulder = (p_ - at(Joint::left_upper_arm)) / cm_;
     const double s = from_shoulder.dot(along);
-    // The flank is as far along the arm as the arm's own skin, but far to its inside.
+    // Skin of the flank lies as far along the arm as skin of the arm itself, but far inside of it.
     const double depth = s - 1.6 * positive_part(-from_shoulder.dot(out) - 2, 2);
     const double clavicle = smooth_ramp(x_, 2, 13) * smooth_ramp(up_, 126, 141);
     const double arm = smooth_ramp(depth, -7.5, 7.5);
@@ -70,11 +71,11 @@ class WeightBlender {
   }
 
   void legs() {
-    // The fold of the groin rises to the side; behind, the seat follows the thigh over a longer distance.
+    // The fold of the groin rises toward the side; at the back, the seat follows the thigh over a longer distance.
     const double behind = smooth_ramp(-forward_, -4, 6);
     const double fold = 86.5 + 0.3 * (x_ - 9) - 2 * behind, half = 7.5 + 2 * behind;
     const double leg = smooth_ramp(fold - up_, -half, half);
-    // Vertices between the legs have weight on both legs.
+    // Vertices between the legs get weight on both legs.
     const double bridge = 0.6 + 3.5 * smooth_ramp(up_, 71, 80);
     const double left = smooth_ramp(x_, -bridge, bridge);
     const double share = weight_[z(Joint::hips)] * leg;
@@ -89,7 +90,7 @@ class WeightBlender {
     transfer(Joint::left_lower_leg, Joint::left_foot, smooth_ramp(-foot, -12.5, -4.5));
     const Vec3 axis = (at(Joint::left_toes) - at(Joint::left_foot)).cwiseProduct(Vec3(1, 1, 0));
     const double t = (p_ - at(Joint::left_foot)).dot(axis.normalized()) / cm_, ball = axis.norm() / cm_;
-    // The bend is wider above, where the skin is farther from the joint and would fold.
+    // The bend of the toes is spread wider on top, where the skin is farther from the joint and would fold.
     const double half_bend = 1.8 + 0.9 * up_;
     transfer(Joint::left_foot, Joint::left_toes, smooth_ramp(t, ball - half_bend, ball + half_bend));
   }

@@ -11,29 +11,29 @@
 namespace weft::character {
 namespace {
 
-/// Maximum difference between the chains of both sides, in their first bones and as a whole, relative to the longer
+/// Maximum difference between left and right chain, in each of their first bones and as a whole, relative to the longer
 /// chain. Left and right legs of recordings differ by 2 %; the longest chains of two arms may end at different fingers.
 constexpr double kMaxChainDifference = 0.1;
-/// Number of bones that are compared one by one: an auxiliary bone, the upper and the lower bone.
+/// Number of bones of two chains that are compared one by one: an auxiliary bone, the upper and the lower bone.
 constexpr int kComparedBones = 3;
 /// Minimum number of chains that branch at a hand.
 constexpr int kMinFingers = 3;
-/// Of two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than this
-/// fraction of the shorter bone of the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm;
-/// hands up to the fingers are shorter than half a forearm.
+/// If there are two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than
+/// this fraction of the shorter bone at the inner candidate. Some recordings have collarbones of 13 cm and forearms of
+/// 9 cm; a hand up to the fingers is shorter than half a forearm.
 constexpr double kMinOuterElbowRatio = 0.6;
-/// Maximum relative difference of two halves of a bone, and maximum ratio between upper and lower bone of a limb (1.0
-/// to 1.3 in adults).
+/// Maximum relative difference of the two halves of a split bone; maximum ratio between the upper and the lower bone of
+/// a limb (1.0 to 1.3 in adults).
 constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
-/// If a node above the arms is inactive, its bone belongs to the neck if it is shorter than this fraction of a leg. A
-/// longer bone is the head itself.
+/// A node above the arms that neither influences skin nor moves belongs to the neck if its bone is shorter than this
+/// fraction of a leg. A longer bone is the head itself.
 constexpr double kMaxNeckBone = 0.17;
 /// Number of samples of a clip that determine the posture.
 constexpr int kPostureSamples = 32;
-/// Smaller rotations of a clip count as no motion [radians].
+/// A node whose rotations in a clip are smaller does not move [rad].
 constexpr double kMinRotation = 1e-4;
-/// Minimum triple product (trunk, forward, across) that determines the left side, in cubed leg lengths: 0.03 for a body
-/// with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
+/// Minimum magnitude of the triple product (trunk, forward, across) that determines the left side [cubed leg lengths].
+/// It is 0.03 for a body with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
 constexpr double kMinLeftSignal = 1e-4;
 
 /// Nodes of a limb, from the trunk outward (`end`: hand or foot, `tip`: toes); -1 if missing.
@@ -42,10 +42,10 @@ struct Chain {
   double length = 0;  ///< of upper and lower bone [m]
 };
 
-/// Two chains that leave the node `from`, with the first nodes `a` and `b`.
+/// Two chains that leave the node `from`. `a`, `b`: their first nodes.
 struct Pair {
   Index from = -1, a = -1, b = -1;
-  double reach = 0;  ///< length of the shorter one [m]
+  double reach = 0;  ///< length of the shorter chain [m]
 };
 
 bool moves(const Channel& channel) {
@@ -64,7 +64,7 @@ class NamelessFinder {
     for (std::size_t n = 0; n < count_; ++n) {
       const Index parent = character.nodes[n].parent;
       if (parent < 0) continue;
-      // Rotations do not change lengths, so any pose would do.
+      // Any pose gives the same lengths.
       length_[n] = (at_rest[n].translation() - at_rest[parent].translation()).norm();
       children_[parent].push_back(static_cast<Index>(n));
     }
@@ -103,7 +103,7 @@ class NamelessFinder {
  private:
   void set_joint(Joint left, bool right, Index node) { joints_[joint_index(on_side(left, right))] = node; }
 
-  /// Computes the length of the longest chain below each node, and the child along which it runs.
+  /// Computes the length of the longest chain below each node, and the child through which it runs.
   void compute_reach() {
     reach_.assign(count_, 0);
     next_.assign(count_, -1);
@@ -115,6 +115,7 @@ class NamelessFinder {
         }
   }
 
+  /// Determines which nodes are active, and which are joints rather than end markers of bones.
   void find_ends() {
     is_active_.assign(count_, false);
     for (const Influence& influence : character_.influences) is_active_[character_.bones[influence.bone].node] = true;
@@ -131,6 +132,7 @@ class NamelessFinder {
     return node >= 0;
   }
 
+  /// Whether the longest chains through the nodes `a` and `b` can be left and right limb of a body.
   bool are_alike(Index a, Index b) const {
     const double max_difference = kMaxChainDifference * std::max(reach_[a], reach_[b]);
     if (std::abs(reach_[a] - reach_[b]) > max_difference) return false;
@@ -154,7 +156,7 @@ class NamelessFinder {
             pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
         }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
-    // The spine may be as long as a leg. A pair that contains the spine overlaps all others.
+    // The spine may be as long as a leg, but a pair that contains the spine overlaps all other pairs.
     for (std::size_t first = 0; first < pairs.size(); ++first)
       for (std::size_t second = first + 1; second < pairs.size(); ++second)
         if (are_disjoint(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
@@ -173,11 +175,12 @@ class NamelessFinder {
     return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
-  /// Finds upper and lower bone on the longest chain through a node. `outer`: an outer pair of bones replaces the best
-  /// pair so far if its shorter bone is longer than this fraction of that of the best pair.
+  /// Finds the upper and the lower bone on the longest chain through a node. `outer`: a pair of bones farther out
+  /// replaces the best pair so far if its shorter bone is longer than this fraction of the shorter bone of the best
+  /// pair.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
-    std::size_t last = 0, hand = 0;  // last node that may end the lower bone; node where fingers branch
+    std::size_t last = 0, hand = 0;  // last possible end of the lower bone; node where fingers branch
     for (Index n = from; n >= 0; n = next_[n]) {
       nodes.push_back(n);
       if (is_joint_[n]) last = nodes.size() - 1;
@@ -207,8 +210,8 @@ class NamelessFinder {
     return sum;
   }
 
-  /// Merges upper and lower bones that are split into halves, as in rigs with twist bones: four bones in two pairs of
-  /// equal bones, with pairs of similar length.
+  /// Merges the halves of upper and lower bones that are split, as in rigs with twist bones: four consecutive bones
+  /// that form two pairs of equal bones, of similar length in both pairs.
   void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
     for (std::size_t i = 0; i + 4 <= last; ++i) {
       const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };
@@ -224,7 +227,7 @@ class NamelessFinder {
     }
   }
 
-  /// Mean of `figure(positions of all nodes)` over the first clip, or its value at rest if there is no clip.
+  /// Mean of `figure(positions of all nodes)` over the first clip; its value at rest if there is no clip.
   template <class Figure>
   double mean_over_clip(const Figure& figure) const {
     const bool clip = !character_.clips.empty();
@@ -246,7 +249,8 @@ class NamelessFinder {
     return (at[arm[0].upper] + at[arm[1].upper] - at[leg[0].upper] - at[leg[1].upper]) / 2;
   }
 
-  /// Vector to the left: the trunk crossed with the forward direction of feet and of bent knees.
+  /// Vector to the left: the cross product of the trunk and the forward direction, which follows from feet and bent
+  /// knees.
   Vec3 to_the_left(const std::vector<Vec3>& at, const std::array<Chain, 2>& leg,
                    const std::array<Chain, 2>& arm) const {
     Vec3 forward = Vec3::Zero();
@@ -257,7 +261,8 @@ class NamelessFinder {
     return trunk(at, leg, arm).cross(forward);
   }
 
-  /// Finds neck and head: the highest chain below the arms' node, up to where it branches or ends.
+  /// Finds neck and head: the first and the last node of the highest chain that leaves the common node of the arms. The
+  /// chain ends where it branches.
   void find_head(const Pair& arms, const std::array<Chain, 2>& leg, const std::array<Chain, 2>& arm) {
     Index neck = -1;
     double highest = 0;
@@ -292,10 +297,10 @@ class NamelessFinder {
   const Character& character_;
   const std::size_t count_;
   std::vector<Index> joints_;
-  std::vector<double> length_;                // of the bone that ends at a node, at rest [m]
+  std::vector<double> length_;                // length of the bone that ends at a node [m]
   std::vector<std::vector<Index>> children_;  // of each node
-  std::vector<double> reach_;                 // of the longest chain below a node [m]
-  std::vector<Index> next_;                   // child along that chain, or -1
+  std::vector<double> reach_;                 // length of the longest chain below a node [m]
+  std::vector<Index> next_;                   // child of the node on this chain, or -1
   std::vector<bool> is_active_;               // influences skin, or moves in a clip
   std::vector<bool> is_joint_;                // is active, or has nodes below it
 };
@@ -308,7 +313,7 @@ std::vector<Index> find_nameless_joints(const Character& character) {
 
 std::array<Index, 2> find_knuckles(const Character& character, Index hand) {
   const std::vector<Node>& nodes = character.nodes;
-  std::vector<double> reach(nodes.size(), 0);  // of the longest chain from its parent through a node
+  std::vector<double> reach(nodes.size(), 0);  // per node: length of the longest chain from its parent through it
   for (std::size_t n = nodes.size(); n-- > 0;) {
     reach[n] += nodes[n].local.translation().norm();
     if (const Index parent = nodes[n].parent; parent >= 0) reach[parent] = std::max(reach[parent], reach[n]);

@@ -9,7 +9,7 @@
 namespace weft::character {
 namespace {
 
-/// A part of several joints. `sides`: joints that exist left and right, without their side.
+/// A part that consists of several joints. `sides`: joints that exist left and right, without "Left" and "Right".
 struct PartGroup {
   std::string name;
   std::vector<std::string> middle, sides;
@@ -59,7 +59,7 @@ std::vector<Index> joints_of_part(const std::string& name) {
     for (const std::string& joint : group.middle) joints.push_back(joint_number(joint));
     for (const char* side : {"Left", "Right"})
       for (const std::string& joint : group.sides) joints.push_back(joint_number(side + joint));
-    return joints;  // returns before the joint of the same name ("head")
+    return joints;  // "head" is also the name of a joint; the group counts
   }
   if (const Index joint = joint_number(name); joint >= 0) joints.push_back(joint);
   return joints;
@@ -115,9 +115,9 @@ VertexMask vertices_of_material(const Character& character, Index material) {
 }
 
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places) {
-  // Radius of the mean: multiples of the distance from the skin and of the body size (3 cm for a person). With a
-  // smaller radius, neighbouring vertices move apart with different faces of the skin; with a larger one, a shoulder
-  // moves vertices at the neck.
+  // Radius of the mean: a multiple of the distance from the skin plus a multiple of the diagonal of the bounding box (3
+  // cm for a person). With a smaller radius, neighbouring points follow different faces of the skin and move apart;
+  // with a larger one, a shoulder moves points at the neck.
   constexpr double kRadiusPerDistance = 2, kRadiusPerSize = 0.015;
   std::vector<Vec3> skinned(character.mesh.positions.size());
   skin(character, pose, skinned);
@@ -153,7 +153,7 @@ void add_followers(Character& character, const Pose& pose, const VertexMask& par
 }
 
 bool has_fingers(const Character& character, std::span<const Index> nodes) {
-  std::vector<bool> holds(character.nodes.size(), false);  // influences skin, by itself or by a node below it
+  std::vector<bool> holds(character.nodes.size(), false);  // per node: whether it or a node below it influences skin
   for (const Influence& influence : character.influences) holds[character.bones[influence.bone].node] = true;
   for (std::size_t n = holds.size(); n-- > 0;)
     if (holds[n] && character.nodes[n].parent >= 0) holds[character.nodes[n].parent] = true;

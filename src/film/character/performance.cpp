@@ -45,7 +45,7 @@ Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
 void Performance::translate(Pose& pose, const Vec3& by) const {
   if (root_ < 0) return;
   const Vec3 local = parent_of_root(pose).linear().inverse() * by;
-  if (local.allFinite()) pose.nodes[root_].position += local;  // else the clip scales a node above the root to 0
+  if (local.allFinite()) pose.nodes[root_].position += local;  // else a node above the root has scale 0
 }
 
 Pose Performance::at_clip_time(double t) const {

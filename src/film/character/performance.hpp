@@ -1,4 +1,4 @@
-// Plays a clip in a scene: the body stands at first, then speeds up; the clip runs once or in a loop.
+// Plays a clip in a scene: the body first stands still, then starts smoothly; the clip runs once or in a loop.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@ namespace weft::character {
 
 /// Timing of a clip in the scene.
 struct Timing {
-  double dressing = 0;  ///< scene time from which the clip moves; from the duration `dressing` of the scene [s]
-  double blend = 0;     ///< time in which the clip then accelerates to `speed` [s]
+  double dressing = 0;  ///< scene time at which the clip begins to move [s]: the end of the character's `dressing`
+  double blend = 0;     ///< time after `dressing` in which the clip accelerates to `speed` [s]
   double start = 0;     ///< time of the clip at which it begins to play [s]
-  double speed = 1;
+  double speed = 1;     ///< seconds of clip time per second of scene time
 };
 
 /// Time of the clip [s] at time t of the scene [s]; twice continuously differentiable if `blend` is positive.
@@ -21,13 +21,13 @@ double clip_time(const Timing& timing, double t);
 
 struct Playing {
   Timing timing;
-  bool loop = false;     ///< repeats the clip; each repetition, a round, starts where the one before it has ended, but
-                         ///< only horizontally
-  double crossfade = 0;  ///< time at the end of a round in which it is blended into the next one [s of the clip];
-                         ///< longer values are reduced to half of the clip
+  bool loop = false;  ///< repeats the clip; each repetition (round) continues the horizontal travel of the one before
+  double crossfade = 0;  ///< clip time at the end of a round in which the round is blended into the next one [s];
+                         ///< limited to half of the clip
   std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
 };
 
+/// The poses of a body that plays a clip in a scene.
 class Performance {
  public:
   /// The character and the clip must outlive this object. `up`: unit vector.
@@ -42,9 +42,9 @@ class Performance {
 
  private:
   Pose at_clip_time(double t) const;
-  /// Transform of the root's parent in a pose; call it only if there is a root.
+  /// Global transform of the parent of `root_` in a pose. Requires that `root_` exists.
   Affine parent_of_root(const Pose& pose) const;
-  /// Translates a pose of the clip in the world [m].
+  /// Translates a pose by the vector `by` in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
   /// Horizontal displacement of the clip from pose a to pose b, in the world [m].
   Vec3 displacement_between(const Pose& a, const Pose& b) const;
@@ -53,10 +53,10 @@ class Performance {
   const Clip& clip_;
   Playing playing_;
   Vec3 up_;
-  Index root_ = -1;       // uppermost node that the clip translates; -1: none
-  double period_ = 0;     // of a round [s]
-  Vec3 travel_{0, 0, 0};  // per round [m]
-  Vec3 shift_{0, 0, 0};   // moves the clip to where `stance` stands [m]
+  Index root_ = -1;       // traveling_node() of the clip; -1: none
+  double period_ = 0;     // clip time from the start of a round to the start of the next [s]
+  Vec3 travel_{0, 0, 0};  // horizontal displacement of the body in a round [m]
+  Vec3 shift_{0, 0, 0};   // horizontal displacement that moves the start of the clip to the position of `stance` [m]
 };
 
 /// Keys per second of the channel with the most keys; 0 for a clip that does not move.

@@ -9,7 +9,7 @@
 namespace weft::character {
 namespace {
 
-/// Vertices per task; such a task takes some hundred microseconds.
+/// Vertices per parallel task, which takes some hundred microseconds.
 constexpr std::size_t kVerticesPerTask = 2048;
 
 Vec3 between(const Vec3& a, const Vec3& b, double weight) {
@@ -33,11 +33,11 @@ Value value_at(const Curve<Value>& curve, double t) {
   return between(curve.values[k - 1], curve.values[k], weight);
 }
 
-/// The rotation of a map, by Gram-Schmidt on its columns. The stretch contains any mirroring.
+/// The rotation of a linear map, by the Gram-Schmidt process on its columns. Mirroring remains in the stretch.
 Mat3 rotation_of(const Mat3& linear) {
   Vec3 x = linear.col(0), y = linear.col(1);
   const double length = std::max({linear.col(0).norm(), linear.col(1).norm(), linear.col(2).norm()});
-  // A map that is singular along an axis does not determine a rotation.
+  // A map that is singular along an axis has no unique rotation.
   if (!(x.norm() > 1e-9 * length) || !(x.cross(y).norm() > 1e-9 * x.norm() * length)) return Mat3::Identity();
   x.normalize();
   y = (y - y.dot(x) * x).normalized();
@@ -46,7 +46,7 @@ Mat3 rotation_of(const Mat3& linear) {
   return rotation;
 }
 
-/// Keys of different joints that are closer than this count as one [s].
+/// Keys of different joints whose times differ by less than this count as one [s].
 constexpr double kSameTime = 1e-6;
 
 }  // namespace
@@ -123,7 +123,7 @@ Quat shortest_rotation(const Vec3& from, const Vec3& to) {
   const Vec3 a = from.normalized(), b = to.normalized();
   const double cosine = b.dot(a);
   Quat rotation;
-  if (cosine < -1 + 1e-12) {  // the cross product is only rounding errors
+  if (cosine < -1 + 1e-12) {  // the cross product consists of rounding errors only
     rotation.w() = 0;
     rotation.vec() = a.unitOrthogonal();
   } else {

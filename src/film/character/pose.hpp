@@ -1,4 +1,4 @@
-// Poses: the transform of every node of a character at one time.
+// Poses: the transforms of all nodes of a character, and the weights of its morph targets, at one time.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,14 @@
 
 namespace weft::character {
 
-/// Smooth step from 0 at u = 0 to 1 at u = 1, with zero slope at both ends; constant beyond.
+/// Smooth step from 0 at u = 0 to 1 at u = 1, with zero slope at both ends; constant outside [0, 1].
 inline double ease(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return u * u * (3 - 2 * u);
 }
 
-/// Transform from a node to its parent, decomposed to blend poses: x -> position + rotation · stretch · x.
+/// Transform from a node to its parent, x -> position + rotation · stretch · x, decomposed so that poses can be
+/// blended.
 struct Placement {
   Vec3 position{0, 0, 0};           ///< [m]
   Quat rotation{1, 0, 0, 0};        ///< of unit length
@@ -29,34 +30,34 @@ struct Pose {
   std::vector<double> morphs;  ///< weight of each morph target
 };
 
-/// Decomposes an affine map without loss, up to rounding errors; shear is part of the stretch.
+/// Decomposes an affine map, exactly except for rounding errors. Shear is part of the stretch.
 Placement to_placement(const Affine& map);
 
 /// The pose in which all nodes and morph targets have their values at rest.
 Pose rest_pose(const Character& character);
 
-/// The pose of a clip at time t [s] after its start; outside the clip, the pose at the nearer end.
+/// The pose of a clip at time t [s] after its start; for times outside the clip, the pose at its nearer end.
 Pose pose_at(const Character& character, const Clip& clip, double t);
 
 /// Distinct times >= 0 of all rotation and position keys of a clip, ascending; always includes 0.
 std::vector<double> key_times(const Clip& clip);
 
-/// The uppermost node whose position changes in a clip; -1 if none does.
+/// The first node whose position changes in a clip, in the order of nodes (parents first); -1 if there is none.
 Index traveling_node(const Clip& clip);
 
 /// Interpolates from `a` (weight 0) to `b` (weight 1): positions and stretches linearly, rotations along the shortest
 /// arc.
 Pose blend(const Pose& a, const Pose& b, double weight);
 
-/// The rotation by the smallest angle that takes the direction of `from` to that of `to`; if they are opposite, about
-/// an axis perpendicular to them. Replaces Eigen's function, whose singular value decomposition takes long to compile.
+/// The smallest rotation that takes the direction of `from` to that of `to`; if they are opposite, the axis is any
+/// perpendicular one. Replaces the function of Eigen, whose singular value decomposition takes long to compile.
 Quat shortest_rotation(const Vec3& from, const Vec3& to);
 
 /// Transforms from node to world, for every node.
 std::vector<Affine> global_transforms(const Character& character, const Pose& pose);
 
-/// Writes the positions of the vertices in a pose: linear blend skinning over the blended shapes, parallel over
-/// vertices. `out`: one per vertex of the mesh.
+/// Computes the positions of the vertices in a pose: adds the morph targets, then applies linear blend skinning.
+/// Parallel over vertices. `out`: one entry per vertex of the mesh.
 void skin(const Character& character, const Pose& pose, std::span<Vec3> out);
 
 }  // namespace weft::character

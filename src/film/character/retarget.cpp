@@ -18,34 +18,34 @@
 namespace weft::character {
 namespace {
 
-/// Skeletons are the same if joint positions differ by less than this fraction of the sum of all lengths (3 mm in an
-/// adult). They face the same way if the rotations above the hips differ by less than kSameAngle [radians].
+/// Skeletons are the same if their joint positions differ by less than this fraction of the sum of all bone lengths (3
+/// mm in an adult). They face the same way if the rotations above the hips differ by less than kSameAngle [rad].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
-/// Limits of human joints, with a margin for noise and for limbs that are pushed [degrees]. Without the margin, knees
-/// and elbows bend by 150 and overextend by 10, thighs rise by 130, heads turn by 90 and lean by 45, the spine turns by
-/// 45 and bends by 80 (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
+/// Largest joint angles without a warning [degrees], with a margin for noise and for limbs that are pushed. People bend
+/// knees and elbows by 150, overextend them by 10, raise thighs by 130, turn the head by 90, lean it by 45, turn the
+/// spine by 45, bend it by 80 (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
 constexpr double kMaxBend = 165, kMaxBackward = 25, kMaxThigh = 160, kMaxHead = 120, kMaxSpine = 120;
 
-/// Maximum knee bend of a body that stands upright [degrees].
+/// Knee bend above which a rest pose does not count as upright [degrees].
 constexpr double kMaxRestBend = 30;
 
-/// Maximum rotation of toes on the floor from the direction in the motion [radians].
+/// Maximum upward rotation of toes on the floor, relative to their direction in the motion [rad].
 constexpr double kMaxToeTurn = 150 * kDegree;
 
-/// Soles that are farther from the floor in a contact cause a warning [m].
+/// A sole that is farther from the floor during a contact causes a warning [m].
 constexpr double kMaxFloorError = 0.05;
 
-/// Number of rounds that move hands to the parts they touch. One does not suffice, since hand and elbow of the other
-/// arm, which a hand may touch, move too.
+/// Maximum number of rounds that move hands to the parts that they touch. One is not enough: a hand may touch the other
+/// hand or elbow, which move too.
 constexpr int kTouchingRounds = 3;
-/// Hands with a smaller error are not moved [m].
+/// A hand whose displacement is smaller does not move [m].
 constexpr double kMinPull = 1e-4;
 
 template <class Value>
 using PerJoint = std::array<Value, kJointCount>;
 
-/// Rotation about `up` that gives one posture the heading of another; both are given by their vectors to the left.
+/// Rotation about `up` that gives one posture the heading of another. `from`, `to`: their vectors to the left.
 Quat heading_rotation(Vec3 from, Vec3 to, const Vec3& up) {
   from -= from.dot(up) * up;
   to -= to.dot(up) * up;
@@ -53,7 +53,7 @@ Quat heading_rotation(Vec3 from, Vec3 to, const Vec3& up) {
   return Quat(Eigen::AngleAxisd(std::atan2(from.cross(to).dot(up), from.dot(to)), up));
 }
 
-/// Vector to the left of the body, from the lines of hips and shoulders.
+/// Vector to the left of the body, from the lines through hips and shoulders.
 Vec3 to_the_left(const Skeleton& skeleton, const Posture& posture) {
   const Vec3 hips = skeleton.across_hips(posture), shoulders = skeleton.across_shoulders(posture);
   return hips.normalized() + shoulders.normalized();
@@ -68,7 +68,7 @@ double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3&
 }
 
 /// Whether two skeletons have the same joints and, up to one ratio, the same joint positions in the axes of their
-/// parents. Poses do not change these positions.
+/// parent nodes. Poses do not change these positions.
 bool same_skeleton(const Rig& a, const Rig& b) {
   const auto place = [](const Rig& rig, std::size_t joint) -> Vec3 {
     return rig.character.nodes[rig.joints[joint]].local.translation();
@@ -92,7 +92,7 @@ Quat rotation_above_hips(const Rig& rig) {
   return above < 0 ? Quat::Identity() : to_placement(global_transforms(rig.character, rest)[above]).rotation;
 }
 
-/// Pose of the body at a key.
+/// Pose of the body at one key of the clip.
 struct Frame {
   PerJoint<Quat> axes;    ///< of the body parts, in the world; see find_anatomy
   PerJoint<Quat> turned;  ///< rotations of the joints, in the world
@@ -164,7 +164,7 @@ class Retargeter {
     }
   }
 
-  /// Whether a joint that the motion lacks follows others: trunk joints their neighbours, toes the foot.
+  /// Whether a joint that the motion lacks follows other joints: a trunk joint its neighbours, toes the foot.
   bool is_interpolated(Joint joint) const {
     for (const bool right : {false, true})
       if (joint == on_side(Joint::left_toes, right)) return theirs_.has(on_side(Joint::left_foot, right));
@@ -189,10 +189,8 @@ class Retargeter {
     return frame;
   }
 
-  /// Position of the hips of the body at a key.
   Vec3 hips_at(std::size_t k, const Frame& frame) const {
-    // The position follows from the midpoint between the hip joints, whose height above the ankles scales with the
-    // legs.
+    // The height of the hip midpoint above the ankles scales with the legs; the hips follow from this midpoint.
     const Vec3 place = theirs_.middle_of_hips(postures_[k]);
     const Vec3 moved = face_ * (place - theirs_.middle_of_hips(postures_.front()));
     const Vec3 middle = ours_.middle_of_hips(rest_), hips = rest_.places[0];
@@ -202,6 +200,7 @@ class Retargeter {
     return to + frame.turned[0] * (rest_.rotations[0].conjugate() * (hips - middle));
   }
 
+  /// Height to add to the scaled hip midpoint [m], so that feet stand as high as at rest.
   double height_offset(const Vec3& place, const Vec3& middle, const Vec3& moved) const {
     const double travelled = up_.dot(middle) + ratio_ * up_.dot(moved);
     if (same_) {
@@ -216,8 +215,8 @@ class Retargeter {
     return can_stand() ? ankles / 2 + ratio_ * (up_.dot(place) - steps_.ankle_height) - travelled : 0;
   }
 
-  /// Transforms from node to world of all nodes of the body. Appends the transform of each node to its parent to
-  /// `locals`, if given.
+  /// Transforms from node to world of all nodes of the body. If `locals` is given, appends to it the transform of each
+  /// node to its parent.
   std::vector<Affine> globals(const Frame& frame, std::vector<Placement>* locals = nullptr) const {
     std::vector<Affine> globals;
     for (std::size_t n = 0; n < joint_of_.size(); ++n) {
@@ -235,7 +234,7 @@ class Retargeter {
     return globals;
   }
 
-  /// Appends a key to each channel: the rotation of its joint, and for the hips the position.
+  /// Appends a key to each channel: the rotation of its joint and, for the hips, the position.
   void append(double t, const Frame& frame, Clip& result) const {
     std::vector<Placement> locals;
     globals(frame, &locals);
@@ -338,9 +337,9 @@ class Retargeter {
     lower = (turns.lower * lower).normalized();
   }
 
-  /// Keeps hands as near to other parts as in the motion.
+  /// Moves hands as near to other parts of the body as they are in the motion.
   void keep_hands_near(std::vector<Frame>& frames) const {
-    double trunk = 0;  // greatest length of the motion's trunk [m]
+    double trunk = 0;  // largest length of the trunk in the motion [m]
     for (const Posture& posture : postures_) trunk = std::max(trunk, theirs_.trunk(posture).norm());
     const double our_arm = ours_.arm_length(rest_), their_arm = theirs_.arm_length(postures_.front());
     if (our_arm == 0 || their_arm == 0 || trunk == 0) return;
@@ -369,12 +368,12 @@ class Retargeter {
     }
   }
 
-  /// Bends toes up so that they do not reach below the floor.
+  /// Bends toes up so that they stay above the floor.
   void bend_toes(Frame& frame, const Vec3& ball, double floor, bool right) const {
     const std::size_t toes = joint_index(on_side(Joint::left_toes, right));
     if (!moves_[toes] || toe_length_[right] <= 0) return;
     const Vec3 forward = frame.axes[toes] * Vec3::UnitX(), normal = frame.axes[toes] * Vec3::UnitZ();
-    // Toes that are rotated up by an angle reach down by their length · (cos(angle) · down + sin(angle) · back).
+    // Toes that are rotated up by an angle reach below their joint by length · (cos(angle) · down + sin(angle) · back).
     const double down = -up_.dot(forward), back = -up_.dot(normal);
     const double limit = std::max(0.0, (up_.dot(ball) - floor) / toe_length_[right]), size = std::hypot(down, back);
     if (down <= limit || size <= limit) return;
@@ -383,7 +382,7 @@ class Retargeter {
     frame.turned[toes] = (turn * frame.turned[toes]).normalized();
   }
 
-  /// Length of the skin of the toes beyond their joint at rest [m].
+  /// Distance from the toe joint to the tip of the toes at rest [m].
   double toe_length(bool right) const {
     const std::size_t toes = joint_index(on_side(Joint::left_toes, right));
     if (body_.joints[toes] < 0) return 0;
@@ -397,7 +396,7 @@ class Retargeter {
     return length;
   }
 
-  /// Warns if a joint exceeds the human limit `limit` [degrees]. `angle(posture)`: angle of the joint [rad].
+  /// Warns if a joint angle exceeds `limit` [degrees]. `angle(posture)`: the angle [rad].
   template <class Angle>
   void check_joint(const std::string& what, double limit, const Angle& angle,
                    std::vector<std::string>& warnings) const {
@@ -446,7 +445,7 @@ class Retargeter {
     }
   }
 
-  /// Warns if the rest pose does not stand upright: all rotations of the body refer to this pose.
+  /// Warns if the rest pose of the body does not stand upright, since all its rotations are relative to this pose.
   void check_rest(std::vector<std::string>& warnings) const {
     double largest = 0;
     for (const bool right : {false, true}) {
@@ -472,12 +471,12 @@ class Retargeter {
   const std::vector<double> times_;
   std::vector<Posture> postures_;  // of the motion, at `times_`
   double ratio_ = 1;               // ratio of lengths, body / motion
-  bool same_ = false;              // whether the skeletons are the same
+  bool same_ = false;              // whether both skeletons are the same
   Footsteps steps_;
   std::array<double, 2> toe_length_{};    // [m]
   Quat face_ = Quat::Identity();          // rotates the motion to the heading of the body
   PerJoint<Quat> their_axes_, our_axes_;  // axes of body parts in the axes of the joints
-  PerJoint<bool> moves_{};                // whether a joint of the body moves
+  PerJoint<bool> moves_{};                // per joint, whether it moves
   std::vector<int> joint_of_;             // joint of each node of the body, or -1
 };
 

@@ -12,20 +12,21 @@
 namespace weft::character {
 namespace {
 
-/// Skin whose limb weights differ by more than this belongs to another limb (1: no common limb, 0: equal weights). A
-/// smaller difference occurs near a joint, where weights change gradually and skin may fold onto itself.
+/// Two places of the skin belong to different limbs if the difference() of their limb weights exceeds this. A smaller
+/// difference occurs near a joint, where weights change gradually and skin may fold onto itself.
 constexpr float kMinWeightDifference = 0.15F;
 
-/// Lines from bone to skin per task; such a task takes some hundred microseconds.
+/// Lines from bone to skin per parallel task, which takes some hundred microseconds.
 constexpr std::size_t kLinesPerTask = 512;
 
 /// Number of grid cells along the longest side of the body: 3 cm for a person.
 constexpr double kCellsPerSide = 60;
 
-/// Maximum number of rounds. One suffices if both sides face each other; else each round halves the missing clearance.
+/// Maximum number of rounds of make(). If both sides face each other, one is enough; otherwise each round halves the
+/// missing clearance.
 constexpr int kMaxRounds = 8;
 
-/// Tolerated missing clearance at the end, as a fraction of the clearance.
+/// Missing clearance that is tolerated at the end, as a fraction of the clearance.
 constexpr double kMissingTolerance = 0.02;
 
 /// Smoothing passes per round: dents extend over at least this number of edges.
@@ -34,29 +35,29 @@ constexpr int kSmoothingPasses = 3;
 /// Clearance between body and ground, as a fraction of the clearance between limbs.
 constexpr double kGroundClearanceRatio = 0.5;
 
-/// Each of two limbs moves back by at most this fraction of the missing clearance.
+/// Each of two limbs moves back by at most this fraction of the clearance that is missing between them.
 constexpr double kMaxGivenFraction = 0.5;
 
-/// Minimum fraction of the distance from bone to skin that remains of a limb; a thinner limb looks deflated.
+/// Minimum remaining fraction of the distance from bone to skin; a thinner limb looks deflated.
 constexpr double kMinRemainingFraction = 0.5;
 
-/// Skin without cloth nearby moves by at most this distance along with its neighbours [m]; 5 mm are visible.
+/// Skin without cloth nearby follows its neighbours by at most this distance [m]; 5 mm are visible.
 constexpr double kMaxMoveWithoutCloth = 0.004;
 
-/// Skin near cloth moves by at most this distance, or twice the clearance [m]. Limbs that overlap more deeply still
-/// overlap afterwards, since larger moves would be visible.
+/// Skin near cloth moves by at most this distance [m] or, if it is larger, by twice the clearance. Limbs that overlap
+/// more deeply still overlap afterwards; larger moves would be visible.
 constexpr double kMaxMoveNearCloth = 0.03;
 
-/// Skin without cloth of its own counts as near the cloth of the other limb up to this depth in that limb [m]: fully in
-/// the first half, then less and less.
+/// The nearness of cloth of one limb also applies to skin of another limb that enters it: fully up to half of this
+/// depth [m], then falling to 0 at this depth.
 constexpr double kMaxNearClothDepth = 0.05;
 
-/// Over edges up to this length [m] skin fully follows its neighbours, over longer ones less, so that dents in coarse
-/// bodies are as narrow as in fine ones.
+/// Skin follows its neighbours fully over edges up to this length [m], and less over longer ones, so that dents in
+/// coarse bodies are as narrow as in fine ones.
 constexpr double kFullFollowEdge = 0.02;
 
-/// The limb of each joint, in the order of joints. The trunk includes neck, head and shoulders; hands belong to lower
-/// arms, feet to lower legs. Hands and feet are too thin to move back separately.
+/// The number of the limb of each joint (see kLimbNames), in the order of Joint. The trunk includes neck, head and
+/// shoulders; hands belong to lower arms, feet to lower legs, as hands and feet are too thin to move back separately.
 constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2, 3, 4,
                                                            4, 4, 0, 5, 6, 6, 7, 8, 8, 8};
 constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left upper arm",  "left lower arm",
@@ -86,18 +87,18 @@ std::vector<Room::LimbWeights> limb_weights_of(const Rig& rig) {
   return weights;
 }
 
-/// Half of the sum of all differences: 0 for equal weights, 1 for disjoint ones.
+/// Half of the sum of all differences: 0 for equal weights, 1 for weights without a common limb.
 float difference(const Room::LimbWeights& a, const Room::LimbWeights& b) {
   float sum = 0;
   for (std::size_t l = 0; l < a.size(); ++l) sum += std::abs(a[l] - b[l]);
   return 0.5F * sum;
 }
 
-/// The body with a new bound mesh, whose vertices have the positions `places` in the rest pose.
+/// The body with a new mesh in the bind pose, whose vertices get the positions `places` in the rest pose.
 Character rebind_to_bones(const Character& body, const std::vector<Vec3>& places) {
   Character rebound{body.nodes, body.bones, {}, body.first_influence, body.influences, {}, {}, {}, {}, {}};
   const Pose rest = rest_pose(rebound);
-  // Images of the origin and of the axis ends under the map of each vertex.
+  // Images of the origin and of the unit vectors under the skinning map of each vertex.
   std::array<std::vector<Vec3>, 4> images;
   for (int k = 0; k < 4; ++k) {
     rebound.mesh.positions.assign(places.size(), k == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(k - 1)));
@@ -142,8 +143,9 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
-// Computes how much of the line from bone to skin, extended by the clearance, lies in another limb, beyond what lies
-// there at rest. `skin` defines the lines, `x` is the current position of the skin.
+// Computes per vertex the length of the part of its line that lies in another limb, minus this length at rest. The line
+// goes from the bone to the skin and is extended by the clearance. `from`: points on the bones. `skin`: unmoved skin,
+// which defines the lines. `x`: present positions of the skin.
 void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                         std::vector<Missing>& missing) const {
   Box3 box;
@@ -154,7 +156,7 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
     for (std::size_t v = begin; v < end; ++v) {
       missing[v] = {};
       const double length = (skin[v] - from[v]).norm();
-      // If more than the clearance is missing at rest, limbs cross there on purpose, as plates of armour do.
+      // If more than the clearance is missing at rest, limbs cross there on purpose, as the plates of armour do.
       if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
       const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
       const mesh::Entry entry = grid.find_first_crossing(from[v], to, [&](Index t) {
@@ -170,8 +172,8 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
   });
 }
 
-// Moves each vertex back at least by the mean fraction of its neighbours, which counts less over edges longer than
-// kFullFollowEdge.
+// Moves each vertex back at least by the mean fraction of its neighbours. A neighbour counts less over an edge longer
+// than kFullFollowEdge. `lengths`: of the edges. `remaining`: per vertex, the fraction of its line that remains.
 void Room::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
   std::vector<double> sums(remaining.size()), counts(remaining.size());
   for (int round = 0; round < kSmoothingPasses; ++round) {
@@ -188,8 +190,8 @@ void Room::smooth(std::span<const double> lengths, std::vector<double>& remainin
   }
 }
 
-// Lifts skin out of the ground. Limbs whose bones are in the ground stay there: the scene intends this, or moving skin
-// does not help.
+// Lifts skin out of the ground. Does not lift limbs whose bones are in the ground: the scene intends this, or lifting
+// the skin does not help.
 void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
@@ -200,8 +202,8 @@ void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const
     }
 }
 
-// `other`: per vertex, the triangle of another limb from which it moved back, into `unlifted`; -1: none, but it may
-// have followed its neighbours.
+// Finds the vertex that moved farthest: first back from `before` to `unlifted`, then up to `x`. `other`: per vertex,
+// the triangle of another limb that made it move back; -1: none, but it may have followed its neighbours.
 Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
                      std::vector<Index> other) const {
   Moved moved;
@@ -214,7 +216,7 @@ Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifte
   moved.limb = name_of(limb_weights_[v]);
   moved.away_from = "ground";
   if ((x[v] - unlifted[v]).norm() > (unlifted[v] - before[v]).norm()) return moved;
-  // Skin that only followed its neighbours gets the limb of the nearest skin that moved away from a limb by itself.
+  // If the vertex only followed its neighbours, `other` spreads along edges from the nearest skin that has one.
   std::vector<Index> known;
   while (other[v] < 0 && known != other) {
     known = other;
@@ -234,7 +236,7 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
   std::vector<double> remaining(touched_.size(), 1);
-  // Largest move of each vertex for its own missing clearance [m]; smoothing may move it farther, with its neighbours.
+  // Largest move of each vertex that its own missing clearance asks for [m]. Smoothing may move it farther.
   std::vector<double> max_given(touched_.size(), 0);
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);
@@ -253,7 +255,7 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
       remaining[v] = std::min(before, std::max(lower_limit, before - kMaxGivenFraction * missing[v].distance / length));
       changed |= (before - remaining[v]) * length > kMissingTolerance * room_;
     }
-    // Smooth in every round: a vertex that moves back alone leaves its neighbours inside the other limb.
+    // Smooths in every round: a vertex that moves back alone leaves its neighbours inside the other limb.
     smooth(lengths, remaining);
     for (std::size_t v = 0; v < remaining.size(); ++v) {
       if (!(remaining[v] < 1)) continue;

@@ -1,5 +1,5 @@
-// Clearance for cloth between the limbs of a body: if two limbs near cloth come too close or overlap, the skin of both
-// moves back.
+// Makes clearance for cloth between the limbs of a body: if two limbs near cloth come too close or overlap, the skin of
+// both moves back toward its bones.
 #pragma once
 
 #include <array>
@@ -14,25 +14,25 @@
 
 namespace weft::character {
 
-/// A plane that the body lies on.
+/// A plane above which skin is kept, in the coordinates of the body.
 struct Ground {
   Vec3 up{0, 0, 1};   ///< of unit length
   double height = 0;  ///< up · x of the plane [m]
 };
 
-/// The vertex that Room::make() moved farthest.
+/// The vertex that Room::make() has moved farthest.
 struct Moved {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
   std::string limb;       ///< limb that the vertex belongs to
-  std::string away_from;  ///< the other limb, or "ground" if the vertex was lifted farther than it moved back
+  std::string away_from;  ///< the other limb, or "ground" if lifting moved the vertex farther than moving back
 };
 
-/// Moves skin along the lines from its bones. Limbs are upper and lower arms, upper and lower legs, and the trunk with
-/// the head. The skin of two limbs moves only if cloth is near one of them, and each by at most half of the missing
-/// clearance (farther only to follow its neighbours). Skin that is closer at rest, as at the joint of two limbs, keeps
-/// its clearance at rest; limbs that cross at rest are not changed. Skin near cloth is lifted out of the ground, except
-/// that of feet.
+/// Moves skin back along the lines from its bones to the skin, to make clearance for cloth. Limbs are upper and lower
+/// arms, upper and lower legs, and the trunk with the head. If cloth is near at least one of two limbs, the skin of
+/// each moves back by at most half of the missing clearance; it moves farther only to follow its neighbours. If skin is
+/// closer to another limb at rest, as at their common joint, it keeps its clearance at rest. Limbs that cross at rest
+/// do not change. Skin near cloth is also lifted out of the ground, except that of feet.
 class Room {
  public:
   /// Weight of each limb at a vertex.
@@ -47,10 +47,10 @@ class Room {
   Moved make(const Pose& pose, std::span<Vec3> x) const;
 
  private:
-  /// Missing clearance of one vertex in one round.
+  /// Missing clearance of one vertex in one round of make().
   struct Missing {
     double distance = 0;  // missing clearance [m]
-    float near = 0;       // proximity to cloth: own or, if larger, that of the other limb, fading with depth
+    float near = 0;       // nearness of cloth, 0 to 1: the larger one of its own and that of the other limb
     Index triangle = -1;  // of the other limb; -1: none
   };
 
@@ -63,13 +63,13 @@ class Room {
 
   double room_;
   std::vector<Ground> grounds_;
-  std::vector<mesh::Triangle> triangles_;  // those that cloth can touch
+  std::vector<mesh::Triangle> triangles_;  // of the skin that cloth can touch
   std::vector<LimbWeights> limb_weights_, limb_weights_of_triangle_;
-  std::vector<float> near_, near_of_triangle_;
+  std::vector<float> near_, near_of_triangle_;  // nearness of cloth, 0 to 1
   VertexMask touched_, foot_;
-  std::vector<double> missing_at_rest_;  // [m]
-  std::vector<std::array<Index, 2>> edges_;
-  Character bones_;  // its bound mesh contains the points on the bones at which the lines of the vertices start
+  std::vector<double> missing_at_rest_;      // [m]
+  std::vector<std::array<Index, 2>> edges_;  // of `triangles_`
+  Character bones_;                          // its mesh has, per vertex, the point on the bones where the line starts
 };
 
 }  // namespace weft::character

@@ -7,15 +7,16 @@
 namespace weft::character {
 namespace {
 
-// Distances of the wrist, in arm lengths (0.55 m in an adult). Up to these distances the hand touches fully; from there
-// to twice the distance, contact fades. Adults: 2.5 to 6 cm from the midpoint of the wrists if the hands are joined, 8
-// to 13 cm from a held elbow, 17 to 22 cm from the midpoint between the hip joints if the hand is on a hip.
+// Distances of the wrist from its targets [arm lengths of 0.55 m in an adult]. Up to these distances contact applies
+// fully; up to twice the distances it fades. Measured on adults: 2.5 to 6 cm from the midpoint of the wrists if the
+// hands are joined, 8 to 13 cm from an elbow that the hand holds, 17 to 22 cm from the midpoint of the hip joints if
+// the hand is on a hip.
 constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.4;
-// Arms bent by less than the first angle hang, by more than the second reach for something [radians].
+// An arm that is bent by less than the first angle hangs; by more than the second, it reaches for something [rad].
 constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
 
-// A hand rests on the hips if it moves less than this distance relative to them, in arm lengths, within kRestTime [s]
-// to either side: 5 cm in 0.2 s. Hands in walking and running move 20 to 60 cm.
+// A hand rests on the hips if it moves relative to them by less than kMaxRestMotion [arm lengths] within kRestTime [s]
+// before and after: 5 cm in 0.2 s. In walking and running, hands move by 20 to 60 cm in this time.
 constexpr double kMaxRestMotion = 0.09, kRestTime = 0.1;
 
 class Puller {
@@ -43,8 +44,9 @@ class Puller {
   }
 
  private:
-  /// Adds the displacement that restores the hand's place relative to the point between joints `a` and `b` at
-  /// `fraction`.
+  /// Adds the displacement that restores the position of the hand relative to a target: the point at `fraction` of the
+  /// way from joint `a` to joint `b`. `distance`: see kHandsDistance. `ratio`: scales the offset from the target to the
+  /// body.
   void add_target(std::size_t a, std::size_t b, double fraction, double distance, double ratio, double max_weight = 1) {
     if (!both_[a] || !both_[b] || !(distance > 0)) return;
     const auto place = [&](const Places& of) -> Vec3 { return (1 - fraction) * of[a] + fraction * of[b]; };
@@ -75,7 +77,7 @@ std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> p
                                                       double arm) {
   std::vector<std::array<double, 2>> rests(postures.size());
   for (const bool right : {false, true}) {
-    // Offsets are in the axes of the hips, since resting hands move with the hips.
+    // Offsets are in the axes of the hips, with which resting hands move.
     std::vector<Vec3> offsets;
     for (const Posture& p : postures)
       offsets.push_back(p.rotations[0].conjugate() *

@@ -10,13 +10,14 @@
 namespace weft::character {
 namespace {
 
-/// Smoothing time of paths to either side [s]; people take a step in 0.4 to 0.7 s.
+/// Paths are smoothed over this time to either side [s]; people take a step in 0.4 to 0.7 s.
 constexpr double kPathWindow = 0.6;
-/// Smoothing time to either side of the velocities that feet imply [s]: these jump where contacts begin and end.
+/// The velocities of the body that feet imply are smoothed over this time to either side [s], since they jump where
+/// contacts begin and end.
 constexpr double kFootWindow = 0.05;
-/// Balls of feet up to this height above the lowest one carry the body [leg lengths].
+/// Maximum height of the ball of a foot in stance above the lowest position of any ball [leg lengths].
 constexpr double kMaxFootHeight = 0.05;
-/// Minimum mean speed of feet in stance, relative to the body, in a walk [leg lengths/s].
+/// Minimum mean speed of feet in stance, relative to the body, that counts as a walk [leg lengths/s].
 constexpr double kMinFeetSpeed = 0.1;
 
 /// A clip, sampled at its keys.
@@ -54,7 +55,7 @@ class Path {
     return result;
   }
 
-  /// Displacements that remove the travel.
+  /// Displacements per key that remove the travel [m].
   std::vector<Vec3> displacements_in_place() const {
     std::vector<Vec3> by;
     const double window = std::min(kPathWindow, times_.back() / 2);
@@ -62,8 +63,8 @@ class Path {
     return by;
   }
 
-  /// Displacements along the path that keeps feet in place, at the mean speed `speed` [m/s]. Writes the speed that the
-  /// feet imply to `feet` [m/s].
+  /// Displacements per key along the path that keeps feet in place, at the mean speed `speed` [m/s]. Writes the speed
+  /// that the feet imply to `feet` [m/s].
   std::vector<Vec3> displacements_at_speed(double speed, double& feet) const {
     std::vector<Vec3> velocities = implied_velocities();
     Vec3 mean = Vec3::Zero();
@@ -96,8 +97,8 @@ class Path {
     return axes;
   }
 
-  /// Mean over the times within `window` of t. Beyond its ends, the path is continued by point reflection at the end
-  /// points.
+  /// Mean of a path over the times within `window` of t. Beyond its ends, the path is continued by point reflection at
+  /// the end points.
   Vec3 smoothed(const std::vector<Vec3>& path, double t, double window) const {
     const auto at = [&](double s) -> Vec3 {
       const auto next = std::ranges::upper_bound(times_, s);
@@ -117,7 +118,7 @@ class Path {
     return sum / (2 * kSamples + 1);
   }
 
-  /// Velocities of the body that the feet in stance imply, in the axes of heading().
+  /// Velocities of the body per key that the feet in stance imply, in the axes of heading() [m/s].
   std::vector<Vec3> implied_velocities() const {
     std::array<Joint, 2> balls{};
     double floor = std::numeric_limits<double>::infinity();
@@ -165,7 +166,7 @@ class Path {
   const Vec3 up_;
   const std::vector<double> times_;
   std::vector<Posture> postures_;
-  std::vector<Vec3> middles_;  // horizontal positions of the hips, or else of the travelling node
+  std::vector<Vec3> middles_;  // horizontal positions of the hips, else of traveling_node()
 };
 
 }  // namespace

@@ -6,18 +6,18 @@
 
 namespace weft::character {
 
-/// Removes the travel of a clip: subtracts the horizontal path of the hips, smoothed over about two steps. Sway about
-/// the path remains. The clip begins and ends in the same place.
+/// Removes the travel of a clip: subtracts the horizontal path of the hips, smoothed over about two steps. The clip
+/// then begins and ends in the same place; sway about the path remains.
 Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up);
 
 struct TravelResult {
   Clip clip;
-  double feet = 0;  ///< mean speed of feet in stance relative to a body in place [m/s]; 0: too slow for a walk
+  double feet = 0;  ///< mean speed of feet in stance, relative to a body in place [m/s]; 0: too slow for a walk
 };
 
-/// Moves a clip at the mean speed `speed` [m per second of clip time], along the path that its feet in stance imply.
-/// Feet do not slide if `speed` equals TravelResult::feet. If this is 0, the clip moves straight ahead. Travel of the
-/// clip is removed first. `up`: unit vector.
+/// Replaces the travel of a clip by travel with the mean speed `speed` [m per second of clip time], along the path that
+/// its feet in stance imply. Feet do not slide if `speed` equals TravelResult::feet. If TravelResult::feet is 0, the
+/// clip moves straight ahead. `up`: unit vector.
 TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up);
 
 }  // namespace weft::character

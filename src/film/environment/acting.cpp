@@ -31,28 +31,28 @@
 namespace weft::environment {
 namespace {
 
-/// Bounds of the rate of key frames, if it follows from the rate of a clip [1/s].
+/// Bounds of the rate of key frames, if the rate follows from that of a clip [1/s].
 constexpr double kMinKeyRate = 10, kMaxKeyRate = 120;
 
-/// Smallest rate of key frames of a body that grows or lowers its arms, if the scene does not set the rate [1/s].
+/// Minimum rate of key frames of a body that grows or lowers its arms, if the scene sets no rate [1/s].
 constexpr double kDressingRate = 25;
 
-/// Largest size of the key frames of one character [bytes]; a larger one suggests a mistyped rate.
+/// Maximum size of the key frames of one character [bytes]. A larger one suggests a mistyped rate.
 constexpr std::size_t kMaxKeyFrameBytes = std::size_t{8} << 30;
 
-/// Largest jump of a vertex from the end to the start of a clip that is not visible [m].
+/// Maximum jump of a vertex from the end to the start of a clip that is not visible [m].
 constexpr double kMaxInvisibleGap = 1e-3;
 
-/// Largest relative difference of the speeds of feet and body that is not reported: 5 cm of sliding in a step of 0.7 m.
+/// Maximum relative difference of feet and body speed without a warning: feet slide 5 cm in a step of 0.7 m.
 constexpr double kMaxFootSlide = 0.07;
 
-/// Smallest vertical component of the trunk's direction, averaged over a motion, of a body that stands.
+/// Minimum vertical component of the unit vector along the trunk, averaged over a motion, of a body that stands.
 constexpr double kMinUprightness = 0.7;
 
-/// Soles at rest within this distance of the height of the file's origin count as level with it [m].
+/// Maximum distance of the soles at rest from the height of the origin of the file that needs no correction [m].
 constexpr double kMaxSoleOffset = 0.05;
 
-/// The clip that the scene names, or else the first one.
+/// The clip with the name that the scene gives; the first clip if it gives none.
 const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
                                    const std::vector<character::Clip>& clips, const std::string& source) {
   if (!name) return clips.front();
@@ -76,7 +76,7 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::v
                                  source, fmt::join(names, "\", \"")));
 }
 
-/// Loads a motion file. If the scene does not state the up axis of a BVH file, the axis is z if bodies in the file
+/// Loads a motion file. If it is BVH and the scene does not state its up axis, this axis is z if bodies in the file
 /// stand along z, else y.
 assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
                                      std::vector<std::string>& warnings) {
@@ -104,7 +104,7 @@ double leg_length(const character::Rig& rig) {
   return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
 }
 
-/// The clip with the travel that the scene asks for. `size`: leg length of the body / that of the clip's skeleton.
+/// The clip with the travel that the scene asks for. `size`: ratio of leg lengths, body / skeleton of the clip.
 character::Clip travel(const Cast& cast, const scene::Acting& acting, const character::Rig& rig,
                        const character::Clip& clip, double size, std::vector<std::string>& warnings) {
   if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
@@ -124,7 +124,7 @@ character::Clip travel(const Cast& cast, const scene::Acting& acting, const char
   return std::move(traveled.clip);
 }
 
-/// Moves the soles of a body to the height of its file's origin, so that a motion from another file walks on the floor.
+/// Moves a body so that its soles are at the height of its file's origin; a retargeted motion then walks on the floor.
 void put_on_floor(const Cast& cast, Body& body) {
   const Vec3 up = cast.up();
   std::vector<Vec3> x(body.character.mesh.positions.size());
@@ -138,7 +138,6 @@ void put_on_floor(const Cast& cast, Body& body) {
                   body.source, std::abs(soles), soles < 0 ? "below" : "above"));
 }
 
-/// Retargets the clip of a motion file to the body.
 character::Clip retarget_motion(const Cast& cast, const scene::Acting& acting, Body& body) {
   const std::string file = acting.motion->string();
   assets::LoadedCharacter motion = load_upright(cast, acting, body.warnings);
@@ -164,7 +163,7 @@ character::Clip retarget_motion(const Cast& cast, const scene::Acting& acting, B
   return std::move(result.clip);
 }
 
-/// Objects of the file that cloths of the scene use, and that are therefore no part of the body.
+/// Objects of the file that cloths of the scene use. They are no part of the body.
 std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem::path& file) {
   std::vector<std::string> taken;
   std::error_code ignored;
@@ -175,14 +174,13 @@ std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem
   return taken;
 }
 
-/// The body in a file, without the objects that cloths use.
+/// Makes the body in a file, without the objects that cloths use.
 Body make_body(const Cast& cast, const scene::CharacterFile& source) {
   assets::LoadedCharacter loaded = assets::load_character(
       source.path, cast.axes(), cast.where, {source.meshes, source.without, taken_by_cloths(cast, source.path)});
   return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings), loaded.scale};
 }
 
-/// The mannequin with its walk.
 Body make_body(const Cast& cast, const scene::Mannequin& source) {
   Body body{"the mannequin",
             character::make_mannequin({source.height, source.girth, source.masculinity, source.edge_length}),
@@ -192,13 +190,13 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
     body.character.clips.push_back(character::make_walk(
         body.character,
         {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
-  // The same rotation as in turned_up() of orientation.cpp.
+  // The same rotation as in turned_up() (orientation.cpp).
   const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
   return body;
 }
 
-/// The body, with its clip if it plays one.
+/// Makes a body, with its clip if it plays one.
 template <class Source>
 Body make_playing_body(const Cast& cast, const Source& source) {
   Body body = make_body(cast, source);
@@ -218,7 +216,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds the points of a FollowingPin to the `vertices` vertices of the body. `start`: pose at the start of the run.
+/// Adds the points of a FollowingPin to a body with `vertices` own vertices. `start`: pose at the start of the run.
 void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
                        const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);
@@ -234,7 +232,7 @@ double begin_of(const scene::Scene& scene) {
   return -scene.preroll_frames() / scene.time.fps;
 }
 
-/// Times of the key frames of a character: k / rate, for `count` numbers k from `first` on.
+/// Times of the key frames of a character: k / rate for `count` integers k from `first` on.
 struct KeyTimes {
   double rate = kMinKeyRate;  // [1/s]
   long first = 0;
@@ -246,7 +244,7 @@ struct KeyTimes {
   }
 };
 
-/// `clip_rate`: key frames per second of the motion; 0: there is none. `changes_stance`: arms move after dressing.
+/// `clip_rate`: keys per second of the clip; 0: no clip. `changes_stance`: whether the arms move after `dressing`.
 KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
@@ -256,7 +254,7 @@ KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kMinKeyRate, kMaxKeyRate));
   if (!settings.keys_per_second && (grows || changes_stance)) times.rate = std::max(times.rate, kDressingRate);
   times.first = static_cast<long>(std::floor((grows ? begin : cast.motion_start()) * times.rate));
-  // Add a key past the end, so that the velocity at the end is defined.
+  // Adds a key after the end, so that the velocity at the end is defined.
   const double end = moves ? duration : begin + settings.grow;
   times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
   return times;
@@ -269,8 +267,8 @@ void check_memory(const Cast& cast, const KeyTimes& times, std::size_t vertices)
                                              kMaxKeyFrameBytes, bytes, times.count, vertices));
 }
 
-/// Samples a body at the times of its key frames. `vertices_at` writes its vertices, in its own coordinates, at a time
-/// of the scene.
+/// Samples a body at the times of its key frames. `vertices_at`: writes its vertices, in the coordinates of the body,
+/// at a time of the scene.
 KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
                  const std::function<void(double, std::vector<Vec3>&)>& vertices_at) {
   check_memory(cast, times, vertices);
@@ -292,7 +290,7 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
           cast.settings.dressing > 0};
 }
 
-/// Warns of a body whose size suggests that its file has another unit.
+/// Warns of a body whose size suggests a wrong unit of its file.
 void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
@@ -302,7 +300,7 @@ void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body
 
 void check_size(const Cast&, const scene::Mannequin&, Body&) {}
 
-/// The motion that a body performs. The body and the clip must outlive the result.
+/// The motion of a body. The body and the clip must outlive the result.
 template <class Source>
 character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
                                       const character::Clip& clip) {
@@ -345,7 +343,7 @@ StandingBody make_standing(const Cast& cast, const scene::MeshSequence& /*source
               where, cast.settings.name);
 }
 
-/// Space for cloth between the limbs and under the body; none without a clip, clearance or near cloth.
+/// Makes the Room that leaves space for cloth; none if there is no clip, no clearance or no cloth near the body.
 template <class Source>
 std::optional<character::Room> room_of(const Cast& cast, const Source& source, const Body& body,
                                        const character::Performance& performance, const std::vector<Part>& parts,
@@ -362,11 +360,11 @@ std::optional<character::Room> room_of(const Cast& cast, const Source& source, c
   return character::Room({body.character, joints}, touched, std::move(near_cloth), room, static_grounds(cast));
 }
 
-/// The largest displacement of the skin over all keys, its time and its place (body's coordinates) [m].
+/// The largest displacement of skin over all keys, with its time and its place.
 struct MaxDisplacement {
   character::Moved moved;
-  double time = 0;  // [s]
-  Vec3 place{0, 0, 0};
+  double time = 0;      // [s]
+  Vec3 place{0, 0, 0};  // in the coordinates of the body [m]
 
   void add(const character::Moved& now, double t, std::span<const Vec3> x) {
     if (now.distance <= moved.distance) return;
@@ -374,7 +372,7 @@ struct MaxDisplacement {
   }
 };
 
-/// Smallest displacement of skin that is reported [m]; smaller ones are not visible.
+/// Minimum displacement of skin that is reported [m]; smaller ones are not visible.
 constexpr double kMinReportedDisplacement = 1e-3;
 
 std::optional<std::string> describe(const Cast& cast, const MaxDisplacement& most) {
@@ -407,7 +405,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
-  std::vector<Vec3> bones;  // points on the bones from which the body's vertices (not those of pins) grow
+  std::vector<Vec3> bones;  // per vertex of the body (not of pins): the point from which it grows
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = static_grounds(cast);
@@ -470,7 +468,7 @@ KeyFrameCount count(const Cast& cast, const Source& source) {
 }
 
 KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
-  // Which vertices are merged depends on all files.
+  // The number of vertices after merging depends on all files.
   const auto loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   return count(cast, key_times(cast, source.fps, false), loaded.mesh.positions.size());
 }

@@ -1,4 +1,4 @@
-// Makes the key frames of a character of the scene.
+// Makes the key frames of the vertices of a character of the scene.
 #pragma once
 
 #include <memory>
@@ -18,24 +18,26 @@ namespace weft::environment {
 
 using motion::KeyFrames;
 
-/// A part of a character that pins, obstacles or cameras follow, or that has contact settings of its own.
+/// A part of a character that has contact settings of its own, or that pins, obstacles or cameras follow.
 struct Part {
   std::string name;
-  character::VertexMask vertices;  ///< of the body's mesh
+  character::VertexMask vertices;  ///< of the mesh of the body
   bool collide = true;
-  std::optional<double> friction;  ///< absent: that of the body
-  double thickness = 0;            ///< [m]
+  std::optional<double> friction;  ///< coefficient; absent: that of the body
+  double thickness = 0;            ///< of padding [m]
 
+  /// Whether the part becomes a contact patch (model::Patch).
   bool is_patch() const { return friction || thickness > 0; }
 };
 
-/// Start positions of points that follow a character [m]: particles of a pin, or the frame of an obstacle or camera.
+/// Start positions [m] of points that follow a character: of the particles of a pin, or of the four points that give
+/// the frame of an obstacle or camera (parents.hpp).
 struct FollowingPin {
   std::string part;  ///< of the character; empty: the whole character
   std::vector<Vec3> places;
 };
 
-/// A cloth at the time when it is put on.
+/// A cloth as it is when it is put on.
 struct ClothAtStart {
   std::span<const Vec3> x;  ///< positions of its particles [m]
   std::span<const mesh::Triangle> triangles;
@@ -45,36 +47,36 @@ struct ClothAtStart {
 /// A body that moves by key frames of its vertices, computed before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
-  KeyFrames keys;            ///< of the vertices; then, for a body with bones, of the places of each FollowingPin
+  KeyFrames keys;            ///< of the vertices; for a body with bones, then of the points of each FollowingPin
   std::vector<Part> parts;   ///< see parts_of()
-  std::vector<Index> limbs;  ///< per vertex: see shells_of_limbs(); of a sequence: its connected component
+  std::vector<Index> limbs;  ///< per vertex: its shell (shells_of_limbs()); for a sequence: its component
   std::vector<std::string> warnings;
-  std::vector<std::string> notes;                                 ///< for the summary: changes made to the body
+  std::vector<std::string> notes;                                 ///< changes made to the body, for the summary
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if the file has none
 };
 
 /// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
-/// They end when it has grown or, if it moves, at the end of the scene. A character that does neither has one key. If a
-/// body with bones plays a clip, its skin is moved to leave space for `cloths` near it. Throws Error(asset_unreadable,
-/// scene_invalid) that names scene line, file and the mesh, bone or clip.
+/// They end at the end of the scene or, if the character only grows, when it has grown. A character that does neither
+/// has one key. If a body with bones plays a clip, its skin leaves space for `cloths` near it (character::Room). Throws
+/// Error(asset_unreadable, scene_invalid) that names the scene line, the file, and the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 
-/// A body with bones at the start of a scene, before its preroll.
+/// A body with bones at the start of a run, before the preroll.
 struct StandingBody {
   mesh::Mesh mesh;                          ///< in the world [m]
   std::vector<std::optional<Vec3>> joints;  ///< positions of joint_names() in the world [m]; absent: unknown
   std::vector<character::Limb> limbs;       ///< of each vertex of the mesh
 };
 
-/// Reads the files of a character before make_actor() does, because making a garment needs its wearer. Throws as
-/// make_actor() does, and Error(scene_invalid) that begins with `where` for a sequence of meshes.
+/// Makes the body alone, without key frames: sewing a garment needs the body of its wearer before make_actor() can run.
+/// Throws as make_actor() does. For a sequence of meshes, throws Error(scene_invalid) that begins with `where`.
 StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character, const std::string& where);
 
 /// Size of the key frames of a character, which `weft check --plan` prints.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;
-  /// Parts that do not collide, with their numbers of vertices.
+  /// Names of the parts that do not collide, with their numbers of vertices.
   std::vector<std::pair<std::string, std::size_t>> left_out = {};
 };
 /// Counts the key frames without sampling the motion.

@@ -56,7 +56,7 @@ class PartFinder {
   std::vector<Index> joints_;
 };
 
-/// Whether the scene has settings for a hand.
+/// Whether the scene has a [[character.part]] that includes a hand.
 bool has_hand_settings(const std::vector<scene::BodyPart>& parts) {
   const std::vector<Index> hands = character::joints_of_part("hands");
   return std::ranges::any_of(parts, [&](const scene::BodyPart& part) {

@@ -1,4 +1,4 @@
-// A character of the scene with its file, its name in messages, and the nodes of its skeleton that are joints.
+// A character of the scene with its name for messages, its body, and the nodes of its skeleton that are joints.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace weft::environment {
 
-/// A body, and the data for sampling its motion.
+/// A body, and the clip that it plays.
 struct Body {
   std::string source;  ///< its file, for messages
   character::Character character;
@@ -21,11 +21,11 @@ struct Body {
   double scale = 1;  ///< metres per unit of the file, from the file or the scene
 };
 
-/// A character of the scene, and its name in messages.
+/// A character of the scene, and its name for messages.
 struct Cast {
   const scene::Scene& scene;
   const scene::Character& settings;
-  std::string where;
+  std::string where;  ///< scene file, line, column and name, for messages
 
   Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
   assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
@@ -33,23 +33,23 @@ struct Cast {
   double motion_start() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
   character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }
 
-  /// Throws Error(scene_invalid) for one of the character's keys.
+  /// Throws Error(scene_invalid) about the key `key` of the character.
   [[noreturn]] void fail(const std::string& key, const std::string& why) const;
 };
 
 Cast make_cast(const scene::Scene& scene, const scene::Character& settings);
 
-/// "; did you mean ...?", or an empty text.
+/// "; did you mean ...?" with the most similar of the known names; empty if none is similar.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
-/// The node of a file that a [[character.joint]] or the `bone` of a [[character.part]] names. Throws
-/// Error(scene_invalid) if there is none.
+/// The node of a file with the name `name`, which the scene gives in a [[character.joint]] or as the `bone` of a
+/// [[character.part]]. `key`: of the scene, for messages. Throws Error(scene_invalid) if there is no such node.
 Index named_node(const Cast& cast, const std::string& key, const std::string& name,
                  const std::vector<character::Node>& nodes, const std::string& source);
 
-/// The nodes of a skeleton that are the joints of joint_names(), found by their usual names or as the scene says; −1
-/// for a joint that is not found. `name`: the member of JointNames for this file; `source`: the file, for messages.
-/// Throws Error(scene_invalid) for names of the scene that do not exist.
+/// For each of joint_names(), the node of a skeleton with that role; −1 if there is none. The names `given` in the
+/// scene override the nodes that are found by common names. `name`: the member of JointNames that applies to this file;
+/// `source`: the file, for messages. Throws Error(scene_invalid) for names in the scene that do not exist.
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source);

@@ -20,13 +20,13 @@ namespace {
 
 using model::Chosen;
 
-// Smallest fraction that counts: half a level of an 8-bit picture.
+// Minimum fraction of a particle that counts: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
-// Smallest fraction at which a pin without a strength holds a particle (then fully).
+// Minimum fraction at which a pin without a strength holds a particle; it then holds it fully.
 constexpr double kMinHeldFraction = 0.5;
 
-/// Grey value in [0, 1] of a picture at (u, v), with v upward, times its opacity. Interpolates linearly between the
-/// centres of pixels; outside them, uses the nearest pixel.
+/// Grey value of a picture at (u, v) times its opacity, in [0, 1]; v points up. Interpolates linearly between the
+/// centres of pixels; beyond the outermost centres, uses the nearest pixel.
 double grey_at(const image::Picture& picture, const Vec2& uv) {
   const auto pixel = [&](int x, int y) {
     x = std::clamp(x, 0, picture.width - 1);
@@ -43,13 +43,13 @@ double grey_at(const image::Picture& picture, const Vec2& uv) {
          t * ((1 - s) * pixel(i, j + 1) + s * pixel(i + 1, j + 1));
 }
 
-/// Finds the particles of regions (scene::ClothPart) of one cloth.
+/// Finds the particles of the regions (scene::ClothPart) of one cloth.
 class ParticleFinder {
  public:
   ParticleFinder(const scene::Cloth& cloth, const assets::LoadedMesh& file, const MadeCloth& made)
       : from_file_(cloth.shape == scene::ClothShape::mesh), file_(file), cloth_(made.cloth), details_(made.details) {}
 
-  /// Particles of a region, with their fractions. `key`: of the region, for messages.
+  /// Particles of a region, with their fractions. `key`: key of the region in the scene, for messages.
   std::vector<Chosen> part(const scene::ClothPart& part, const std::string& key) const {
     std::vector<double> fractions(details_.fractions.size());
     if (part.at) {
@@ -78,15 +78,15 @@ class ParticleFinder {
     multiply(on, fractions);
   }
 
-  // Selects the particles nearest to both ends, and all particles between them.
+  // Selects the particles that are nearest to both ends of the region, and all particles between them.
   void along_rope(const Vec2& at, std::vector<double>& fractions) const {
     const auto pieces = static_cast<double>(cloth_.rope->lengths.size());
     const auto nearest = [&](double fraction) { return static_cast<std::size_t>(std::lround(fraction * pieces)); };
     for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) fractions[i % fractions.size()] = 1;
   }
 
-  // Selects the particles of one panel within the bounds and the mask. If a vertex has several UVs, as at darts, the
-  // largest fraction counts.
+  // Selects the particles of one panel within the bounds and the mask. If a vertex has several UVs in the panel, as at
+  // darts, the largest fraction counts.
   void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& fractions) const {
     const auto found = std::ranges::find(details_.panels, part.panel);
     if (found == details_.panels.end())
@@ -166,7 +166,7 @@ class ParticleFinder {
   const ClothDetails& details_;
 };
 
-/// Shortest distances along a cloth at rest, along edges of triangles, and edges and diagonals of quads.
+/// Shortest distances along a cloth at rest. Paths follow edges of triangles, and edges and diagonals of quads.
 class RestDistances {
  public:
   explicit RestDistances(const model::Cloth& cloth) : neighbours_(cloth.mesh.positions.size()) {
@@ -174,7 +174,7 @@ class RestDistances {
       neighbours_[static_cast<std::size_t>(a)].emplace_back(b, length);
       neighbours_[static_cast<std::size_t>(b)].emplace_back(a, length);
     };
-    // Joins all corners of a quad, so also along its diagonals. Inner edges are joined twice, which does no harm.
+    // Joins all pairs of corners of a quad: edges and diagonals. Inner edges are joined twice, which has no effect.
     for (const mesh::Quad& q : cloth.mesh.topology.quads)
       for (std::size_t a = 0; a < 4; ++a)
         for (std::size_t b = a + 1; b < 4; ++b)
@@ -187,9 +187,9 @@ class RestDistances {
       }
   }
 
-  /// Appends the particles that are nearer to a region, `part`, than `fade` [m]. Fractions fall from the fraction of
-  /// the region's nearest particle to 0 at this distance, with zero slope at both ends. Shortest paths: E. W. Dijkstra,
-  /// "A note on two problems in connexion with graphs", 1959.
+  /// Appends to the region `part` the particles that are nearer to it than `fade` [m]. Their fraction falls from that
+  /// of the nearest particle of the region to 0 at this distance, with zero slope at both ends. Shortest paths: E. W.
+  /// Dijkstra, "A note on two problems in connexion with graphs", 1959.
   void fade(double fade, std::vector<Chosen>& part) const {
     struct FrontParticle {
       double distance;
@@ -225,7 +225,8 @@ class RestDistances {
       neighbours_;  // per particle: its neighbours and their distances [m]
 };
 
-/// Text that proposes other bounds for a region between two rows of particles; empty for regions not given by bounds.
+/// Text that proposes other bounds for a region that lies between two rows of particles. Empty if the region is not
+/// given by bounds alone.
 std::string nearest_row(const scene::ClothPart& part, const ClothDetails& details) {
   if (!part.panel.empty() || !part.edge.empty() || part.mask || part.vertex_color != scene::VertexColor::none ||
       !part.vertex_group.empty() || details.fractions.empty())

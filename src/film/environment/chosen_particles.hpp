@@ -1,4 +1,4 @@
-// Finds the particles of a cloth to which its pins, weights and attachments apply, with a fraction for each.
+// Finds the particles of a cloth that belong to its pins, weights and attachments, with a fraction for each particle.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace weft::environment {
 
-/// Adds pins (without their motion), weights and attachments to a cloth whose rest shape is made. `file`: data of the
-/// vertices in the mesh file; empty for other cloth. Throws Error(scene_invalid) for a region that holds no particle,
+/// Adds pins (without their motion), weights and attachments to a cloth whose rest shape is already made. `file`: the
+/// data of the mesh file; empty for cloth without one. Throws Error(scene_invalid) for a region that holds no particle,
 /// and for a panel, an edge, UVs, colours or a group that the cloth does not have. The message begins with `where` or,
 /// for attachments, with the scene file and their name.
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,

@@ -13,30 +13,31 @@
 namespace weft::environment {
 namespace {
 
-/// Layers of cloth that must fit between two limbs, as where an arm comes down on the folds of a shirt (measured: with
-/// 4 layers, 13 of 51 frames of such a shirt were pinched).
+/// Number of layers of cloth that must fit between two limbs, as where an arm presses on the folds of a shirt. With 4
+/// layers, cloth was pinched in 13 of 51 frames of a film with such a shirt.
 constexpr double kLayersBetweenLimbs = 8;
 
-/// Skin counts as near cloth up to this distance [m]. character::Room moves limbs apart only if cloth is near one of
-/// them.
+/// Distance up to which skin counts as near cloth [m]. character::Room moves two limbs apart only if cloth is near one
+/// of them.
 constexpr double kNearCloth = 0.05;
 
-/// Largest distance between samples on cloth [m], except on edges longer than kMaxEdgeSamples times this distance.
+/// Maximum distance between samples on cloth [m], except on edges longer than kMaxEdgeSamples times this distance.
 constexpr double kSampleDistance = 0.02;
 
-/// Largest number of intervals between samples along an edge of a triangle. It limits the cost of sheets of few large
+/// Maximum number of intervals between samples along an edge of a triangle. Limits the cost of cloth of few large
 /// triangles.
 constexpr int kMaxEdgeSamples = 64;
 
-/// Vertices per task.
+/// Vertices per parallel task.
 constexpr std::size_t kNearnessGrain = 512;
 
-/// Points sorted into cubes with side kNearCloth, for finding the nearest point within this distance.
+/// Points, sorted into cubes of the edge length kNearCloth. Finds the nearest point within this distance.
 class PointCubes {
  public:
   void add(const Vec3& x) { cells_[key(cell_of(x))].push_back(x); }
 
-  /// Squared distance to the nearest point [m²]; infinite, or more than kNearCloth², if no point is within kNearCloth.
+  /// Squared distance to the nearest point [m²]. If no point is within kNearCloth, the result is infinite or larger
+  /// than kNearCloth².
   double nearest_sq(const Vec3& x) const {
     const std::array<std::int64_t, 3> middle = cell_of(x);
     double least = std::numeric_limits<double>::infinity();
@@ -54,7 +55,7 @@ class PointCubes {
     for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(x[k] / kNearCloth));
     return cell;
   }
-  /// 21 bits per axis: points about 100 km apart may share a list, which only costs time.
+  /// Key of a cube, with 21 bits per axis. Cubes about 100 km apart may share a key, which only costs time.
   static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
     constexpr std::uint64_t kMask = (1U << 21) - 1;
     return (static_cast<std::uint64_t>(cell[0]) & kMask) << 42 | (static_cast<std::uint64_t>(cell[1]) & kMask) << 21 |

@@ -1,5 +1,4 @@
-// Finds where a character must leave space for cloth: above the ground, between its limbs, and where its skin is near
-// cloth.
+// Finds where the skin of a character must leave space for cloth: above the ground, between limbs, and near cloth.
 #pragma once
 
 #include <span>
@@ -11,22 +10,23 @@
 
 namespace weft::environment {
 
-/// The grounds on which a body can lie: infinite planes that collide and stand still, in the body's coordinates.
+/// The grounds on which a body can lie: infinite planes that collide and do not move, in the coordinates of the body.
 std::vector<character::Ground> static_grounds(const Cast& cast);
 
-/// Height of the lowest of these points over the ground [m].
+/// Height of the lowest of the points `x` over the ground [m].
 double height_over(const character::Ground& ground, std::span<const Vec3> x);
 
-/// Clearance between limbs [m]: as the scene sets it, else as its thickest cloth needs. If the scene does not set it,
-/// it is 0 for characters that do not collide, and for the mannequin without a motion file, whose walk keeps its arms
-/// off its body.
+/// Clearance between limbs [m]: the value of the scene, else what its thickest cloth needs. Without a value in the
+/// scene, it is 0 for characters that do not collide, and for the mannequin without a motion file, since its walk keeps
+/// the arms off the body.
 double clearance_between_limbs(const Cast& cast);
 
 /// Nearness of cloth to each point of the skin: 1 up to a distance of 2.5 cm, then falling linearly to 0 at 5 cm.
-/// `skin`: points in the world [m].
+/// `skin`: positions in the world [m].
 std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtStart& cloth);
 
-/// Largest nearness of any cloth to each vertex when that cloth is put on. `performance`: motion of the body.
+/// Nearness of cloth to each vertex of a body: the largest one of all cloths, each at the time when it is put on.
+/// `performance`: motion of the body.
 std::vector<float> nearness_of_cloths(const Cast& cast, const character::Character& body,
                                       const character::Performance& performance, std::span<const ClothAtStart> cloths);
 

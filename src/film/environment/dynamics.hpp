@@ -1,4 +1,4 @@
-// Properties of an obstacle that forces move.
+// Rigid-body properties of an obstacle that forces move.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace weft::environment {
 
-/// Makes the properties of an obstacle with a mass or a density. `mesh`: its mesh. Throws Error(scene_invalid) if the
-/// mesh encloses no volume.
+/// Makes the mass, inertia, start velocities and release time of an obstacle with a mass or a density. `mesh`: of the
+/// obstacle. Throws Error(scene_invalid) if the mesh encloses no volume.
 std::shared_ptr<const model::Dynamics> make_dynamics(const scene::Scene& scene, const scene::Obstacle& obstacle,
                                                      const mesh::Mesh& mesh);
 

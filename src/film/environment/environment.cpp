@@ -18,8 +18,8 @@
 namespace weft::environment {
 namespace {
 
-/// Makes the mesh of a shape in the body's own coordinates. Boxes have their sizes along the scene's axes, and files
-/// their own orientation; other shapes follow the up axis.
+/// Makes the mesh of an obstacle in its own coordinates. Boxes have their sizes along the axes of the scene, and files
+/// their own orientation; the axes of other shapes follow the up axis.
 struct MakeMesh {
   const scene::Scene& scene;
   const scene::Obstacle& obstacle;
@@ -64,8 +64,9 @@ model::Body make_obstacle(const scene::Scene& scene, const scene::Obstacle& obst
   return body;
 }
 
-/// Unless all parts collide, fills details.passed_through (per triangle: 1 if it does not collide) and body.colliding
-/// (the other triangles, with the cuts between them closed). A body without any colliding triangle does not collide.
+/// If some parts do not collide, fills details.passed_through (per triangle: 1 if it does not collide) and
+/// body.colliding (all other triangles, and lids that close the cuts between both). A body without any colliding
+/// triangle does not collide.
 void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   if (std::ranges::all_of(details.parts, &Part::collide)) return;
   std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);
@@ -81,7 +82,7 @@ void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   if (body.colliding.empty()) body.collide = false;
 }
 
-/// Sets the advice for the message that surfaces touch at the start.
+/// Sets the advice in the error message about surfaces that touch at the start.
 void set_start_advice(const scene::Scene& scene, model::Model& model) {
   const bool untangles = std::ranges::any_of(
       scene.cloths, [](const scene::Cloth& cloth) { return starts_untangled(cloth) || !cloth.over.empty(); });
@@ -90,7 +91,8 @@ void set_start_advice(const scene::Scene& scene, model::Model& model) {
   if (!untangles) model.untangle_advice = "or give a cloth start = \"untangle\"";
 }
 
-/// Advice for the message that a character touches another surface: hanging arms are in the way of most skirts.
+/// Advice in the error message about a character that touches another surface: hanging arms are in the way of most
+/// skirts.
 std::string advice_for(const scene::Character& character) {
   const auto* file = std::get_if<scene::CharacterFile>(&character.source);
   const bool arms_hang = file != nullptr && !file->stance_arms && character.dressing > 0;
@@ -125,7 +127,7 @@ std::optional<std::size_t> number_of(const std::string& name, const Objects& obj
   return static_cast<std::size_t>(found - objects.begin());
 }
 
-/// Mean start position of the region of a pin, including particles that another pin holds.
+/// Mean start position of the particles of the region of a pin, including those that another pin holds.
 Vec3 middle_of(std::span<const model::Chosen> particles, std::span<const Vec3> start) {
   Vec3 middle = Vec3::Zero();
   std::size_t count = 0;
@@ -137,7 +139,7 @@ Vec3 middle_of(std::span<const model::Chosen> particles, std::span<const Vec3> s
   return middle / static_cast<double>(count);
 }
 
-/// Motion of the middle of a pin's region through its keys.
+/// Motion of the middle of the region of a pin, from its keys.
 motion::PoseTrack motion_of(const scene::PinTrack& keyed, const Vec3& middle) {
   motion::PoseTrack track{keyed.interpolation, {}};
   for (const scene::PinKey& key : keyed.keys) {
@@ -218,7 +220,7 @@ void Environment::add_characters(const scene::Scene& scene) {
     const std::size_t vertices = actor.mesh.positions.size();
     for (PartFollower& follower : followers.rigid) follower.first += vertices;
     add_part_parents(scene, character, followers, actor.keys);
-    if (scene::acting_of(character) != nullptr)  // a body with bones, whose keys move the particles of pins
+    if (scene::acting_of(character) != nullptr)  // the key frames of a body with bones include the particles of pins
       for (const PinFollower& follower : followers.pins)
         model.cloths[follower.cloth].pins[follower.pin].first_vertex = vertices + follower.first;
     model.bodies.push_back(make_character(character, std::move(actor), bodies.emplace_back()));

@@ -1,4 +1,4 @@
-// Converts a scene to its model and to the data that are only drawn.
+// Converts a scene to its simulated model, and to the data that are only drawn.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@
 
 namespace weft::environment {
 
-/// Data of an obstacle or character besides the simulated model.
+/// Data of an obstacle or character that are not in the simulated model.
 struct BodyDetails {
   scene::Look look;
-  std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if there is none
+  std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if the file has none
   std::vector<Part> parts;                              ///< of characters
   std::vector<std::uint8_t> passed_through;  ///< per triangle of the mesh: 1 if it does not collide; empty: all collide
 };
 
-/// The shape of an obstacle in its own coordinates, and the UVs of its file. Throws as Environment() does.
+/// The mesh of an obstacle in its own coordinates, and the UVs of its file. Throws as Environment() does.
 assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obstacle);
 
 struct Followers;
@@ -37,10 +37,10 @@ class Environment {
   model::Model model;                         ///< bodies: in the order of scene.obstacles, then of scene.characters
   std::vector<ClothDetails> cloths;           ///< one per cloth of the model
   std::vector<BodyDetails> bodies;            ///< one per body of the model
-  std::vector<model::Parent> camera_parents;  ///< one per camera; empty: no camera follows anything
+  std::vector<model::Parent> camera_parents;  ///< one per camera; empty if no camera follows anything
 
  private:
-  /// Particles of each scene::Attachment that names one cloth.
+  /// For each scene::Attachment of one cloth, its particles.
   using Attached = std::vector<std::vector<model::Chosen>>;
   std::vector<Attached> add_cloths(const scene::Scene& scene);
   void add_parents(const scene::Scene& scene);

@@ -11,7 +11,7 @@ FollowingPin frame_at(const std::string& part, const Vec3& origin) {
   return frame;
 }
 
-/// Position of an obstacle at its first key, or of its pose if it has no keys.
+/// Position of an obstacle at its first key; without keys, that of its pose.
 const Vec3& place_of(const scene::Obstacle& obstacle) {
   return obstacle.motion.keys.empty() ? obstacle.pose.position : obstacle.motion.keys.front().pose.position;
 }

@@ -1,4 +1,4 @@
-// The followers of a character: pins of cloth, and obstacles and cameras attached to a part of it.
+// Lists what follows a character: pins of cloth, and obstacles and cameras attached to one of its parts.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@ namespace weft::environment {
 
 /// An obstacle or camera that follows a part of a character.
 struct PartFollower {
-  bool camera = false;
-  std::size_t number = 0;  ///< number of the obstacle or camera
+  bool camera = false;     ///< a camera, else an obstacle
+  std::size_t number = 0;  ///< of the obstacle or camera in the scene
   std::size_t first = 0;   ///< index of the first of its four points among all points that follow the character
 };
 
-/// A pin that follows a character.
+/// A pin that follows a character or a part of one.
 struct PinFollower {
-  std::size_t cloth = 0, pin = 0;
+  std::size_t cloth = 0, pin = 0;  ///< number of the cloth; number of the pin within it
   std::size_t first = 0;  ///< index of the point of its first particle among all points that follow the character
 };
 
 struct Followers {
-  std::vector<FollowingPin> points;  ///< of the pins, then four points for each obstacle or camera (see kFrameAxis)
+  std::vector<FollowingPin> points;  ///< those of the pins, then four for each obstacle or camera (parents.hpp)
   std::vector<PinFollower> pins;
   std::vector<PartFollower> rigid;
 };

@@ -19,16 +19,16 @@
 namespace weft::environment {
 namespace {
 
-/// Part of `dressing` in which a wearer grows; its garment settles in the rest.
+/// Fraction of `dressing` in which a wearer grows. In the rest, its garment settles.
 constexpr double kGrowingFraction = 0.5;
 
-/// Angle of the arms from hanging beside garments without sleeves [degrees].
+/// Angle of the arms from hanging, for garments without sleeves [degrees].
 constexpr double kAngleBesideSkirt = 45;
 
 /// Number of grid cells along the longest side of a garment.
 constexpr double kCellsPerSide = 30;
 
-/// Bounding box and middle of an opening of a garment, in the axes of its wearer [m].
+/// An opening of a garment: a closed border, in the axes of the wearer [m].
 struct Opening {
   Box3 box;
   Vec3 sum = Vec3::Zero();
@@ -60,8 +60,8 @@ std::vector<Opening> openings_of(const model::Cloth& cloth, const garment::Weare
   return openings;
 }
 
-/// Angle from hanging [degrees] at which straight arms point through the openings beside the shoulders, above the hips;
-/// absent without such openings on both sides.
+/// Angle from hanging at which straight arms point through the sleeves [degrees], as a mean over both sides. The end of
+/// a sleeve is an opening beside the shoulder and above the hips. Absent if there is no such opening on both sides.
 std::optional<double> angle_of_sleeves(const model::Cloth& cloth, const garment::Wearer& wearer) {
   double sum = 0;
   const std::vector<Opening> openings = openings_of(cloth, wearer);
@@ -81,7 +81,7 @@ std::optional<double> angle_of_sleeves(const model::Cloth& cloth, const garment:
   return 0.5 * sum * 180 / std::numbers::pi;
 }
 
-/// Whether a bone of an arm, from shoulder to wrist, goes through the garment.
+/// Whether the bones of an arm, from shoulder to wrist, go through the garment.
 bool is_pierced_by_arm(const model::Cloth& cloth, const garment::Wearer& wearer) {
   const Box3 box = mesh::bounding_box(cloth.start);
   const mesh::TriangleGrid grid(cloth.sheet.triangles, cloth.start, box.diagonal().maxCoeff() / kCellsPerSide);
@@ -91,13 +91,13 @@ bool is_pierced_by_arm(const model::Cloth& cloth, const garment::Wearer& wearer)
   for (const auto& arm : {wearer.left_arm, wearer.right_arm})
     for (std::size_t k = 0; arm && k + 1 < arm->size(); ++k) {
       const Vec3 from = wearer.to_world * (*arm)[k], to = wearer.to_world * (*arm)[k + 1];
-      if (crosses(from, to) || crosses(to, from)) return true;  // each finds triangles from their front
+      if (crosses(from, to) || crosses(to, from)) return true;  // a search finds only triangles whose front it meets
     }
   return false;
 }
 
-/// The number of the character that wears a garment from a pattern that is untangled, has bones and stands still before
-/// frame 0; absent if there is none.
+/// The number of the character that wears a garment; absent if the garment is not from a pattern or not untangled, or
+/// if the character has no bones, no `dressing`, or would still grow at frame 0.
 std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (cloth.shape != scene::ClothShape::pattern || !scene::starts_untangled(cloth)) return std::nullopt;
   for (std::size_t c = 0; c < scene.characters.size(); ++c) {
@@ -110,10 +110,10 @@ std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Clo
   return std::nullopt;
 }
 
-/// The body of a wearer; measured only if it is asked for.
+/// Returns the body of a wearer. The first call makes it, which takes time.
 using Measure = std::function<const garment::Wearer&()>;
 
-/// Calls visit(cloth, number of its character, its body) for each garment with a wearer_of().
+/// Calls visit(cloth, number of the character, Measure of its body) for each garment that has a wearer_of().
 template <class Visit>
 void for_each_worn(const scene::Scene& scene, const Environment& environment, const Visit& visit) {
   Wearers wearers(scene);

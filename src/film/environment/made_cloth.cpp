@@ -34,12 +34,12 @@ double noise(std::uint64_t z) {
 }
 
 // Positions of the particles at the start: those of `rest`, the mesh placed in the scene, scaled about the position of
-// the cloth's pose, with noise.
+// the pose of the cloth, plus noise.
 std::vector<Vec3> start_positions(scene::UpAxis up, const scene::Cloth& cloth, const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
   Vec3 factors(cloth.start_scale.x(), cloth.start_scale.y(), 1);
-  // Patterns stand upright, with warp along the up axis; with y up, this is the axis of factors.y().
+  // A pattern stands upright, with warp along the up axis. If y is up, factors.y() already scales this axis.
   if (cloth.shape == scene::ClothShape::pattern && up == scene::UpAxis::z) std::swap(factors.y(), factors.z());
   const Mat3 axes = cloth.pose.rotation.toRotationMatrix();
   const Mat3 scale = axes * factors.asDiagonal() * axes.transpose();
@@ -76,9 +76,9 @@ void use_triangles(mesh::Mesh mesh, MadeCloth& made) {
   made.cloth.mesh = std::move(mesh);
 }
 
-/// Makes cloth from a pattern. Garments stand upright along z, like shapes; those with panels around parts of a wearer
-/// are made where the wearer stands. made.details.fractions: place in the garment's bounding box, from 0 to 1 across
-/// and up.
+/// Makes cloth from a pattern. A garment stands upright along z, like shapes; one with panels around parts of a wearer
+/// is made where the wearer stands. made.details.fractions: position in the bounding box of the garment, from 0 to 1
+/// across and up.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
@@ -128,7 +128,8 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     }
 }
 
-/// Loads the triangles of a cloth's file and mends them to a sheet. Throws Error(asset_unreadable) if that fails.
+/// Loads the triangles of the file of a cloth and mends them to a manifold sheet. Throws Error(asset_unreadable) if
+/// that fails.
 assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                               MadeCloth& made) {
   assets::LoadedMesh loaded =
@@ -153,10 +154,10 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
   return loaded;
 }
 
-/// Whether the panels given by UVs are the rest shape of a cloth. Notes the choice and its reason, warns of UVs that do
-/// not fit, and throws Error(asset_unreadable) if the scene asks for UVs that are missing or unusable.
+/// Whether the rest shape of a cloth is the panels that its UVs give. Records the choice and its reason, warns of UVs
+/// that do not fit, and throws Error(asset_unreadable) if the scene asks for UVs that are missing or unusable.
 bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::string& where, MadeCloth& made) {
-  constexpr double kMaxUnusableArea = 0.1;  // fraction of the area
+  constexpr double kMaxUnusableArea = 0.1;  // fraction of the area of the mesh
   const std::string in_file = fmt::format("{}: mesh file {}", where, cloth.file.string());
   const bool asked = cloth.rest == scene::ClothRest::uv;
   if (rest.islands == 0) {
@@ -178,7 +179,7 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
                                                : ", which its UVs do not fit as panels do",
                                        rest.describe());
   if (!takes) return false;
-  constexpr double kMaxDrapeStretch = 0.25;  // relative to the panels; draped cloth is stretched less
+  constexpr double kMaxDrapeStretch = 0.25;  // of the mesh relative to the panels; draped cloth is stretched less
   if (!rest.has_panel_lengths())
     made.details.warnings.push_back(
         fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" uses the shape of "
@@ -195,8 +196,8 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
   return true;
 }
 
-/// Makes cloth from a file. The cloth starts as the mesh; its rest shape is the mesh, or the flat panels given by its
-/// UVs. Moves the mesh into `made`, and returns the rest of the file's data, such as colours and vertex groups.
+/// Makes cloth from a mesh file. The cloth starts as the mesh. Its rest shape is the mesh, or the flat panels that its
+/// UVs give. Moves the mesh into `made`, and returns the other data of the file, such as colours and vertex groups.
 assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                                  MadeCloth& made) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);
@@ -206,7 +207,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   if (cloth.rest == scene::ClothRest::mesh) made.details.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, made);
   if (panels) {
-    constexpr double kMaxSeamGap = 0.1;  // relative to the shortest border edge there; gaps in files are smaller
+    constexpr double kMaxSeamGap = 0.1;  // gap / shortest border edge there; gaps in files are smaller
     if (const assets::Welded welded = assets::weld_borders(loaded, kMaxSeamGap); welded.vertices > 0)
       made.details.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
                                             welded.vertices, 1e3 * welded.widest);
@@ -231,7 +232,7 @@ bool meets_obstacles(const scene::Scene& scene) {
           std::ranges::any_of(scene.characters, [](const scene::Character& c) { return c.collide; }));
 }
 
-/// Throws Error(scene_invalid) if triangles are too flat. The message states how many, and the flattest one.
+/// Throws Error(scene_invalid) if triangles are too flat. The message gives their number and the flattest one.
 void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
   const mesh::FlatTriangles flat = mesh::find_flat_triangles(sheet);
   if (flat.count == 0) return;

@@ -1,4 +1,4 @@
-// A cloth of a scene as it starts.
+// Makes a cloth of a scene as it starts.
 #pragma once
 
 #include <array>
@@ -15,32 +15,32 @@
 
 namespace weft::environment {
 
-/// Data of a cloth besides the simulated model.
+/// Data of a cloth that are not in the simulated model.
 struct ClothDetails {
-  std::vector<Vec2> fractions;  ///< position of each particle along weft and warp, in fractions of the rest size
+  std::vector<Vec2> fractions;  ///< per particle: position along weft and warp, as fractions of the rest size
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
   std::vector<std::string> panels;                  ///< of a pattern: names
   std::vector<std::int32_t> panel_of;               ///< of a pattern: panel number of each triangle
-  /// Of cloth sewn from panels: coordinates of the corners of each triangle in its panel (weft, warp) [m].
+  /// Of cloth sewn from panels: per triangle, the coordinates (weft, warp) of its corners in its panel [m].
   std::vector<std::array<Vec2, 3>> paint_uv;
-  std::string fitted;     ///< of a pattern that was scaled to its wearer: description of the scaling
+  std::string fitted;     ///< of a pattern that was scaled to its wearer: description of the scaling; else empty
   std::string rest_from;  ///< of a mesh file: source of the rest shape, and the reason
   std::vector<std::string> warnings;
 };
 
-/// A cloth made from its table in the scene alone: `put_on`, `over`, and the bodies and motions of its pins are still
-/// to be filled in.
+/// A cloth made from its table in the scene alone. Environment then fills in `put_on`, `over`, and the bodies and
+/// motions of its pins.
 struct MadeCloth {
   model::Cloth cloth;
   ClothDetails details;
   std::vector<std::vector<model::Chosen>> attachments;  ///< particles of each scene::Attachment that names this cloth
 };
 
-/// Rest positions of the particles of a rectangular cloth.
+/// Particle counts, spacings and gradings of a rectangular cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
-/// Throws Error(scene_invalid) if cloth can touch obstacles and the cells of a rectangle are too uneven for this
-/// contact. make_cloth() calls this function, and makes the same check for the triangles of all other cloths.
+/// Throws Error(scene_invalid) if cloth can touch obstacles and the cells of a rectangular cloth are too uneven for
+/// this contact. Called by make_cloth(), which makes the same check for the triangles of all other cloths.
 void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 
 /// Makes a cloth as it starts. Throws Error(asset_unreadable, scene_invalid) with the scene line.

@@ -9,11 +9,12 @@
 
 namespace weft::environment {
 
-/// Shapes are made with their axis along z. If y is up, turns them by −90° about x: z becomes y, x stays.
+/// Turns the mesh of a shape, which is made with its axis along z, to the up axis. If y is up, rotates it by −90° about
+/// x: z becomes y, x stays.
 mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up);
 
-/// The axes of a mesh file. If a character uses the same file, the character's up axis applies unless `up` states one.
-/// If nothing states the up axis, it is y for the file of a character, and the scene's up axis for other files.
+/// The axes of a mesh file. If a character uses the same file, its up axis applies, unless `up` states one. If nothing
+/// states the up axis, it is y for the file of a character, and the up axis of the scene for other files.
 assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up);
 
 }  // namespace weft::environment

@@ -9,7 +9,7 @@
 namespace weft::environment {
 namespace {
 
-/// The obstacle that `follow` names; none if `follow` names a part of a character or is empty.
+/// The obstacle with the name `follow`; none if `follow` is empty or names a part of a character.
 model::Parent parent_of(const scene::Scene& scene, const std::string& follow) {
   const auto found = std::ranges::find(scene.obstacles, follow, &scene::Obstacle::name);
   if (follow.empty() || found == scene.obstacles.end()) return {};

@@ -9,12 +9,13 @@
 
 namespace weft::environment {
 
-/// Distance [m] from the origin of a frame, which is the start position of the follower, to each of its other three
-/// points. It is so small that all four follow the same skin.
+/// A follower of a part of a character is represented by a frame: an origin, the start position of the follower, and
+/// three points at this distance from it along the axes [m]. The distance is so small that all four points follow the
+/// same skin.
 inline constexpr double kFrameAxis = 1e-3;
 
-/// Rigid motion closest to that of a frame (an origin and three points along the axes, from vertex `first` on), with
-/// keys at the times of `keys`.
+/// The rigid motion closest to that of a frame whose origin is the vertex `first` and whose points are the next three
+/// vertices. It has keys at the times of `keys`.
 std::shared_ptr<const motion::Track> track_of_frame(const motion::KeyFrames& keys, std::size_t first,
                                                     motion::Interpolation interpolation);
 

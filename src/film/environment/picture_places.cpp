@@ -14,30 +14,30 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Corners of a triangle with z up [m], and its normal (not of unit length).
+/// Corners of a triangle in axes with z up [m], and its normal (not of unit length).
 struct Corners {
   std::array<Vec3, 3> x;
   Vec3 normal;
   Vec3 middle() const { return (x[0] + x[1] + x[2]) / 3; }
 };
 
-/// Converts lengths on a surface to numbers of pictures. Around a closed shape, the number is whole.
+/// Converts lengths on a surface to numbers of pictures. Around a closed shape, this number is an integer.
 struct Tiling {
-  std::optional<Vec2> tile;  // [m]
+  std::optional<Vec2> tile;  // size of one picture [m]; absent: the picture is not repeated
 
-  /// Number of pictures along a length [m]; 1 if the picture is not repeated.
+  /// Number of pictures along a length [m] in the direction of `axis` (0: width, 1: height); 1 without a tile.
   double count(double length, int axis) const { return tile ? length / (*tile)[axis] : 1; }
   double whole_count(double length, int axis) const { return std::max(1.0, std::round(count(length, axis))); }
 };
 
-/// Angle of (x, y) in turns: 0 along −y, and growing toward +x. Returns the value within half a turn of `near`.
+/// Angle of (x, y) in turns: 0 along −y, growing toward +x. Returns the value that is within half a turn of `near`.
 double angle_in_turns(double x, double y, double near) {
   const double turn = std::atan2(x, -y) / (2 * kPi);
   return turn + std::round(near - turn);
 }
 
-/// Angles of the corners around the z axis in turns, without a jump in the triangle; a corner on the axis has the angle
-/// of the triangle's middle.
+/// Angles of the corners around the z axis in turns, without a jump between corners. A corner on the axis gets the
+/// angle of the middle of the triangle.
 std::array<double, 3> turns_around(const Corners& corners, double radius) {
   const Vec3 middle = corners.middle();
   const double at_middle = angle_in_turns(middle.x(), middle.y(), 0);
@@ -50,8 +50,8 @@ std::array<double, 3> turns_around(const Corners& corners, double radius) {
   return around;
 }
 
-/// Coordinates on the side of a box of this size to which the normal points most. Pictures are upright on walls; their
-/// top is toward the back on sides that face up, and toward the front on sides that face down.
+/// Picture coordinates on that side of a box of the size `size` to which the normal points most. Pictures are upright
+/// on walls. On sides that face up, their top is toward the back; on sides that face down, toward the front.
 std::array<Vec2, 3> place_on_side(const Corners& corners, const Vec3& size, const Tiling& tiling) {
   Eigen::Index axis = 0;
   corners.normal.cwiseAbs().maxCoeff(&axis);
@@ -66,7 +66,7 @@ std::array<Vec2, 3> place_on_side(const Corners& corners, const Vec3& size, cons
   return places;
 }
 
-/// Coordinates of one triangle, for each shape.
+/// Computes the picture coordinates of one triangle, for each shape.
 struct PlaceOnShape {
   const Corners& corners;
   const Tiling& tiling;
@@ -74,8 +74,8 @@ struct PlaceOnShape {
 
   using Places = std::array<Vec2, 3>;
 
-  /// The picture's width runs around the z axis at `radius` [m]; its height runs along `length` [m], over which
-  /// `height`(corner) grows from 0 to 1.
+  /// The width of the picture runs around the z axis at `radius` [m], its height along `length` [m]. `height`(corner):
+  /// position of a corner on this length, from 0 to 1.
   template <class Height>
   Places around(double radius, double length, Height height) const {
     const double across = tiling.whole_count(2 * kPi * radius, 0), upward = tiling.count(length, 1);
@@ -104,8 +104,8 @@ struct PlaceOnShape {
     if (is_level()) return place_on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
     return around(s.radius, std::hypot(s.radius, s.height), [&](const Vec3& x) { return 0.5 + x.z() / s.height; });
   }
-  /// The picture's height runs around the tube, from its inner side over the bottom, so that the middle of the picture
-  /// is on the outside.
+  /// The height of the picture runs around the tube, starting on its inner side and going over the bottom, so that the
+  /// middle of the picture is on the outside.
   Places operator()(const scene::Torus& s) const {
     const auto turn_of = [&](const Vec3& x, double near) {
       return angle_in_turns(x.z(), -(std::hypot(x.x(), x.y()) - s.radius), near);
@@ -115,8 +115,8 @@ struct PlaceOnShape {
     return around(s.radius, 2 * kPi * s.tube_radius,
                   [&](const Vec3& x) { return (0.5 + turn_of(x, at_middle)) * upward; });
   }
-  /// The picture's width runs along the pipe, its height around the pipe: inside, from the front to the back rim. The
-  /// ends of the pipe are like sides of a box.
+  /// The width of the picture runs along the pipe, its height around the pipe (on the inside from the front rim to the
+  /// back rim). The ends of the pipe are treated as sides of a box.
   Places operator()(const scene::HalfPipe& s) const {
     const Vec3 middle = corners.middle();
     const double outside = s.radius + s.thickness,
@@ -136,7 +136,7 @@ struct PlaceOnShape {
   Places operator()(const scene::MeshFile&) const { return {}; }
 };
 
-/// Metres per unit of the UVs, averaged over the surface.
+/// Metres per unit of the UVs, from the total areas on the surface and in the UVs.
 double metres_per_uv(const assets::LoadedMesh& shape) {
   double area = 0, uv_area = 0;
   for (std::size_t t = 0; t < shape.uv.size(); ++t) {

@@ -8,13 +8,14 @@
 namespace weft::environment {
 namespace {
 
-// Limits of height for people and toy figures, and a usual height [m]; a file in centimetres gives 100 times that.
+// Limits of height for people and toy figures, and a usual height [m]. A file in centimetres gives 100 times the
+// height.
 constexpr double kMinHeight = 0.3, kMaxHeight = 3, kUsualHeight = 1.7;
-// Largest number of turning nodes without skin that is not reported: a head or a camera may be beside the body.
+// Maximum number of nodes without skin that turn without a warning: the file may have a separate head or a camera.
 constexpr int kMaxIdleNodes = 3;
-// Largest speed of a body without a warning [m/s]: people run at 3 to 6; only sprinters over 100 m reach 10.
+// Maximum speed of a body without a warning [m/s]. People run at 3 to 6; only sprinters over 100 m reach 10.
 constexpr double kMaxSpeed = 9;
-// Largest distance of feet from the floor that is not visible [m].
+// Maximum distance of feet from the floor that is not visible [m].
 constexpr double kMaxFloorDistance = 0.05;
 
 }  // namespace
@@ -35,7 +36,7 @@ std::optional<std::string> warn_of_missing_skin(const character::Character& body
   const Index holder = body.bones[body.influences.front().bone].node;
   for (const character::Influence& influence : body.influences)
     if (influence.weight > 0 && body.bones[influence.bone].node != holder) return std::nullopt;
-  std::vector<Index> carrying;  // the node itself and its ancestors
+  std::vector<Index> carrying;  // the node that holds the skin, and its ancestors
   for (Index node = holder; node >= 0; node = body.nodes[node].parent) carrying.push_back(node);
   int idle = 0;
   for (const character::Channel& channel : clip.channels) {
@@ -70,8 +71,8 @@ std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double b
   return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMaxSpeed);
 }
 
-// A body that jumps is above the floor only at times, so its minimum height counts. A body that rolls sinks into the
-// floor only at times, so for depths the median counts.
+// A body that jumps is above the floor only at times, so its minimum height counts. A body that rolls is in the floor
+// only at times, so its median height counts.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);

@@ -11,21 +11,22 @@
 
 namespace weft::environment {
 
-/// Warns of an implausible height of a body along `up`. `x`: its vertices [m]; `scale`: metres per unit of its file;
-/// `scale_given`: the scene sets the scale; heights up to ten times beyond the limits are then accepted.
+/// Warns of an implausible height of a body along `up`. `x`: positions of its vertices [m]. `scale`: metres per unit of
+/// its file. `scale_given`: whether the scene sets the scale; heights up to ten times beyond the limits are then
+/// accepted.
 std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool scale_given);
 
-/// Warns of a body whose skin is all bound to one node, although the clip turns several others.
+/// Warns if all skin of a body is bound to one node, although the clip turns several others.
 std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
 
-/// Warns of an implausible speed of a body: of the mean position of its vertices. `vertices`: their number; keys of
-/// points that follow the body come after them. The speed is measured over `count` key frames from `begin` [s] on,
-/// `rate` per second.
+/// Warns of an implausible speed of the mean position of the vertices of a body. `vertices`: their number; in `keys`,
+/// points that follow the body come after them. Measures the speed over `count` key frames from the time `begin` [s]
+/// on, `rate` per second.
 std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices);
 
-/// Warns of a body in or above the only floor. `lowest`: height of its lowest vertex over the floor at each key frame
-/// [m]; `alone`: there is no other obstacle to stand on.
+/// Warns if a body stays in or above the only floor. `lowest`: height of its lowest vertex over the floor at each key
+/// frame [m]. `alone`: whether there is no other obstacle to stand on.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone);
 
 }  // namespace weft::environment

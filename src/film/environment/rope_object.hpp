@@ -1,12 +1,12 @@
-// A rope as it starts.
+// Makes a rope of a scene as it starts.
 #pragma once
 
 #include "film/environment/made_cloth.hpp"
 
 namespace weft::environment {
 
-/// Fills in the particles of a rope and its pieces. A piece is a triangle whose last two corners are equal, so that
-/// code for triangles treats it as an edge.
+/// Fills in the particles of a rope and its pieces, the straight segments between particles. A piece is a triangle
+/// whose last two corners are equal, so that code for triangles treats it as an edge.
 void use_rope(const scene::Scene& scene, const scene::Rope& rope, MadeCloth& made);
 
 }  // namespace weft::environment

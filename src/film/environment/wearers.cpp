@@ -16,8 +16,8 @@ const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) 
   return joints[character::joint_number(name)];
 }
 
-/// Axes of a wearer: x to its left, z up, origin at the height of its lowest vertex, below the middle between its upper
-/// legs or, if these joints are unknown, its upper arms.
+/// Axes of a wearer: x to its left, z up. The origin is at the height of its lowest vertex, below the midpoint between
+/// its upper-leg joints or, if these are unknown, its upper-arm joints.
 Eigen::Isometry3d axes_of(const StandingBody& standing, const Vec3& up, const std::string& where) {
   for (const char* name : {"UpperLeg", "UpperArm"}) {
     const auto &left = joint(standing.joints, std::string("Left") + name),
@@ -75,7 +75,8 @@ garment::Wearer make_wearer(const StandingBody& standing, const Vec3& up, const 
   constexpr std::array kArm{"UpperArm", "LowerArm", "Hand"}, kLeg{"UpperLeg", "LowerLeg", "Foot"};
   wearer.left_arm = limb("Left", kArm), wearer.right_arm = limb("Right", kArm);
   wearer.left_leg = limb("Left", kLeg), wearer.right_leg = limb("Right", kLeg);
-  // Rigs without a neck begin the head at its base. If the head is unknown too, estimates the height from its top.
+  // Height of the base of the neck: of the joint Neck; else of Head, which is at this place in rigs without a neck;
+  // else estimated from the height of the body.
   double crown = 0;
   for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
   wearer.neck = garment::kNeckHeightRatio * crown;

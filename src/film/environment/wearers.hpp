@@ -1,4 +1,4 @@
-// Finds the character that wears a garment, and prepares its body for the garment.
+// Finds the character that wears a garment, and makes the garment::Wearer of its body.
 #pragma once
 
 #include <map>
@@ -9,15 +9,15 @@
 
 namespace weft::environment {
 
-/// The wearers of garments in a scene, each made when it is first needed.
+/// The wearers of garments in a scene. Each is made when it is first needed.
 class Wearers {
  public:
   explicit Wearers(const scene::Scene& scene) : scene_(scene) {}
 
   /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
-  /// names no wearer and there are several, or if the wearer has no bones or not the joints that define its axes.
+  /// names no wearer and there are several characters, or if the wearer lacks bones or the joints that define its axes.
   const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
-  /// The character of this name, which must exist. Throws likewise.
+  /// The character of this name, which must exist. Throws Error(scene_invalid) if it lacks bones or these joints.
   const garment::Wearer& of(const std::string& name, const std::string& where);
 
  private:

@@ -11,11 +11,13 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kStrands = 3;
-constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the furrows between strands, in radii
+constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the grooves between strands [radii of the rope]
+// A ring is a cross-section of the tube: a polygon with this number of sides, for ropes with and without strands.
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
-constexpr int kRingsPerStrandTurn = 8;  // number of rings per turn of the strands
+constexpr int kRingsPerStrandTurn = 8;
 constexpr int kMaxRingsPerPiece = 12;
-constexpr std::size_t kMaxRings = 8000;  // if strands need more, they are too fine to see: a round cord is drawn
+// Maximum number of rings for strands. Strands that need more are too fine to be visible: a round cord is drawn.
+constexpr std::size_t kMaxRings = 8000;
 
 bool is_closed(const Surface& chain) {
   return chain.triangles.back()[1] == chain.triangles.front()[0];
@@ -25,8 +27,8 @@ Vec3 any_normal(const Vec3& tangent) {
   return Quat::FromTwoVectors(Vec3::UnitZ(), tangent) * Vec3::UnitX();
 }
 
-// Transports a normal from one ring to the next without rotation about the chain (W. Wang, B. Jüttler, D. Zheng & Y.
-// Liu, "Computation of Rotation Minimizing Frames", 2008).
+// Transports a normal from the ring at `x` to the ring at `next_x` without rotation about the tangent (W. Wang, B.
+// Jüttler, D. Zheng & Y. Liu, "Computation of Rotation Minimizing Frames", 2008).
 Vec3 transport_normal(const Vec3& normal, const Vec3& x, const Vec3& tangent, const Vec3& next_x,
                       const Vec3& next_tangent) {
   const Vec3 v = next_x - x;
@@ -38,7 +40,7 @@ Vec3 transport_normal(const Vec3& normal, const Vec3& x, const Vec3& tangent, co
   return d > 0 ? Vec3(n - 2 / d * w.dot(n) * w) : n;
 }
 
-// Faces between neighbouring rings. A point in the middle of each end closes an open tube.
+// Triangles between neighbouring rings. The ends of an open tube are closed by triangles to a vertex in their middle.
 std::vector<std::array<Index, 3>> tube_faces(Index rings, Index sides, bool closed) {
   std::vector<std::array<Index, 3>> faces;
   const auto vertex = [&](Index ring, Index side) { return ring % rings * sides + side % sides; };
@@ -124,9 +126,9 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
   for (std::size_t r = 1; r < middles.size(); ++r)
     normals.push_back(transport_normal(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
 
-  // `turn`: rotation of the cross-section from the start to the end of the rope, which winds the strands. On a closed
-  // rope, the strands must meet their beginnings, so the strands make whole turns; `off` makes up for the rotation of
-  // the transported normal.
+  // `turn`: angle by which the strands wind around the rope from its start to its end [rad]. On a closed rope, the last
+  // ring must continue in the first one. Therefore, `turn` is then a number of whole turns plus `off`, the angle from
+  // the normal transported around the whole rope to the first normal.
   const double lay = look.thread_spacing, length = tube.chain->uv[1].x() * pieces;
   const bool has_strands = tube.sides == kSidesOfStrands && lay > 0;
   double turn = has_strands ? kTurn * length / lay : 0;

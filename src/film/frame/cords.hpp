@@ -8,19 +8,20 @@
 
 namespace weft::frame {
 
-/// Whether a surface is the chain of a rope. Its triangles (a, b, b) are the pieces of the rope. Its appearance has the
-/// diameter as thickness, and the lay length of the strands as thread_spacing (0: a round cord without strands).
+/// Whether a surface is the chain of particles of a rope. Such a surface has one triangle (a, b, b) for each piece of
+/// the rope, from particle a to particle b. In its appearance, `thickness` is the diameter of the rope, and
+/// `thread_spacing` is the lay length of its strands (0: a round cord without strands).
 inline bool is_chain(const Surface& surface) {
   return surface.kind == ObjectKind::rope && surface.appearance.thickness > 0;
 }
 
-/// Sweeps tubes along splines through the particles of chains. The faces of a tube stay the same over a run. Not thread
-/// safe.
+/// Sweeps tubes along Catmull-Rom splines through the particles of chains. A tube has the same triangles in all frames.
+/// Not thread-safe.
 class Cords {
  public:
-  /// The snapshot with tubes in place of chains; the same object if it has no chains.
+  /// Returns the snapshot with tubes in place of chains, or `snapshot` itself if it has no chains.
   SnapshotPtr sweep(const SnapshotPtr& snapshot);
-  /// A copy of the snapshot with tubes in place of chains.
+  /// Returns a copy of the snapshot with tubes in place of chains.
   FrameSnapshot sweep(const FrameSnapshot& snapshot);
   static bool has_chains(const FrameSnapshot& snapshot);
 

@@ -16,36 +16,39 @@ namespace weft::frame {
 
 enum class ObjectKind { cloth, obstacle, character, rope };
 
-/// An object of a run, for lists.
+/// Name, kind and size of an object, for lists of the objects of a run.
 struct ObjectInfo {
   std::string name;
   ObjectKind kind;
   std::size_t vertices = 0, faces = 0;
 };
 
-/// A picture for surfaces: rows from the top, bytes R G B A per pixel, colours in sRGB, alpha not premultiplied.
+/// A picture for surfaces: top row first, four bytes (R, G, B, A) per pixel, sRGB colours, alpha not premultiplied.
 struct Texture {
-  int width = 0, height = 0;  ///< pixels, from 1
+  int width = 0, height = 0;  ///< [pixels], at least 1
   std::vector<std::uint8_t> rgba;
 };
 
-/// A picture on a surface, and its mapping.
+/// A picture on a surface, and how it is mapped and blended.
 struct Paint {
-  enum class Wrap { repeat, clamp, mirror, once };  ///< once: no picture beyond the edge
+  /// How the picture continues beyond its edge. once: it does not, and counts as transparent there.
+  enum class Wrap { repeat, clamp, mirror, once };
+  /// ignored: the whole picture is opaque. over_color: transparent parts show the colour of the surface. cutout:
+  /// transparent parts are holes in the surface.
   enum class Alpha { ignored, over_color, cutout };
   std::shared_ptr<const Texture> texture;
-  /// Maps (u, v, 1) of the surface to the picture: 0 to 1 from left to right and from bottom to top.
+  /// Maps (u, v, 1) of the surface to coordinates of the picture: 0 to 1 from left to right and from bottom to top.
   Eigen::Matrix<double, 2, 3> texture_from_uv = Eigen::Matrix<double, 2, 3>::Identity();
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  Alpha alpha = Alpha::ignored;  ///< cutout: transparent parts are holes
+  Alpha alpha = Alpha::ignored;
 };
 
 /// Optical properties of cloth besides its colour, each from 0 to 1.
 struct Finish {
-  double gloss = 0.15;         ///< highlights of threads, wide across the threads and narrow along them
+  double gloss = 0.15;         ///< strength of the highlights of threads, wide across the threads and narrow along them
   double warp_fraction = 0.5;  ///< fraction of warp among the threads on top: 0.5 for a plain weave, more for satin
-  double fuzz = 0.4;           ///< protruding fibres, which scatter light at grazing angles
-  double sheer = 0.25;         ///< light transmitted from the other side
+  double fuzz = 0.4;           ///< amount of protruding fibres, which scatter light at grazing angles
+  double sheer = 0.25;         ///< strength of the light that passes through the cloth; above 0.5: see-through
   Threads threads = Threads::plain;
 };
 
@@ -53,18 +56,20 @@ struct Finish {
 struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
   Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: colour of the side away from weft × warp
-  double roughness = 0.6;          ///< 0 mirror-like to 1 matte
-  double thread_spacing = 0;       ///< distance of drawn threads, or lay length of a rope [m]; 0: draws no threads
+  double roughness = 0.6;          ///< from 0 (mirror-like) to 1 (matte)
+  double thread_spacing = 0;       ///< distance of drawn threads, or lay length of a rope [m]; 0: no threads or strands
   Finish finish;                   ///< cloth only
   double metal = 0;                ///< not for cloth: fraction of metal; at 1, all light is reflected, in `color`
-  double coat = 0;                 ///< not for cloth: strength of a clear coat, 1 as glass
+  double coat = 0;                 ///< not for cloth: strength of a clear coat, from 0 to 1 (reflects like glass)
   double thickness = 0;            ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
-  double hem = 0;                  ///< width of the folded and sewn borders of cloth [m]; 0: borders are cut
-  bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
-  Paint paint;                     ///< multiplied by `color`, or over it: Alpha::over_color, or ignored with Wrap::once
-  /// true: the back shows the picture too, paler by `back_paleness`; false: the back has back_color
+  double hem = 0;                  ///< width of the folded and sewn borders of cloth [m]; 0: cut borders without hem
+  bool checker = false;            ///< faint checkerboard of 0.5 m tiles on the floor, which shows the scale
+  /// The picture covers `color` if its alpha is over_color, or if its alpha is ignored and it wraps `once`. Else it is
+  /// multiplied by `color`.
+  Paint paint;
+  /// true: the back of cloth shows the picture too, paler by `back_paleness`; false: the back has `back_color`.
   bool back_painted = true;
-  double back_paleness = 0;  ///< 0: as the front, 1: white
+  double back_paleness = 0;  ///< from 0 (as the front) to 1 (white)
 };
 
 /// A group of triangles of a surface with its own appearance: a panel of a garment, a material of a character's file.
@@ -80,24 +85,24 @@ struct Surface {
   bool visible = true;
   bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon; computed cameras ignore it
   std::vector<std::array<Index, 3>> triangles;  ///< for drawing and collision; counter-clockwise seen from the front
-  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if cloth passes through it; empty: none
+  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if cloth does not collide with it; empty: all 0
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if they are quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
-  /// Bounding box in world space [m]: for a body, of its motion from time 0 to the end of the scene; for a cloth, of
+  /// Bounding box in world space [m]: of a body over its motion from time 0 to the end of the scene, or of a cloth at
   /// its start. Absent: unknown.
   std::optional<Box3> run_bounds;
-  /// Edges at which the normals of the two faces differ by more are drawn sharp [degrees] (180: all are smooth, as for
-  /// cloth).
+  /// An edge is drawn sharp if the normals of its two faces differ by more than this angle [degrees]. 180: all edges
+  /// are smooth, as for cloth.
   double crease_angle = 30;
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles have `appearance`
   std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into parts; empty if there are none
-  /// Per triangle: coordinates of its corners for the paints, such as metres along the grain of a panel. Empty: `uv`
-  /// applies.
+  /// Per triangle: (u, v) of its corners for Paint::texture_from_uv, such as metres along the grain of a panel. Empty:
+  /// paints use `uv`.
   std::vector<std::array<Vec2, 3>> paint_uv;
 };
 
-/// Whether a surface has pictures, or parts of different colours.
+/// Whether a surface has a picture, or parts whose colours differ from its own.
 inline bool is_painted(const Surface& surface) {
   const Appearance& own = surface.appearance;
   return own.paint.texture || std::ranges::any_of(surface.parts, [&](const SurfacePart& part) {
@@ -109,7 +114,7 @@ inline bool is_painted(const Surface& surface) {
 /// The data of an object that change from frame to frame.
 struct SurfaceState {
   std::vector<Vec3> positions;  ///< world space [m], one per vertex
-  std::vector<float> heat;      ///< per vertex, in the unit of the chosen heat quantity; empty if none is chosen
+  std::vector<float> heat;      ///< per vertex: value of Stage::heat (strain, or speed [m/s]); empty if it is `none`
 };
 
 /// A camera at one time.
@@ -117,26 +122,26 @@ struct Camera {
   std::string name;
   Vec3 position{0, -3, 1.5};  ///< [m]
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
-  double field_of_view = 35;  ///< vertical [degrees]; 0: computed (`track` only)
+  double field_of_view = 35;  ///< vertical [degrees]; 0: computed (only if `kind` is track)
   double aperture = 0;        ///< f-number for a film 24 mm high; 0: everything is sharp
   double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: that of the target
 
-  /// placed: as given above. Cameras of the other kinds are computed from all frames of a run. whole: stands still or
-  /// orbits, with everything in view. follow: moves along with the subjects at a constant distance. close: moves along
-  /// with them as close as they allow. track: stands at `position` and turns toward the subjects.
+  /// placed: has the values above. Cameras of the other kinds are computed from all frames of a run, so that the
+  /// subjects are in view. whole: stands still or orbits. follow: moves along with the subjects at a constant distance.
+  /// close: moves along with them at the smallest distance that shows them. track: stands at `position` and turns
+  /// toward them.
   enum class Kind { placed, whole, follow, close, track };
   Kind kind = Kind::placed;
-  /// Names of surfaces. If empty: for `whole` all visible surfaces except infinite floors; for the other kinds all
-  /// characters, else all cloths, else the same as for `whole`.
+  /// Names of the surfaces to keep in view. If empty and `kind` is whole: all visible surfaces except infinite floors.
+  /// If empty and `kind` is another one: all characters; without characters, all cloths; without both, as for `whole`.
   std::vector<std::string> subjects = {};
-  double azimuth = 33;     ///< of the camera position at this time, from the front to the right [degrees]
-  double elevation = 17;   ///< of the camera position above the subjects [degrees]
-  double margin = 0.14;    ///< fraction of each half of the picture that is left free around the subjects
-  double smoothing = 0.5;  ///< time over which the paths of subjects and camera are smoothed [s]
+  double azimuth = 33;     ///< direction from the subjects to the camera: angle from the front to the right [degrees]
+  double elevation = 17;   ///< direction from the subjects to the camera: angle above the horizontal [degrees]
+  double margin = 0.14;    ///< free space around the subjects [halves of the picture's width or height]
+  double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
 };
 
-/// Maximum number of lights of which pictures show the effect; further ones are ignored. Each costs rays at every
-/// pixel.
+/// Maximum number of lights of a picture, because each light costs rays at every pixel. Further ones are ignored.
 inline constexpr int kMaxLights = 4;
 
 /// A light at one time. Sun: parallel light along `direction`. Spot: from `position` toward `target`.
@@ -144,35 +149,36 @@ struct Light {
   enum class Kind { sun, spot };
   std::string name;
   Kind kind = Kind::sun;
-  Vec3 direction{-0.4, -0.5, -1};  ///< in which the light travels (sun)
+  Vec3 direction{-0.4, -0.5, -1};  ///< direction in which the light travels (sun)
   Vec3 position{0, 0, 5};          ///< [m] (spot)
   Vec3 target{0, 0, 0};            ///< [m] (spot)
   double cone_angle = 45;          ///< full opening [degrees] (spot)
   Vec3 color{1, 1, 1};             ///< sRGB
   double intensity = 1;            ///< at 1, a white matte surface that faces the light appears white
-  double softness = 2;             ///< angular width of the source seen from the scene [degrees]; more: softer shadows
+  double softness = 2;             ///< angular width of the source, seen from the scene [degrees]; blurs shadows
 };
 
-/// Surroundings that stay the same over a run.
+/// Settings of all pictures of a run: environment, exposure and display of heat.
 struct Stage {
+  /// The quantity that a colour scale shows on cloth, in place of the colours of the cloth.
   enum class Heat { none, strain, speed };
   enum class Look { studio, stage, daylight, clay, wire, strain };
   Vec3 up{0, 0, 1};
   Look look = Look::studio;
-  // If absent, the look determines the value.
-  std::optional<Vec3> sky_color;     ///< sRGB; light from above and background near the horizon
+  // The look sets each of the next three values that is absent.
+  std::optional<Vec3> sky_color;     ///< sRGB; light from above; if there is no floor, also tints a grey backdrop
   std::optional<Vec3> ground_color;  ///< sRGB; light reflected from below
   /// Fraction of the light that comes from the surroundings, 0 to 1; the rest comes from the lights.
   std::optional<double> sky_intensity;
   double exposure = 0;     ///< exposure compensation; positive: brighter [stops]
   double motion_blur = 0;  ///< shutter angle [degrees, 360 per frame]; 0: everything is sharp
   Heat heat = Heat::none;
-  double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: the frame's largest
+  double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: the largest of the frame
 };
 
 /// One frame, never changed after it is made.
 struct FrameSnapshot {
-  int frame = 0;    ///< number k
+  int frame = 0;    ///< number k, from 0
   double time = 0;  ///< k / fps [s]
   std::shared_ptr<const Stage> stage;
   std::vector<std::shared_ptr<const Surface>> surfaces;

@@ -1,4 +1,4 @@
-// Names of heat quantities in files.
+// Names of the heat quantities (Stage::Heat) in files.
 #pragma once
 
 #include <string_view>
@@ -7,7 +7,7 @@
 
 namespace weft::frame {
 
-/// Name of the property in files that holds the heat; empty if there is none.
+/// Name of the vertex property in which files store the heat; empty for Heat::none.
 inline std::string_view name_of(Stage::Heat heat) {
   constexpr std::string_view kNames[] = {"", "strain", "speed"};
   return kNames[static_cast<std::size_t>(heat)];

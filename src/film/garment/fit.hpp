@@ -1,4 +1,4 @@
-// Fits a pattern to a wearer: ratios of the wearer's measures to those of the body that the pattern is drawn for.
+// Fits a pattern to a wearer, by ratios of body measures.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace weft::garment {
 
-/// Measures a body in its pose: girths of the convex sections of the trunk, without the arms. The waist is the
-/// narrowest section from kLowestWaist to kHighestWaist (fit.cpp); hip and chest are the widest sections below and
+/// Measures a body in its pose. Girths are those of convex sections of the trunk, without the arms. The waist is the
+/// narrowest section between kLowestWaist and kHighestWaist (fit.cpp); hip and chest are the widest sections below and
 /// above the waist.
 Measures measure(const Wearer& wearer);
 
 /// Factors (x: across, y: up) on the lengths of a pattern. Across: the largest ratio among the girths that the pattern
-/// names, so that the garment is nowhere tighter than drawn. Up: the ratio of the heights of the necks, as heads differ
-/// most; 1 if the pattern names no height. If the pattern names only a height, both are this ratio. `where` names the
-/// scene entry for messages. Throws Error(scene_invalid) if the pattern names no measures.
+/// states, so that the garment is nowhere tighter than drawn. Up: the ratio of neck heights, since heads differ more
+/// between bodies; 1 if the pattern states no height. If the pattern states only a height, its ratio is used for both.
+/// `where` names the scene entry for messages. Throws Error(scene_invalid) if the pattern states no measures.
 Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
-/// Warning text for a pattern with a waist but no chest measure, if the wearer's hips are too narrow to hold the waist
-/// of the garment, scaled by `factors`; empty if the hips hold it.
+/// Warning text, or empty. Warns if a pattern has a waist but no chest measure, as skirts and trousers, and the
+/// wearer's hips are too narrow to hold the waist of the garment after scaling by `factors`.
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
 
 }  // namespace weft::garment

@@ -19,15 +19,17 @@
 namespace weft::garment {
 namespace {
 
-// Minimum distance from the skin at the start, as a fraction of the gap of the pattern.
+// Minimum distance of bent panels from the skin at the start, as a fraction of Pattern::gap.
 constexpr double kClearanceRatio = 0.6;
-// Panel edges shorter than this fraction of the spacing become a point.
+// Panel edges shorter than this fraction of the spacing become points: narrow triangles there would be very stiff.
 constexpr double kPointEdgeRatio = 0.25;
-// Minimum area of a triangle after an edge flip, as a fraction of a square of the mesh: flatter triangles are needles.
+// Minimum area of a triangle after an edge flip / area of a lattice square; smaller ones would be needles.
 constexpr double kMinFlippedArea = 0.02;
 // Maximum number of particles of one garment.
 constexpr double kMaxParticles = 1e6;
 
+/// Makes a garment. A point belongs to the mesh of one panel; points are numbered through all panels. A vertex of the
+/// garment is a point, or several points that seams join.
 class Sewing {
  public:
   Sewing(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer)
@@ -60,8 +62,6 @@ class Sewing {
   double length(std::size_t panel, std::size_t edge) const {
     return Arclength(pattern_.panels[panel].edges[edge].curves).length();
   }
-  // Panel edges that are much shorter than mesh edges become points, since narrow triangles beside them would be very
-  // stiff.
   int segments_for(double length) const {
     return length < kPointEdgeRatio * spacing_ ? 0 : std::max(1, static_cast<int>(std::lround(length / spacing_)));
   }
@@ -102,7 +102,7 @@ class Sewing {
     }
   }
 
-  // Points of an edge from its start, numbered through all panels.
+  // The points of an edge, from its start.
   std::vector<Index> chain(std::size_t panel, std::size_t edge) const {
     const auto& counts = segments_[panel];
     const Index begin = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(edge), 0);
@@ -111,7 +111,7 @@ class Sewing {
     for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_point_[panel] + (begin + k) % around);
     return points;
   }
-  // Start position of a point of a panel before seams join it to others [m].
+  // Start position of a point of a flat panel before seams join it to others [m].
   Vec2 start_position(std::size_t panel, const Vec2& p) const {
     const Panel& of = pattern_.panels[panel];
     const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
@@ -121,9 +121,9 @@ class Sewing {
     return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Joins the points of both sides of each seam. For flat panels, the start positions determine which ends meet. For
-  // bent panels, and for edges without ends, such as a whole outline, the condition that both fronts face outward
-  // determines their directions.
+  // Joins the points of both edges of each seam. For flat panels, the ends whose start positions are nearer are joined.
+  // For bent panels, and for closed edges such as a whole outline, the ends are joined so that both fronts face
+  // outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
@@ -147,10 +147,11 @@ class Sewing {
     }
   }
 
-  /// Flips inner edges of a panel that connect the same two joined vertices as another edge. If two panels are sewn
-  /// around a corner, a triangle in the corner of each has such an edge; this flips it in the panel of higher index.
+  /// Flips inner edges of a panel that connect the same two vertices as an edge of another panel: this happens if two
+  /// panels are sewn together around a corner, and in both a triangle cuts off the corner. Of two such edges, flips
+  /// that in the panel of higher index.
   void flip_shared_edges() {
-    constexpr int kMaxFlipRounds = 8;  // check_surface() refuses the rare edges that remain
+    constexpr int kMaxFlipRounds = 8;  // rarely, edges remain; check_surface() then refuses the pattern
     for (int round = 0; round < kMaxFlipRounds; ++round) {
       std::map<JoinedEdge, int> triangles_at;
       for (std::size_t p = 0; p < meshes_.size(); ++p)
@@ -166,7 +167,7 @@ class Sewing {
     const Index u = sewn_together_.root(first_point_[panel] + a), v = sewn_together_.root(first_point_[panel] + b);
     return {std::min(u, v), std::max(u, v)};
   }
-  // `triangles_at`: number of triangles in all panels at each edge.
+  // `triangles_at`: number of triangles at each edge of the garment. Returns whether it flipped an edge.
   bool flip_shared_edges_of_panel(std::size_t panel, std::map<JoinedEdge, int>& triangles_at) {
     std::vector<mesh::Triangle>& triangles = meshes_[panel].triangles;
     const std::vector<Vec2>& points = meshes_[panel].points;
@@ -186,7 +187,7 @@ class Sewing {
       const auto opposite = [&](const mesh::Triangle& t) {
         return *std::ranges::find_if(t, [&](Index v) { return v != a && v != b; });
       };
-      // Counter-clockwise: from, right, to, left.
+      // The edge runs from `from` to `to`; the corners of both triangles are counter-clockwise from, right, to, left.
       const mesh::Triangle& one = triangles[first];
       const std::size_t k = at(static_cast<Index>(std::ranges::find(one, opposite(one)) - one.begin()));
       const Index left = one[k], from = one[(k + 1) % 3], to = one[(k + 2) % 3], right = opposite(triangles[second]);
@@ -218,7 +219,7 @@ class Sewing {
     }
   }
 
-  // Makes the triangles of joined vertices, with their shape in the pattern.
+  // Makes the triangles of the garment with their rest shapes in the panels.
   void make_triangles() {
     const bool reinforced = std::ranges::any_of(
         pattern_.panels, [](const Panel& panel) { return panel.reinforcement != mesh::Reinforcement{}; });
@@ -232,7 +233,7 @@ class Sewing {
           joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // A panel that is drawn from the inside has left and right exchanged when seen from its front.
+        // The front of a panel that is drawn from the inside is its other side: exchange left and right.
         if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
@@ -312,7 +313,7 @@ class Sewing {
       }
   }
 
-  // A band along an edge, with the lengths of the edge in the pattern.
+  // A band along an edge; its rest lengths are those of the edge in the pattern.
   mesh::Band band_along(const std::string& edge) const {
     const auto [p, e] = pattern_.find(edge);
     const std::vector<Index> points = chain(p, e);
@@ -332,7 +333,7 @@ class Sewing {
       if (seam.closure()) continue;
       const SewnSeam& sewn = garment_.seams[s++];
       if (seam.allowance == 0 || sewn.vertices.size() < 2) continue;
-      // An eased-in seam gets the mean length of its two sides.
+      // The length of an eased-in seam is the mean of its two edges.
       const double mean = 0.5 * (sewn.length_a + sewn.length_b);
       mesh::Band band{.vertices = sewn.vertices, .lengths = {}, .allowance = seam.allowance};
       band.lengths.assign(band.vertices.size() - 1, mean / static_cast<double>(band.vertices.size() - 1));
@@ -350,8 +351,8 @@ class Sewing {
     }
   }
 
-  // Ties the points of two edges together. The start positions of the edges determine which ends meet; for edges whose
-  // own ends meet, the sides from which their panels are drawn.
+  // Adds the ties of closures. The ends of two edges whose start positions are nearer are tied together; if an edge is
+  // closed, the sides from which the panels are drawn determine the direction.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
@@ -376,12 +377,12 @@ class Sewing {
         const std::vector<double> lengths = band_along(edge).lengths;
         return std::accumulate(lengths.begin(), lengths.end(), 0.0);
       };
-      // As for other seams, the length is the mean of both sides.
+      // As for other seams, the length is the mean of both edges.
       const double length = 0.5 * (length_of(seam.a) + length_of(seam.b));
-      // If both edges are closed, each ends with the particle with which it begins.
+      // If both edges are closed, each begins and ends with the same particle, which gets one tie.
       const bool ring = last > 0 && a.front() == a.back() && b.front() == b.back();
       const std::size_t places = ring ? last : a.size();
-      // If there are more buttons than particles, each particle gets one tie.
+      // At most one tie per pair of particles, even if there are more buttons.
       const std::size_t count = seam.buttons > 0 ? std::min(places, static_cast<std::size_t>(seam.buttons)) : places;
       const std::size_t gaps = ring ? count : count - 1;
       for (std::size_t i = 0; i < count; ++i) {
@@ -393,7 +394,7 @@ class Sewing {
         }
         if (seam.open) tie.open = *seam.open;
         if (seam.closed) tie.closed = *seam.closed;
-        // Edges may meet in one particle at an end; such a particle needs no tie.
+        // Two edges can share their end particle, which needs no tie.
         if (tie.a != tie.b) garment_.sheet.ties.push_back(tie);
       }
     }
@@ -412,10 +413,10 @@ class Sewing {
   const Wearer* wearer_;                    // null: panels start flat
   std::vector<std::vector<int>> segments_;  // per panel and edge
   std::vector<FlatMesh> meshes_;            // per panel
-  std::vector<Index> first_point_;          // first point of each panel, numbered through all panels
+  std::vector<Index> first_point_;          // of each panel
   Index point_count_ = 0, vertex_count_ = 0;
   DisjointSets sewn_together_{0};
-  std::vector<Index> vertex_of_point_;  // vertex that each point becomes part of
+  std::vector<Index> vertex_of_point_;  // vertex of each point
   Garment garment_;
 };
 

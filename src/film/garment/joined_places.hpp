@@ -1,4 +1,4 @@
-// Combines triangles that are laid out one by one into one mesh.
+// Joins triangles with separately given corner positions into one mesh by least squares.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -9,8 +9,9 @@
 
 namespace weft::garment {
 
-/// Positions x of vertices in N dimensions [m] from positions p at which each triangle puts its corners. They minimise
-/// Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all triangles, plus anchor · Σ ‖x_i − p_i‖² over their corners.
+/// Finds positions x of vertices in N dimensions [m]. Each triangle gives positions p of its own corners; triangles
+/// that share a vertex may give different ones. x minimises Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all
+/// triangles, plus anchor · Σ ‖x_i − p_i‖² over their corners.
 template <int N>
 class JoinedPlaces {
  public:

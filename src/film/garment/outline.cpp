@@ -9,14 +9,14 @@
 namespace weft::garment {
 namespace {
 
-// Maximum number of curves of an outline; a drawn pattern piece has about twenty.
+// Maximum number of curves in path data; the drawn outline of a panel has about twenty.
 constexpr std::size_t kMaxCurves = 10000;
 // Larger coordinates are treated as damaged data.
 constexpr double kMaxCoordinate = 1e6;
-// Number of pieces per curve for measuring its length. The relative error of a quarter circle is then 2e-6.
+// Number of straight pieces for measuring the length of a curve; relative error for a quarter circle: 2e-6.
 constexpr int kPiecesPerCurve = 256;
-// Minimum angle between two curves at a corner [rad]. Pieces of one curve meet within 1 or 2 degrees, seam and hem at
-// 60 or more.
+// Minimum angle between two consecutive curves that counts as a corner [rad]. Pieces of one curve meet at angles of 1
+// or 2 degrees, seam and hem at 60 degrees or more.
 constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
 
 Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {
@@ -27,7 +27,7 @@ double angle_between(const Vec2& a, const Vec2& b) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
 }
 
-/// An elliptic arc by its end points (SVG 1.1, appendix F.6.5).
+/// An elliptic arc in the endpoint parameterisation of SVG (1.1, appendix F.6.5).
 struct Arc {
   Vec2 radii;
   double turn;  // angle of the ellipse's x axis [rad]
@@ -41,8 +41,7 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
     outline.push_back(straight(from, to));
     return;
   }
-  // In the frame of the ellipse, with the radii as units, the arc lies on a unit circle. Radii that are too small are
-  // enlarged.
+  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. Too small radii are enlarged.
   const Vec2 half = turn.inverse() * Vec2(0.5 * (from - to));
   const double radius_ratio = half.cwiseQuotient(r).norm();
   if (radius_ratio > 1) r *= radius_ratio;
@@ -170,20 +169,20 @@ class PathReader {
     } while (result_.mistake.empty() && number_follows());
   }
 
-  // Whether the pen misses the start by rounded digits at most.
+  // Whether the pen is at the start, up to rounding of the digits in the data.
   bool is_at_start() const { return (pen_ - first_).norm() <= 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm()); }
 
   void close() {
     closed_ = true;
     if (!is_at_start()) return add(straight(pen_, first_));
-    // The end is moved to the start.
+    // Remove the rounding error: move the end to the start.
     if (!outline_.empty()) outline_.back().control[3] = first_;
     pen_ = first_;
   }
 
   void draw(char kind, bool relative) {
     const Vec2 from = pen_;
-    Vec2 handle = from;  // last control point, which S and T reflect
+    Vec2 handle = from;  // control point that a following S or T reflects
     if (kind == 'L') {
       add(straight(from, point(relative)));
     } else if (kind == 'H') {
@@ -264,7 +263,8 @@ ParsedPath parse_path(std::string_view data) {
 }
 
 bool has_corner(const Curve& before, const Curve& after) {
-  constexpr double kEndOffset = 1e-3;  // direction at an end is taken at this offset: control points may coincide
+  constexpr double kEndOffset =
+      1e-3;  // tangents are taken at this parameter from the ends, where control points may coincide
   const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
   return std::abs(angle_between(in, out)) > kMinCornerAngle;
 }

@@ -1,4 +1,4 @@
-// Outlines of pattern pieces: closed chains of curves, written as SVG paths.
+// Outlines of panels: closed chains of curves, written as SVG paths.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace weft::garment {
 
-/// A cubic Bézier curve by its control points. A straight line has its inner control points at thirds.
+/// A cubic Bézier curve, given by its control points. The inner control points of a straight line are at its thirds.
 struct Curve {
   std::array<Vec2, 4> control;
-  bool continues_arc = false;  ///< continues the arc that the preceding curve belongs to
+  bool continues_arc = false;  ///< this curve is a further piece of the SVG arc of the preceding curve
 
   const Vec2& start() const { return control[0]; }
   const Vec2& end() const { return control[3]; }
@@ -24,43 +24,42 @@ struct Curve {
 
 Curve straight(const Vec2& from, const Vec2& to);
 
-/// A closed chain: each curve starts at the end of the preceding one, and the first at the end of the last.
+/// A closed chain: each curve starts at the end of the preceding one, the first at the end of the last.
 using Outline = std::vector<Curve>;
 
-/// Reads a number at the start of a text, as std::from_chars() does, but also one with a plus, as SVG allows.
+/// As std::from_chars(), but accepts a leading plus sign too, as SVG does.
 std::from_chars_result parse_number(std::string_view text, double& value);
 
 struct ParsedPath {
   Outline outline;
-  std::string mistake;  ///< "expected a number, got "x" at character 12"; empty: none
+  std::string mistake;  ///< such as: expected a number, got "x" at character 12; empty: none
 };
 struct ParsedPaths {
   std::vector<Outline> outlines;  ///< one or more, if there is no mistake
   std::string mistake;
 };
 
-/// Reads closed outlines, each of which ends with Z or where it starts, from the path data of SVG 1.1 (section 8.3), in
-/// the units of the data. Arcs become cubic curves of at most a quarter turn each (maximum error: 3e-4 of the radius).
+/// Reads closed outlines from path data of SVG 1.1 (section 8.3), in the units of the data. Each outline ends with Z or
+/// at its start point. An arc becomes cubic curves of at most a quarter turn each (maximum error: 3e-4 of the radius).
 /// Curves of zero length are dropped.
 ParsedPaths parse_paths(std::string_view data);
 
-/// As parse_paths(), for data that must have one outline.
+/// As parse_paths(), but reports a mistake if the data have several outlines.
 ParsedPath parse_path(std::string_view data);
 
 /// Whether two consecutive curves meet at a corner.
 bool has_corner(const Curve& before, const Curve& after);
 
-/// The edge of each curve, numbered from 0. An edge extends from corner to corner; the first one starts at the first
-/// corner.
+/// For each curve, the number of its edge. Edges extend from corner to corner; edge 0 starts at the first corner.
 std::vector<std::size_t> edges_between_corners(const Outline& outline);
 
 /// Number of points of each curve in sample_points().
 inline constexpr int kPointsPerCurve = 16;
 
-/// Points along a chain of curves, from its start and without its end.
+/// kPointsPerCurve points on each curve of a chain, at equal steps of its parameter, without the end of the chain.
 std::vector<Vec2> sample_points(const std::vector<Curve>& chain);
 
-/// Arc length along a chain of curves, to place points at equal distances on it.
+/// Arc length along a chain of curves; finds points at equal distances along it.
 class Arclength {
  public:
   explicit Arclength(const std::vector<Curve>& chain);

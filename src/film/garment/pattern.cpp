@@ -26,7 +26,7 @@ using scene::TableBuilder;
 using scene::Type;
 using scene::within;
 
-// Maximum deviation of a fold edge from a straight line, relative to its length. Not 0, since files round coordinates.
+// Maximum deviation of a fold edge from a straight line / its length; allows for rounded coordinates.
 constexpr double kMaxFoldDeviation = 1e-3;
 // Maximum size of a panel [m].
 constexpr double kMaxPanelSize = 100;
@@ -102,8 +102,9 @@ const Table& panel_rules() {
   return kTable;
 }
 
-// Assigns a name to each curve; the pieces of an arc share one. In a drawing, programs cut curves into many pieces:
-// there an edge from corner to corner may have one name. Returns a description of a mistake, or an empty string.
+// Writes the edge name of each curve to `names`; all pieces of an arc get one name. `text` has one name per curve or,
+// in a drawing (`drawn`), one name per edge from corner to corner, since drawing programs cut edges into many curves.
+// Returns a description of a mistake, or an empty string.
 std::string name_curves(const std::string& text, const Outline& outline, bool drawn, std::vector<std::string>& names) {
   std::istringstream stream(text);
   std::vector<std::string> words;
@@ -149,8 +150,8 @@ std::string name_across_fold(const std::string& name) {
   return name + "_2";
 }
 
-/// Completes a half that is cut on the fold: removes the edge `fold` and appends the mirror image. Edges that meet the
-/// fold continue beyond it. Returns a description of a mistake, or an empty string.
+/// Completes a panel of which the outline is one half: removes the edge named `fold` and appends the mirror image of
+/// the rest. The edges that end at the fold continue beyond it. Returns a description of a mistake, or an empty string.
 std::string unfold(const std::string& fold, Outline& outline, std::vector<std::string>& names) {
   const std::size_t n = outline.size();
   std::size_t first = 0;
@@ -183,8 +184,7 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
   return {};
 }
 
-/// Copies from the original what the file does not give for the mirror image, with left and right exchanged. `entry`:
-/// key path of the mirror image.
+/// Copies keys that a mirror image lacks from its original, with left and right exchanged. `entry`: its key path.
 void copy_from_original(const Panel& from, const std::string& entry, const Findings& findings, Panel& panel) {
   const auto is_given = [&](const char* key) { return findings.has(fmt::format("{}.{}", entry, key)); };
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
@@ -211,7 +211,7 @@ std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& pa
   if (panel.path.empty()) try {
       return load_svg_panel(panel.file, panel.id);
     } catch (const Error& error) {
-      // All panels of an unreadable drawing give the same message: keep it once.
+      // Report the message only once, since all panels of an unreadable drawing give the same one.
       if (std::ranges::find(in_drawings, error.what()) == in_drawings.end()) in_drawings.emplace_back(error.what());
       return std::nullopt;
     }
@@ -221,7 +221,7 @@ std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& pa
   return std::nullopt;
 }
 
-/// Completes a mirror image from its original.
+/// Completes panel `i` from its original, if it is a mirror image.
 void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& findings) {
   Panel& panel = panels[i];
   if (panel.mirror_of.empty()) return;
@@ -242,7 +242,7 @@ void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& 
 /// Derives the edges of a panel from its outline, and reports mistakes in the outline.
 void derive_edges(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
-    if (!panel.mirror_of.empty()) return;  // its original has no outline or does not exist, which has been reported
+    if (!panel.mirror_of.empty()) return;  // its original has no outline or does not exist; both are reported
     if (!findings.has_mistake(path + ".path") && !findings.has_mistake(path + ".file"))
       findings.report(path, "expected an outline, as path, as file and id or as mirror_of, got none");
     return;
@@ -287,7 +287,7 @@ void derive_edges(Panel& panel, const std::string& path, Findings& findings, std
                                                    scene::in_quotes(edge.name)));
 }
 
-/// Checks names of edges against those of the panels.
+/// Checks that names of edges exist, and that seams use each edge once.
 class EdgeNames {
  public:
   EdgeNames(const Pattern& pattern, Findings& findings) : findings_(findings) {
@@ -297,7 +297,7 @@ class EdgeNames {
     }
   }
   void check(const std::string& name, const std::string& key) {
-    // Panels without a valid outline have no edges; the mistake in the outline is reported already.
+    // Report no unknown edge if a panel has an invalid outline, which is already reported: such a panel has no edges.
     if (has_invalid_panel_ || findings_.has_mistake(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));

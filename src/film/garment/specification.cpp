@@ -24,21 +24,21 @@ using scene::Findings;
 
 // Larger coordinates are treated as damaged data.
 constexpr double kMaxSpecCoordinate = 1e5;
-constexpr double kDefaultUnitsPerMetre = 100;  // of files that state no unit: centimetres
-// Height above the floor of the origin of the body in the Garment-Pattern-Generator, the predecessor of GarmentCode
-// [m]. The origin lies between pelvis and chest.
+constexpr double kDefaultUnitsPerMetre = 100;  // if the file states no unit: centimetres
+// Height above the floor of the origin in files of the Garment-Pattern-Generator, the predecessor of GarmentCode [m].
+// It lies between pelvis and chest.
 constexpr double kPredecessorOrigin = 1.12;
-// Measures of the bodies that the patterns of GarmentCode and of its predecessor are drawn for [m].
+// Measures of the bodies for which patterns of GarmentCode and of its predecessor are drawn [m].
 constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .height = 1.72};
 constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .height = 1.66};
-// If a pattern has the predecessor's format of curves, or if its lowest point is below this height [m], it is one of
-// the predecessor, whose heights count from that origin, else from the floor. The limit is negative since flat trousers
-// end below the heel.
+// Heights in files count from the floor, in files of the predecessor from kPredecessorOrigin. A file counts as one of
+// the predecessor if it has the predecessor's format of curves, or if its lowest point is below this height [m]. The
+// limit is negative, since flat trousers may end below the floor.
 constexpr double kMinLowestPanel = -0.2;
-// Minimum height of the lowest point above the floor at the start [m].
+// Minimum height above the floor at which the lowest point of a pattern starts [m].
 constexpr double kMinStartHeight = 0.02;
 
-/// The direction along an axis of the drawing, up, down, left or right, that is nearest to `direction`.
+/// The axis direction of the drawing (up, down, left or right) that is nearest to `direction`.
 Vec2 nearest_axis(const Vec2& direction) {
   return std::abs(direction.x()) > std::abs(direction.y()) ? Vec2(direction.x() > 0 ? 1 : -1, 0)
                                                            : Vec2(0, direction.y() > 0 ? 1 : -1);
@@ -97,7 +97,7 @@ class Reader {
     mistake(path, fmt::format("expected \"{}\" of a specification of GarmentCode, got none", name));
     return nullptr;
   }
-  /// The numbers of a list of `count` numbers; reports a mistake and returns nothing if `value` is not such a list.
+  /// The numbers of a list with `count` entries. Reports a mistake and returns nothing if `value` is no such list.
   std::optional<std::vector<double>> numbers(const json& value, std::size_t count, const std::string& key) {
     std::vector<double> list;
     if (value.is_array())
@@ -179,8 +179,8 @@ class Reader {
     edges.push_back(std::move(edge));
   }
 
-  /// A control point. Its coordinates `p` are those of the panel if the file says so; else they count along the edge
-  /// and to its left, in units of the edge's length.
+  /// A control point of an edge. `p` are coordinates of the panel if has_absolute_curvature_; else they count along the
+  /// edge and to its left, in units of the edge's length.
   Vec2 control_point(const SpecEdge& edge, const std::vector<double>& p) const {
     if (has_absolute_curvature_) return {unit_ * p[0], unit_ * p[1]};
     const Vec2 along = edge.end - edge.start;
@@ -188,7 +188,7 @@ class Reader {
   }
 
   void read_curvature(const json& curvature, const std::string& key, SpecEdge& edge) {
-    if (curvature.is_array()) {  // the predecessor's format: quadratic
+    if (curvature.is_array()) {  // the predecessor's format: one control point
       is_predecessor_ = true;
       if (const auto p = numbers(curvature, 2, key)) edge.control.push_back(control_point(edge, *p));
       return;
@@ -250,14 +250,15 @@ class Reader {
   bool mentions(const SpecPanel& panel, std::initializer_list<const char*> words) const {
     return std::ranges::any_of(words, [&](const char* w) { return panel.words.find(w) != std::string::npos; });
   }
-  /// Whether a panel belongs to a leg: front and back of a leg are sewn together at the inside of the leg.
+  /// Whether a panel belongs to a leg: it lies on one side of the body, and an edge near the inside of the leg is sewn
+  /// to a panel of the same side that faces the other way.
   bool has_inseam(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     double inner = std::numeric_limits<double>::infinity(), outer = 0, low = inner, high = -inner;
     for (const auto& points : panel.points)
       for (const Vec2& each : points) {
         const Vec3 x = panel.in_space(each);
-        if (x.x() * panel.middle.x() < -1e-3) return false;  // crosses the middle
+        if (x.x() * panel.middle.x() < -1e-3) return false;  // the panel crosses the middle of the body
         inner = std::min(inner, std::abs(x.x())), outer = std::max(outer, std::abs(x.x()));
         low = std::min(low, x.y()), high = std::max(high, x.y());
       }
@@ -288,7 +289,7 @@ class Reader {
       else if (mentions(panel, {"collar", "turtle"}))
         panel.around = Around::neck;
     }
-    // Counts the limb panels between each limb panel and the trunk, along stitches.
+    // Sets limbs_to_trunk, by a breadth-first search along stitches from the trunk.
     for (int step = 0; step < static_cast<int>(panels_.size()); ++step)
       for (const SpecStitch& stitch : stitches_)
         for (const std::size_t k : {0, 1}) {
@@ -300,7 +301,8 @@ class Reader {
         }
   }
 
-  /// Direction toward the trunk in the drawing of an arm panel, which may lie in any of four orientations.
+  /// Direction toward the trunk in the drawing of an arm panel. Files draw arm panels in any of four orientations;
+  /// therefore the direction follows from the edges that are sewn to the trunk or to a panel nearer to it.
   Vec2 direction_to_trunk(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     Vec2 cap(0, 0);
@@ -319,7 +321,7 @@ class Reader {
     return nearest_axis((cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9)));
   }
 
-  /// Map from a panel's drawing to the panel as worn, seen from outside.
+  /// The map from the drawing of a panel to the panel as worn, seen from outside.
   Eigen::Affine2d map_to_worn(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     const Vec2 mirror(panel.mirrored ? -1 : 1, 1);
@@ -328,7 +330,7 @@ class Reader {
     if (arm)
       up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
-      up = panel.is_limb() ? nearest_axis(height) : height.normalized();  // legs may be apart in the file
+      up = panel.is_limb() ? nearest_axis(height) : height.normalized();  // files may spread the legs
     Eigen::Matrix2d turn;
     turn << up.y(), -up.x(), up.x(), up.y();
     Eigen::Affine2d map = Eigen::Affine2d::Identity();
@@ -343,7 +345,7 @@ class Reader {
         for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
     const bool from_predecessor = is_predecessor_ || lowest < kMinLowestPanel;
     pattern.measures = from_predecessor ? kPredecessorBody : kBody;
-    // Trousers that end below the floor are raised: they are drawn lower than they are worn.
+    // Trousers are drawn lower than they are worn: raise those that end below the floor.
     const double floor = from_predecessor ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& of = panels_[p];
@@ -352,7 +354,7 @@ class Reader {
       panel.name = of.name;
       panel.around = of.around;
       const bool arm = of.around == Around::left_arm || of.around == Around::right_arm;
-      // Panels of limbs lie in front or behind.
+      // Panels of limbs start at the front or the back, unless they face sideways.
       const bool sideways = std::abs(of.outward.z()) < 0.5;
       double angle = std::atan2(of.outward.x(), of.outward.z());
       if (of.is_limb() && !sideways) angle = of.outward.z() > 0 ? 0 : std::numbers::pi;
@@ -362,7 +364,7 @@ class Reader {
       const Vec3 across(std::cos(angle), 0, -std::sin(angle));
       panel.position = Vec2(across.dot(of.translation), of.translation.y() - floor);
       if (of.is_limb()) {
-        // Centres the lower end of a limb panel on the limb's axis.
+        // Centre the lower end of a limb panel on the axis of the limb.
         double low = std::numeric_limits<double>::infinity();
         std::vector<Vec2> points;
         for (const auto& each : of.points)
@@ -373,7 +375,7 @@ class Reader {
         map.pretranslate(Vec2(-0.5 * (left + right), 0));
         panel.position->x() = 0;
       }
-      // Along arms and at the neck, bodies differ too much from the body of the pattern to use the file's positions.
+      // At arms and neck, bodies differ too much for the positions of the file: seams determine them.
       if (arm || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
       panel.turned = of.turned;
@@ -393,8 +395,8 @@ class Reader {
     }
   }
 
-  /// Places turned panels folded over the panels that they are sewn to, one layer above. Both edges of the seam then
-  /// run in the same direction.
+  /// Places each turned panel on top of the panels to which right_wrong stitches join it, one layer above. Both edges
+  /// of such a seam then run in the same direction.
   void place_turned_panels(Pattern& pattern) const {
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       Panel& panel = pattern.panels[p];
@@ -409,7 +411,7 @@ class Reader {
           for (const Vec2& x : ends_as_worn(q, stitch.edge[1 - k])) other.push_back(*under.position + x);
         }
       if (own.empty()) continue;
-      // Rigid motion in the plane by least squares (Kabsch).
+      // The rigid motion in the plane that maps its edges to those of the other panels, by least squares (Kabsch).
       const auto count = static_cast<double>(own.size());
       const Vec2 from = std::accumulate(own.begin(), own.end(), Vec2(0, 0)) / count;
       const Vec2 to = std::accumulate(other.begin(), other.end(), Vec2(0, 0)) / count;

@@ -1,7 +1,7 @@
-// Patterns of GarmentCode and of its predecessor, the Garment-Pattern-Generator (Korosteleva & Lee, "Generating
+// Reads patterns of GarmentCode and of its predecessor, the Garment-Pattern-Generator (Korosteleva & Lee, "Generating
 // Datasets of 3D Garments with Sewing Patterns", 2021; Korosteleva & Sorkine-Hornung, "GarmentCode: Programming
-// Parametric Sewing Patterns", 2023): flat panels, placed around a body that faces z with y up, and stitches between
-// their edges.
+// Parametric Sewing Patterns", 2023). Their files (specifications) contain flat panels, placed around a body that faces
+// z with y up, and stitches between panel edges.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace weft::garment {
 
-/// Reads a specification (JSON) as a pattern whose panels are bent around the wearer. Heights, angles and rotations are
-/// those of the specification, except that seams determine the heights of panels around arms and neck, and that panels
-/// of limbs go to the front or the back unless they face sideways. Labels, names and stitches determine the part that
-/// each panel goes around. Edges are named by their numbers. Reports mistakes to `findings` and then returns false.
-/// Does not check outlines and edge names.
+/// Converts a specification (JSON) to a pattern whose panels start bent around the wearer. Labels, names and stitches
+/// determine the part of the body for each panel. Heights, angles and rotations come from the specification, with two
+/// exceptions: seams determine the heights of panels around arms and neck, and panels of limbs start at the front or
+/// the back unless they face sideways. Edges are named by their numbers. Reports mistakes to `findings` and then
+/// returns false. Does not check outlines and edge names.
 bool read_specification(const std::string& text, scene::Findings& findings, Pattern& pattern);
 
 }  // namespace weft::garment

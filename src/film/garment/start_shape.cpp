@@ -12,9 +12,9 @@ namespace weft::garment {
 namespace {
 
 // Weight of the term that holds each vertex at its position in the panel alone, relative to the weight of an edge. It
-// determines the position of panels that no seam joins to others, and hardly anything else.
+// is small: only the positions of panels without a seam to others depend on it noticeably.
 constexpr double kAnchorWeight = 1e-4;
-// Number of smoothing rounds after the depth is computed.
+// Number of smoothing rounds of inflate().
 constexpr int kSmoothingRounds = 10;
 
 double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
@@ -25,7 +25,7 @@ double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
 
 using VertexPair = std::array<Index, 2>;
 
-// Sides of triangles as pairs of vertices, separate for front and back.
+// The sides of all triangles as pairs of vertices: index 0 front panels, 1 back panels.
 std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) {
   std::array<std::set<VertexPair>, 2> sides;
   for (const LaidPanel& panel : panels)
@@ -37,7 +37,7 @@ std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) 
   return sides;
 }
 
-// Moves the vertices with `free` set halfway to the mean of their neighbours, all at once, in each round.
+// In each round, moves the vertices with `free` set halfway to the previous mean of their neighbours.
 void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
   for (int round = 0; round < kSmoothingRounds; ++round) {
     const std::vector<Vec3> before = x;
@@ -65,7 +65,7 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
   std::ranges::set_intersection(sides[0], sides[1], std::back_inserter(shared));
   std::vector<std::vector<Index>> neighbours(plane.size());
   std::vector<char> free(plane.size(), 1);
-  std::vector<double> side_sign(plane.size());  // side of the plane: −1 front, 1 back
+  std::vector<double> side_sign(plane.size());  // −1 front, 1 back
   for (std::size_t half = 0; half < 2; ++half)
     for (const auto& [a, b] : sides[half]) {
       neighbours[at(a)].push_back(b);

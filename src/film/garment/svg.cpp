@@ -27,21 +27,20 @@ namespace weft::garment {
 namespace {
 
 constexpr double kMetresPerPixel = 0.0254 / 96;
-// Maximum distance by which the outline of a seam allowance exceeds that of the panel on each side of a panel [m].
-// Allowances are 10 to 30 mm wide, and wider at corners.
+// Maximum distance from a seam line to the outline of its seam allowance, on each side of a panel [m]. Allowances are
+// 10 to 30 mm wide, and wider at corners.
 constexpr double kMaxAllowance = 0.06;
 // Maximum count of numbers read from one attribute.
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
 using Box = Eigen::AlignedBox2d;
 
-/// Stops the traversal at elements that are too deep for the recursive functions of this file. (pugixml itself does not
-/// recurse.)
+/// Stops a traversal at elements nested too deeply for recursive functions of this file (pugixml does not recurse).
 struct DepthLimit : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
 };
 
-/// A parsed SVG file, with its error reporting.
+/// A parsed SVG file; reports errors with their place in the file.
 class Drawing {
  public:
   explicit Drawing(const std::filesystem::path& file) : file_(file) {
@@ -82,7 +81,8 @@ class Drawing {
     return name == "path" || name == "polygon" || name == "rect" || name == "g";
   }
 
-  /// Whether the element is drawn where it stands; others are drawn where something refers to them, or not at all.
+  /// Whether the element is drawn at its own place. Elements inside of others such as `defs` are drawn only where
+  /// another element refers to them.
   static bool is_drawn(const pugi::xml_node& node) {
     constexpr std::array<std::string_view, 6> kNotDrawn{"defs", "marker", "clipPath", "mask", "symbol", "pattern"};
     for (pugi::xml_node above = node.parent(); above; above = above.parent())
@@ -90,7 +90,7 @@ class Drawing {
     return true;
   }
 
-  /// Finds "path:2", the second path in the order of the drawing: programs such as Valentina write no ids.
+  /// Finds an element by number: "path:2" is the second drawn path. Programs such as Valentina write no ids.
   pugi::xml_node find_numbered(const std::string& id) const {
     const std::size_t colon = id.find(':');
     if (colon == std::string::npos) return {};
@@ -102,7 +102,7 @@ class Drawing {
     });
   }
 
-  /// Suggestions for the message about an unknown id.
+  /// Text that suggests ids, for the message about an unknown id.
   std::string suggest_ids(const std::string& id) const {
     std::vector<std::string> known;
     std::size_t paths = 0;
@@ -134,7 +134,7 @@ class Drawing {
   pugi::xml_document document_;
 };
 
-// The numbers of a text, separated by white space or commas; nothing if it contains anything else.
+// The numbers of a text, separated by white space or commas. Returns nothing if the text contains anything else.
 std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   std::vector<double> numbers;
   for (;;) {
@@ -149,7 +149,7 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   }
 }
 
-// A length such as "210mm" in [m]; nothing for percentages and invalid text.
+// A length such as "210mm", converted to metres. Returns nothing for percentages and invalid text.
 std::optional<double> parse_length(std::string_view text) {
   double value = 0;
   const auto [end, error] = parse_number(text, value);
@@ -184,12 +184,12 @@ double metres_per_unit(const Drawing& drawing) {
   check_view_box(drawing, root, box);
   if (!width) drawing.refuse(root, "width: expected the size of the sheet, such as 210mm, beside a viewBox, got none");
   double unit = *width / (*box)[2];
-  // If the height is given too, the smaller of both units counts, as in browsers.
+  // If the height is given too, the smaller of the two units applies, as in browsers.
   if (const auto height = parse_length(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
   return unit;
 }
 
-// One of the transforms of SVG 1.1, section 7.6; nothing if it is invalid.
+// A single transform of SVG 1.1, section 7.6. Returns nothing if it is invalid.
 std::optional<Affine> transform_of(std::string_view kind, const std::vector<double>& p) {
   const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
   Affine t = Affine::Identity();
@@ -253,7 +253,7 @@ Affine place_nested(const Drawing& drawing, const pugi::xml_node& node) {
   return t.translate(0.5 * (size - scale * inner)).scale(scale).translate(-Vec2((*box)[0], (*box)[1]));
 }
 
-// The outlines in the coordinates of the element.
+// The outlines of an element, in the coordinates of the element.
 std::vector<Outline> outlines_of(const Drawing& drawing, const pugi::xml_node& node) {
   const std::string_view kind = node.name();
   std::string data = node.attribute("d").value();
@@ -267,7 +267,7 @@ std::vector<Outline> outlines_of(const Drawing& drawing, const pugi::xml_node& n
     const auto round_x = number("rx"), round_y = number("ry");
     if (!round_x || !round_y || round_x->size() > 1 || round_y->size() > 1)
       drawing.refuse(node, "expected rx and ry as numbers, got something else");
-    // If only one radius is given, it counts for both; larger ones than half the size are cut to it.
+    // If only one radius is given, it applies to both axes. Radii are limited to half the size.
     const auto& rx_or_ry = round_x->empty() ? *round_y : *round_x;
     const auto& ry_or_rx = round_y->empty() ? *round_x : *round_y;
     const double left = x->empty() ? 0 : (*x)[0], top = y->empty() ? 0 : (*y)[0], w = (*width)[0], h = (*height)[0];
@@ -288,7 +288,7 @@ std::vector<Outline> outlines_of(const Drawing& drawing, const pugi::xml_node& n
   return std::move(parsed.outlines);
 }
 
-/// Converts coordinates of elements to metres, y upward.
+/// Converts elements of a drawing to outlines in metres, with y upward.
 class Sheet {
  public:
   explicit Sheet(const Drawing& drawing) : drawing_(drawing), unit_(metres_per_unit(drawing)) {}
@@ -337,7 +337,7 @@ struct Label {
   Vec2 place;  ///< [m]
 };
 
-/// Content of a group.
+/// The outlines and labels of a panel in a group.
 struct Group {
   std::vector<pugi::xml_node> outlines;
   std::vector<Label> edges;
@@ -377,7 +377,7 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   group.edges.push_back({name, place});
 }
 
-/// Whether FreeSewing draws this beside the outline of a part: seam allowances, scale boxes and other marks.
+/// Whether an element of FreeSewing is no outline of a panel: a seam allowance, scale box or another mark.
 bool is_mark(const pugi::xml_node& node) {
   constexpr std::array<std::string_view, 6> kMarks{"sa", "scalebox", "note", "mark", "help", "hidden"};
   std::istringstream classes(node.attribute("class").value());
@@ -408,7 +408,7 @@ double distance(const Curve& curve, const Vec2& from) {
   return nearest;
 }
 
-/// Names each curve by the nearest label of its edge or, without labels, by the number of its edge.
+/// The edge name of each curve: the nearest label of its edge, or the number of the edge if the edge has no label.
 std::vector<std::string> name_edges(const Outline& outline, const std::vector<Label>& labels) {
   const std::size_t n = outline.size();
   const std::vector<std::size_t> edge = edges_between_corners(outline);
@@ -436,7 +436,7 @@ DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pu
                                group.outlines.size()));
   DrawnPanel panel{sheet.outline(group.outlines[0]), {}};
   if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
-  // Without an origin text, the group's own origin counts, so that moving the group on the sheet changes nothing.
+  // Without an origin text, the origin of the group is used, so that moving the group on the sheet changes nothing.
   const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
   for (Curve& curve : panel.outline)
     for (Vec2& p : curve.control) p -= origin;

@@ -1,4 +1,4 @@
-// Reads outlines of pattern pieces from drawings.
+// Reads outlines of panels from SVG drawings.
 #pragma once
 
 #include <filesystem>
@@ -9,23 +9,25 @@
 
 namespace weft::garment {
 
-/// Maximum size of a drawing [bytes]; a pattern of ten pieces has some kilobytes.
+/// Maximum size of a drawing [bytes]; a pattern of ten panels has some kilobytes.
 inline constexpr std::uintmax_t kMaxSvgBytes = std::uintmax_t{16} << 20;
 
 struct DrawnPanel {
   Outline outline;                 ///< [m], y upward
-  std::vector<std::string> names;  ///< one per curve; empty if the drawing names none
+  std::vector<std::string> names;  ///< edge name of each curve; empty if the drawing has none
 };
 
-/// Loads the path, polygon or rect with this id or this Inkscape label, or with a number, such as "path:2" for the
-/// second path, from an SVG file. The file's width, height and viewBox define the unit; without a viewBox it is the CSS
-/// pixel (96 to the inch). Transforms of the element and of its ancestors apply, and places of nested drawings. If a
-/// path is an outline with its seam allowance around it, the former counts. If the id or label is that of a group, the
-/// one closed outline in the group is loaded (seam allowances and marks of FreeSewing do not count), together with the
-/// texts. A text "edge: hem" names the edge whose curves are nearest to the start of the text; an edge extends from
-/// corner to corner, or to the curve that is nearer to another text. Edges without a text are named by their number,
-/// counted from 1 at the first corner. A text "origin" marks the origin of the panel, by default that of the group.
-/// Other texts are ignored. Throws Error(asset_unreadable) with "file:line:column: element: what is wrong".
+/// Loads the outline of a panel from an SVG file. `id` is the id or Inkscape label of a path, polygon, rect or group,
+/// or a number such as "path:2" for the second path.
+/// - Units: the file's width, height and viewBox define the unit; without a viewBox it is the CSS pixel (96 to the
+///   inch). The transforms of the element and of its ancestors apply, as do the positions of nested svg elements.
+/// - Path with two outlines, a seam line and its seam allowance around it: the seam line is loaded.
+/// - Group: its only closed outline is loaded (seam allowances and marks of FreeSewing do not count), and its texts.
+///   The text "edge: hem" names the edge, from corner to corner, whose curves are nearest to the start of the text. If
+///   several texts name one edge, each curve of the edge gets the nearest name. An edge without a text is named by its
+///   number, counted from 1 at the first corner. A text "origin" marks the origin of the panel; by default it is that
+///   of the group. Other texts are ignored.
+/// Throws Error(asset_unreadable) with "file:line:column: element: what is wrong".
 DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& id);
 
 }  // namespace weft::garment

@@ -9,11 +9,11 @@
 namespace weft::garment {
 namespace {
 
-// Minimum distance of lattice points from the outline, in spacings. The strip between lattice and outline is then 0.6
-// to 1.6 spacings wide, so the angles of its triangles are bounded from both sides.
+// Minimum distance of lattice points from the outline [spacings]. The strip between lattice and outline is then 0.6 to
+// 1.6 spacings wide, so that its triangles have no very small or very large angles.
 constexpr double kMinOutlineDistance = 0.62;
-// Shift of each lattice row against the row below, in spacings, which makes the choice of diagonals unique. The shift
-// is large against rounding errors, and even its sum over all rows is too small to change angles visibly.
+// Shift of each lattice row relative to the row below [spacings]. It makes the Delaunay diagonal of each square unique.
+// It is large compared with rounding errors, but its sum over all rows is too small to change angles visibly.
 constexpr double kRowShift = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) {
@@ -55,8 +55,8 @@ class Delaunay {
     const Index t = locate(p);
     const auto vertex = static_cast<Index>(points_.size());
     points_.push_back(p);
-    // Split the triangle into three around the point. If the point is on an edge, one of the three is flat until that
-    // edge is flipped.
+    // Split the triangle into three at the point. If the point is on an edge of the triangle, one of the three has no
+    // area until that edge is flipped.
     const auto [a, b, c] = triangles_[at(t)];
     const auto [ab, bc, ca] = neighbours_[at(t)];
     const auto u = static_cast<Index>(triangles_.size()), v = u + 1;
@@ -75,8 +75,8 @@ class Delaunay {
  private:
   const Vec2& point(Index i) const { return points_[at(i)]; }
 
-  // Finds the triangle that contains p: walks from the last one found across edges that separate it from p; if this
-  // walk leaves the region, searches all triangles.
+  // Finds the triangle that contains p. Starts from the triangle found last and crosses edges that separate the current
+  // triangle from p. If this path leaves the polygon, searches all triangles.
   Index locate(const Vec2& p) const {
     Index t = last_;
     for (std::size_t steps = 0; steps < triangles_.size(); ++steps) {
@@ -98,7 +98,7 @@ class Delaunay {
       smallest = std::min(smallest, orientation(point(corners[k]), point(corners[(k + 1) % 3]), p));
     return smallest;
   }
-  // A side that has p on its outside; 3 if there is none.
+  // A side of the triangle that has p on its outer side; 3 if there is none.
   std::size_t side_towards(Index t, const Vec2& p) const {
     const mesh::Triangle& corners = triangles_[at(t)];
     for (std::size_t k = 0; k < 3; ++k)
@@ -131,20 +131,20 @@ class Delaunay {
       for (std::size_t side : {0U, 1U}) stack_.emplace_back(t, side), stack_.emplace_back(s, side);
     }
   }
-  // Whether to flip edge ab between triangles abc and bad: only if the quadrilateral adbc is convex, and if d is inside
-  // the circumcircle of abc by more than rounding errors.
+  // Whether to flip edge ab between triangles abc and bad: if the quadrilateral adbc is convex, and d is inside the
+  // circumcircle of abc by more than rounding errors.
   bool should_flip(Index a, Index b, Index c, Index d) const {
     const Vec2 &pa = point(a), &pb = point(b), &pc = point(c), &pd = point(d);
     if (orientation(pc, pa, pd) <= 0 || orientation(pd, pb, pc) <= 0) return false;
     const double size = std::max((pa - pb).squaredNorm(), (pc - pd).squaredNorm());
-    // A flat triangle has no circumcircle: any flip is better.
+    // A triangle without area has no circumcircle, and any flip improves it.
     if (orientation(pa, pb, pc) <= 1e-12 * size) return true;
     return in_circle(pa, pb, pc, pd) > 1e-12 * size * size;
   }
 
   std::vector<Vec2> points_;
   std::vector<mesh::Triangle> triangles_;
-  std::vector<std::array<Index, 3>> neighbours_;  // across the side from corner k to k + 1; -1: outline
+  std::vector<std::array<Index, 3>> neighbours_;  // across the side from corner k to k + 1; −1: none (outline)
   std::vector<std::pair<Index, std::size_t>> stack_;
   Index last_ = 0;
 };
@@ -189,8 +189,8 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
     low = low.cwiseMin(rotated.back());
     high = high.cwiseMax(rotated.back());
   }
-  // The lattice has whole rows and is centred, so that a symmetric panel gets a symmetric lattice. Adding kRowShift
-  // keeps rounding errors from losing a row if the size is a multiple of the spacing.
+  // The lattice has whole squares and is centred, so that a symmetric panel gets a symmetric lattice. If the size of
+  // the panel is a multiple of the spacing, rounding errors could lose a row; adding kRowShift prevents this.
   std::array<int, 2> count{};
   for (int axis = 0; axis < 2; ++axis) count[axis] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);
   const Vec2 first = 0.5 * (low + high) - 0.5 * spacing * Vec2(count[0], count[1]);
@@ -221,7 +221,7 @@ std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;
       const Vec2 &a = outline[i], &b = outline[i + 1], &c = outline[j], &d = outline[(j + 1) % n];
-      // Skips sides whose bounding boxes are apart: collinear sides touch only if they overlap.
+      // Skip sides whose bounding boxes are apart: for collinear sides, the signs below are 0 even without overlap.
       if ((a.cwiseMax(b) - c.cwiseMin(d)).minCoeff() < 0 || (c.cwiseMax(d) - a.cwiseMin(b)).minCoeff() < 0) continue;
       if (orientation(a, b, c) * orientation(a, b, d) <= 0 && orientation(c, d, a) * orientation(c, d, b) <= 0)
         return std::pair(i, j);

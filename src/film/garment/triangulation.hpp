@@ -1,4 +1,4 @@
-// Flat meshes of pattern pieces.
+// Flat meshes of panels.
 #pragma once
 
 #include <optional>
@@ -11,27 +11,28 @@
 
 namespace weft::garment {
 
-/// A triangulated flat region. The points of its outline come first, in their order.
+/// A triangulated flat region. Its first points are those of its outline, in their order.
 struct FlatMesh {
   std::vector<Vec2> points;
   std::vector<mesh::Triangle> triangles;  ///< counter-clockwise
 };
 
-/// Constrained Delaunay triangulation of a simple counter-clockwise polygon with inner points; keeps the polygon's
-/// edges. Starts from clipped ears, inserts the points one by one and flips edges until each is locally Delaunay
-/// (Lawson, "Software for C1 Surface Interpolation", 1977); triangles outside the polygon never exist. Deterministic.
+/// Constrained Delaunay triangulation of a simple counter-clockwise polygon with inner points; keeps the edges of the
+/// polygon. Starts from the polygon cut into triangles by ear clipping, inserts the points one by one, and flips edges
+/// until each is locally Delaunay (Lawson, "Software for C1 Surface Interpolation", 1977). No triangle lies outside the
+/// polygon at any time. Deterministic.
 FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside);
 
-/// Fills a polygon whose edges are about as long as `spacing` with a lattice of squares of that size along `warp` (a
-/// unit vector) and across it. All squares are cut along the same diagonal, so that six edges meet at each inner point
-/// and folds run smoothly (measured: diagonals that alternate from row to row corrugate every sharp fold). Lattice
-/// points too near to the outline are left out; the triangulation fills the strip along it.
+/// Meshes a polygon whose edges are about `spacing` long. Most of it becomes a lattice of squares of that size, along
+/// the unit vector `warp` and across it; a Delaunay triangulation fills the strip between lattice and outline. All
+/// squares are cut along the same diagonal, so that six edges meet at each inner lattice point and folds are smooth
+/// (measured: diagonals that alternate from row to row corrugate every sharp fold).
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing);
 
 /// Area of a polygon [m²]; positive if it is counter-clockwise.
 double polygon_area(std::span<const Vec2> outline);
 
-/// Indices of the start points of the first two sides of a closed polygon that cross or touch without being neighbours.
+/// Indices of the start points of two sides of a closed polygon that cross or touch without being neighbours.
 std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const Vec2> outline);
 
 }  // namespace weft::garment

@@ -14,21 +14,21 @@
 namespace weft::garment {
 namespace {
 
-// Maximum relative difference between the scales along u and v that still counts as one scale: hanging cloth is some
-// percent longer in one direction.
+// Maximum relative difference between the scales along u and v up to which one scale is used for both: hanging cloth is
+// some percent longer in one direction.
 constexpr double kMaxScaleDifference = 0.05;
 // UVs are in one of the units below if more than kMinFractionInUnit of all edges (weighted by length in the UVs) are as
-// long as in the mesh within kUnitTolerance. (Measured with a tolerance of 5 %, not with this one: 35 to 67 % for
-// garments that start sewn together around a body with strongly stretched seams; 4 % for charts of a body.)
+// long as in the mesh within kUnitTolerance. For comparison, measured fractions within 5 %: 35 to 67 % for garments
+// that start sewn together around a body with strongly stretched seams, and 4 % for charts of a body.
 constexpr double kUnitTolerance = 0.02, kMinFractionInUnit = 0.2;
 constexpr std::array<std::pair<double, const char*>, 4> kUnits{
     {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}}};
-// Triangles that are longer or shorter than in the mesh by more than this factor have no usable shape in the UVs.
-// (Cloth laid around a body before sewing has triangles 36 times as long as in its pattern.)
+// Triangles that are longer or shorter in the mesh than in the UVs by more than this factor have no usable shape in the
+// UVs. (Cloth that starts around a body before sewing can have triangles 36 times as long as in its pattern.)
 constexpr double kMaxSizeRatio = 100;
 // Rounds of iteratively reweighted least squares for the scale.
 constexpr int kScaleRounds = 30;
-// Tolerance for `alike`: half of all edges of cloth keep their lengths even if seams are pulled together.
+// Tolerance for `alike`. Even if seams are pulled together, half of all edges of cloth keep their lengths within it.
 constexpr double kAlikeTolerance = 0.05;
 
 struct UvEdge {
@@ -44,7 +44,7 @@ double twice_area(const UvCorners& c) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// The triangle of the mesh, laid flat.
+/// A triangle of the mesh, rotated into the plane.
 UvCorners flatten_triangle(const mesh::Triangle& t, std::span<const Vec3> x) {
   const Vec3 a = x[at(t[1])] - x[at(t[0])], b = x[at(t[2])] - x[at(t[0])];
   const double length = a.norm(), along = b.dot(a) / length;
@@ -65,8 +65,8 @@ std::vector<UvEdge> edges_of(const mesh::Mesh& mesh, std::span<const UvCorners> 
   return edges;
 }
 
-/// Median over all edges of the length of one UV unit [m], weighted by length in the UVs, since weights by length in
-/// the mesh would prefer stretched edges.
+/// Median length of one UV unit [m], weighted by length in the UVs: weights by length in the mesh would prefer
+/// stretched edges.
 double median_scale(const std::vector<UvEdge>& edges) {
   std::vector<std::pair<double, double>> ratios;
   double total = 0;
@@ -82,9 +82,9 @@ double median_scale(const std::vector<UvEdge>& edges) {
   return 1;
 }
 
-/// Lengths (su, sv) of a UV unit along u and v for which (su du)² + (sv dv)² is the squared length of most edges:
-/// minimises the sum of relative errors by iteratively reweighted least squares. `even`: scale at which the iteration
-/// starts.
+/// Fits the lengths (su, sv) of a UV unit along u and v, so that (su du)² + (sv dv)² is the squared length of edges in
+/// the mesh. Minimises the sum of absolute relative errors by iteratively reweighted least squares. `even`: scale at
+/// which the iteration starts. Returns nothing if the edges do not determine both lengths.
 std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, double even) {
   Vec2 squares = Vec2::Constant(even * even);
   for (int round = 0; round < kScaleRounds; ++round) {
@@ -105,7 +105,8 @@ std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, doub
   return Vec2(squares.cwiseSqrt());
 }
 
-/// Fraction of all edges, weighted by their lengths in the UVs, whose length differs by at most `tolerance`.
+/// Fraction of all edges, weighted by length in the UVs, whose scaled length in the UVs differs from that in the mesh
+/// by at most `tolerance`, relative.
 double fraction_alike(const std::vector<UvEdge>& edges, const Vec2& scale, double tolerance) {
   double alike = 0, total = 0;
   for (const UvEdge& e : edges) {
@@ -134,7 +135,7 @@ Vec2 principal_stretches(const UvCorners& from, const UvCorners& to) {
   Eigen::Matrix2d a, b;
   a << from[1] - from[0], from[2] - from[0];
   b << to[1] - to[0], to[2] - to[0];
-  // A map is the sum of a rotation with scaling, and a reflection with scaling.
+  // A 2×2 matrix is the sum of a scaled rotation and a scaled reflection.
   const Eigen::Matrix2d map = b * a.inverse();
   const double rotation = 0.5 * std::hypot(map(0, 0) + map(1, 1), map(1, 0) - map(0, 1));
   const double reflection = 0.5 * std::hypot(map(0, 0) - map(1, 1), map(1, 0) + map(0, 1));
@@ -158,9 +159,9 @@ std::size_t count_islands(const mesh::Mesh& mesh, std::span<const UvCorners> uv)
   return islands;
 }
 
-/// Replaces triangles whose height is less than `flattest` times the longest edge of all triangles by their shape in
-/// the mesh, if that shape is higher. Counts them as unusable, and adds the area that they lack in the UVs [m²] to
-/// `unusable_area`.
+/// Replaces a triangle of the panels by its shape in the mesh, if its height is less than `flattest` times the longest
+/// edge of all triangles and its height in the mesh is larger. Counts replaced triangles as unusable, and adds the area
+/// that they lack in the UVs [m²] to `unusable_area`.
 void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& rest) {
   const auto longest_edge = [](const UvCorners& c) {
     return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
@@ -178,7 +179,7 @@ void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& res
   }
 }
 
-/// Weighted quantile: the value below which `fraction` of the weight lies. `values`: value and weight.
+/// Weighted quantile: the value below which `fraction` of the weight lies. `values`: pairs of value and weight.
 double quantile(std::vector<std::pair<double, double>> values, double fraction) {
   std::ranges::sort(values);
   double total = 0, sum = 0;

@@ -1,4 +1,4 @@
-// Treats a mesh with texture coordinates as cloth sewn from flat panels: its UV islands are the panels.
+// Derives the rest shape of a mesh from its UVs: each UV island is a flat panel from which the cloth was sewn.
 #pragma once
 
 #include <array>
@@ -11,29 +11,28 @@
 
 namespace weft::garment {
 
-/// UV coordinates of the corners of a triangle, v upward; not finite if there are none.
+/// UV coordinates of the corners of a triangle, v upward; not finite if the triangle has none.
 using UvCorners = std::array<Vec2, 3>;
 
-/// Panels in real size, derived from UVs, and how well they fit the mesh.
+/// Panels in real size, derived from UVs, and a measure of how well they fit the mesh.
 struct UvRest {
   std::vector<UvCorners> material;  ///< per triangle: (weft, warp) of its corners, counter-clockwise [m]
   Vec2 scale{1, 1};                 ///< length of one UV unit along u and v [m]
-  std::string unit;  ///< name of the unit, such as "centimetres"; empty: measured against the mesh, or given
+  std::string unit;                 ///< name of the unit, such as "centimetres"; empty: the scale is fitted or given
   std::size_t islands = 0;
-  std::size_t mirrored = 0;  ///< number of triangles that are mirrored in the UV plane; `material` mirrors them back
-  /// Number of triangles without UVs, without an area in the UV plane, a hundred times longer or shorter there than in
-  /// the mesh, or too flat there (`flattest` of rest_from_uv). They keep their shape in the mesh.
+  std::size_t mirrored = 0;  ///< number of triangles that are clockwise in the UVs; `material` mirrors them
+  /// Number of triangles that keep their shape in the mesh, because they have no UVs, have no area in the UVs, are a
+  /// hundred times longer or shorter there than in the mesh, or are too flat there (`flattest` of rest_from_uv()).
   std::size_t unusable = 0;
-  /// Area of unusable triangles, as a fraction of the mesh's area. Of those too flat, only the area that they lack in
-  /// the UVs counts, since small triangles can be too flat in UVs that fit.
+  /// Area of `unusable` triangles in the mesh, as a fraction of the area of the mesh. Small triangles can be too flat
+  /// even in UVs that fit; therefore, of triangles that are too flat, only the area that they lack in the UVs counts.
   double unusable_area = 0;
-  /// Largest relative difference in length between a triangle of the mesh and its panel, over all directions: the
-  /// median over the area, and the 95 % quantile.
+  /// The stretch of a triangle is the largest relative difference in length between mesh and panel, over all
+  /// directions. Its median and 95 % quantile over all usable triangles, weighted by area.
   double median_stretch = 0, stretch_quantile_95 = 0;
-  double alike = 0;  ///< fraction of all edges, weighted by UV length, that are as long as in the mesh within 5 %
+  double alike = 0;  ///< fraction of all edges, weighted by UV length, whose length differs by at most 5 %
 
-  /// Whether `alike` is at least a half and `unusable_area` below 1 %: true for cloth, not for UV charts of other
-  /// surfaces.
+  /// Whether the UVs are panels of cloth, not charts of another surface: `alike` ≥ 0.5 and `unusable_area` < 1 %.
   bool has_panel_lengths() const;
   /// Text for messages, such as "3 islands, 1 unit = 1 m (metres), 98 % of all edges as long as in the mesh within 5 %;
   /// its triangles are off by 1.2 % (median), 95 % of them by at most 4.3 %".
@@ -41,10 +40,10 @@ struct UvRest {
 };
 
 /// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or none. If `scale` is not given, it is the unit
-/// (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh; at least a fifth of the
-/// edges must be. Otherwise it is the median scale of all edges or, if the fitted scales for u and v differ by more
-/// than 5 %, these two. `flattest`: minimum height of a triangle in the UVs, relative to the longest edge of all
-/// triangles there. Flatter triangles are unusable if they are higher in the mesh.
+/// (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh. If fewer than a fifth
+/// of the edges fit each unit, `scale` is instead the median scale of all edges; if the scales along u and v, fitted
+/// separately, differ by more than 5 %, these two are used. `flattest`: minimum height of a triangle in the UVs,
+/// relative to the longest edge of all triangles there. A flatter triangle is unusable if it is higher in the mesh.
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
                     double flattest = 0);
 

@@ -11,23 +11,23 @@
 namespace weft::garment {
 namespace {
 
-// Fraction of the upper arm, from the shoulder, whose sections are replaced by the nearest one farther out, since they
-// cut the shoulder obliquely.
+// Sections in this fraction of the upper arm, from the shoulder, cut it obliquely; the nearest one farther out replaces
+// them.
 constexpr double kShoulderFraction = 0.25;
 // Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
 constexpr double kWristExtension = 0.3;
-// Fraction of head and neck, down from the crown, in which the widest section is sought.
+// Fraction of the height of head and neck, down from the crown, in which the widest section of the head is searched.
 constexpr double kHeadFraction = 0.6;
-// Height of the end of a hood's dome above the crown [m], and ratio of its narrowest section to the widest.
+// Dome of the head's tube: height of its end above the crown [m], and ratio of its narrowest section to the widest.
 constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
-// Minimum number of skin points of a section.
+// Minimum number of points at which the skin's edges cross the plane of a section.
 constexpr std::size_t kMinSectionPoints = 6;
 
 double radians(int direction, int directions) {
   return 2 * std::numbers::pi * direction / directions;
 }
 
-/// A polygonal axis: corners from its low end to its high end.
+/// A polygonal axis, given by its corners from the low end to the high end.
 struct Axis {
   std::vector<Vec3> corners;
   double first = 0;  // s of the first corner
@@ -37,7 +37,8 @@ struct Axis {
     for (std::size_t k = 1; k < corners.size(); ++k) sum += (corners[k] - corners[k - 1]).norm();
     return sum;
   }
-  /// Point and direction at a length from the low end; the direction changes gradually around a corner.
+  /// Point and direction at a length from the low end. The direction is averaged over kCornerBlend on both sides, so
+  /// that it changes gradually at corners.
   std::pair<Vec3, Vec3> at(double length) const {
     constexpr double kCornerBlend = 0.06;  // [m] on each side of a corner
     Vec3 along = Vec3::Zero(), point = corners.front();
@@ -160,7 +161,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     const double s = first_ + i * kSpacing;
     if (arm && -s < kShoulderFraction * (axis.corners[2] - axis.corners[1]).norm()) cuts.back() = std::nullopt;
   }
-  // A hood hangs from the widest section of the head.
+  // A hood hangs from the widest section of the head: keep only this section.
   double widest = first_;
   if (part == Around::head) {
     const auto girth_of = [](const std::optional<Section>& section) {
@@ -174,7 +175,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     *found = section;
     widest = first_ + static_cast<double>(found - cuts.begin()) * kSpacing;
   }
-  // A position without a section of its own uses the nearest section, moved along the axis.
+  // A position without a section gets the nearest section, moved along the axis.
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < cuts.size(); ++i)
     if (cuts[i]) known.push_back(i);
@@ -189,7 +190,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
         axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
     sections_.push_back(section);
   }
-  // A hood closes above the head, so that seams that meet at its crown start near the crown.
+  // Narrow the tube to a dome above the head, so that seams that end at the crown of a hood start near the crown.
   if (part == Around::head)
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       const double height =
@@ -198,7 +199,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
       sections_[i].scale = scale;
       for (double& support : sections_[i].support) support *= scale;
     }
-  // A cloak hangs from the widest section above, so each section is widened to contain the one above it.
+  // A cloak hangs from the widest section above: widen each section so that it contains the section above.
   if (part == Around::body)
     for (std::size_t i = sections_.size() - 1; i-- > 0;) {
       const Section& above = sections_[i + 1];
@@ -233,8 +234,8 @@ Tube::Section Tube::section(double s) const {
   return mixed;
 }
 
-// Boundary curve of a support function h(φ): h n + h' t, with the unit vectors n in the direction φ and t in the
-// direction φ + 90°.
+// Points of the boundary of a section. A support function h(φ) has the boundary h n + h' t, with the unit vectors n in
+// the direction φ and t in the direction φ + 90°.
 Tube::Ring Tube::ring(const Section& section, double outward) {
   Ring points;
   const double step = 2 * std::numbers::pi / kDirections;
@@ -265,7 +266,7 @@ Vec3 Tube::at(double s, double angle, double length, double outward) const {
   const Ring points = ring(here, here.scale * outward);
   const auto n = static_cast<long>(points.size());
   const auto point = [&](long k) -> const Vec3& { return points[static_cast<std::size_t>(((k % n) + n) % n)]; };
-  // Walk along the ring from the direction of the angle, forward or backward.
+  // Walk along the ring from the direction `angle`, forward or backward.
   const double place = angle / (2 * std::numbers::pi) * kDirections;
   auto k = static_cast<long>(std::floor(place));
   double fraction = place - std::floor(place);

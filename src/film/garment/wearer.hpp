@@ -1,4 +1,4 @@
-// The body that wears a garment, and tubes around its parts that panels are bent along.
+// The body that wears a garment, and the tubes around its parts on which panels start.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ enum class Region : std::uint8_t { trunk, left_arm, right_arm, left_leg, right_l
 /// Joints of an arm, from shoulder to wrist, or of a leg, from hip to ankle [m].
 using Limb = std::array<Vec3, 3>;
 
-/// Height of the joint at the base of the neck, as a fraction of the body height, of the mannequin. Patterns are drawn
-/// for such bodies.
+/// Height of the joint at the base of the mannequin's neck, as a fraction of the body height. It is also assumed for
+/// the bodies for which patterns are drawn.
 inline constexpr double kNeckHeightRatio = 0.83;
 
 /// A body at the start, in its own axes: x to its left, y to its back, z up, origin on the floor below its hips [m].
@@ -31,30 +31,33 @@ struct Wearer {
   Eigen::Isometry3d to_world = Eigen::Isometry3d::Identity();
 };
 
-/// Part that panels are bent around. The tube of torso and neck is upright and goes around all but the arms. The tube
-/// of the head has the head's widest section everywhere, and narrows to a dome above. The tube of the body also goes
-/// around the arms and never narrows downward. The tube of a leg continues up to the neck, around half of the trunk.
+/// Part of the body around which a panel starts bent. The tubes of the parts:
+/// - torso, neck: upright, around the body without the arms;
+/// - body: upright, around the body with the arms, nowhere narrower than higher up;
+/// - head: the widest section of the head at all heights, closed by a dome above;
+/// - arm: around the arm alone;
+/// - leg: around the leg and, above it up to the neck, around this half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
 inline const std::vector<std::string> kAroundNames = {"",         "torso",     "body",     "neck",     "head",
                                                       "left_arm", "right_arm", "left_leg", "right_leg"};
 
-/// The same part on the other side.
+/// The part on the other side of the body; parts in the middle stay the same.
 Around mirrored(Around part);
 
-/// A tube around a part: convex sections of the skin across an axis. Coordinates on the tube: s along the axis, and a
-/// length along the section [m]. s increases toward the trunk: for upright parts, it is the height above the floor; for
-/// arms, it is 0 at the shoulder and negative below. The length runs counter-clockwise seen from the trunk or from
-/// above.
+/// A tube around a part of the body, made of convex sections of the skin across an axis. A point of the tube has two
+/// coordinates [m]: s along the axis, and a length along the section. s increases toward the trunk. For upright parts,
+/// s is the height above the floor; for legs, the length along the axis from the floor; for arms, 0 at the shoulder and
+/// negative below. The length increases counter-clockwise, seen from the trunk or from above.
 class Tube {
  public:
   /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part.
   Tube(const Wearer& wearer, Around part);
 
-  /// Girth at s, with sections moved outward by a distance [m]. The end sections continue beyond the ends of the tube.
-  /// In the dome of a hood, the girth is that of the section before it narrows.
+  /// Girth of the section at s after it is moved outward by a distance [m]. Beyond the ends of the tube, the end
+  /// sections continue. In the dome of the head, returns the girth of the section before narrowing.
   double girth(double s, double outward) const;
-  /// The point at a length along the section from the point that faces an angle [rad]: 0 to the front, π/2 to the
-  /// wearer's left.
+  /// The point at `length` along the section at s, moved outward by `outward` [m]. The length starts at the direction
+  /// `angle` [rad]: 0 is the front, π/2 the wearer's left.
   Vec3 at(double s, double angle, double length, double outward) const;
   /// Direction of increasing s.
   Vec3 along(double s) const;
@@ -62,13 +65,13 @@ class Tube {
   double high() const { return first_ + kSpacing * static_cast<double>(sections_.size() - 1); }
 
  private:
-  static constexpr double kSpacing = 0.01;  // distance between sections [m], over which the skin bends little
-  static constexpr int kDirections = 96;    // directions of a section, 10 mm apart on a chest
-  /// A convex section by its support function: the extent from the centre in each direction.
+  static constexpr double kSpacing = 0.01;  // distance between sections [m]; the skin hardly changes over it
+  static constexpr int kDirections = 96;    // directions per section; points are 10 mm apart on a chest
+  /// A convex section, given by its support function: the extent from the centre in each direction.
   struct Section {
     Vec3 centre, front, left, along;
     std::array<double, kDirections> support;
-    double scale = 1;  // factor on lengths along the section and outward; below 1 in the dome of a hood
+    double scale = 1;  // factor on lengths along the section and outward; below 1 in the dome
   };
   using Ring = std::array<Vec3, kDirections>;
 

@@ -17,24 +17,24 @@
 namespace weft::garment {
 namespace {
 
-// Distance between layers at the start [m]: more than any fabric's contact thickness.
+// Distance between layers at the start [m]; larger than the contact thickness of any fabric.
 constexpr double kLayerDistance = 0.01;
-// Slack in a ring with a closure or a slit [m], so that its two edges do not start in the same place.
+// Additional width of a ring with a closure or a slit [m], so that the two edges of the opening start apart.
 constexpr double kOpeningSlack = 0.03;
-// Minimum distance between a narrow sleeve and the skin at the start [m], and the decrease in width at which the cap of
-// a sleeve begins [m].
+// Sleeves: minimum distance from the skin at the start [m]; narrowing toward the trunk at which the cap begins [m].
 constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
-// Number of sample points along a seam, and of rounds, for moving a panel to its neighbour.
+// For the position of a panel from its seams: number of sample intervals along a seam, and of iterations.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
-// Distance over which closing a seam bends panels [m]. If it is smaller, sleeves crease at the cap; if it is larger,
-// sleeves move off the arm's axis.
+// Distance over which closing a seam bends panels [m]. A smaller value creases sleeves at the cap, a larger one moves
+// sleeves off the axis of the arm.
 constexpr double kBendingDistance = 0.1;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Length across and height [m] of a point of a panel on the tube that the panel is bent around, as seen from outside.
+/// Position of point `p` of a panel on the tube of its part: length across and height [m], as seen from outside.
+/// `position`: that of the origin of the panel.
 Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) {
   const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
   const Vec2 q = position + turned;
@@ -49,12 +49,12 @@ class PanelPlacer {
       if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
   }
 
-  /// Uses the given positions, then finds the others from seams. Returns a panel that still has none, or null.
+  /// Sets all positions: those given, then the others from seams. Returns a panel that gets none, or null.
   const Panel* find_positions() {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     update_eases();
     for (bool found = true; found;) {
-      // Each round derives all positions from those of the previous round, so that it treats mirror images alike.
+      // Each round uses only positions of the previous round, so that mirror images get mirrored positions.
       std::vector<std::optional<Vec2>> next = positions_;
       for (std::size_t p = 0; p < positions_.size(); ++p)
         if (!positions_[p]) next[p] = position_from_seams(p);
@@ -99,7 +99,7 @@ class PanelPlacer {
     return pattern_.gap + kLayerDistance * panel.layer + ease;
   }
 
-  // Total width of the panels of layer 0 around each part (its ring), per height in steps of kStep.
+  // Width of the ring around each part: the sum over its panels of layer 0, by height in steps of kStep.
   std::map<Around, std::map<long, double>> widths() const {
     std::map<Around, std::map<long, double>> of_part;
     for (std::size_t p = 0; p < positions_.size(); ++p) {
@@ -123,8 +123,7 @@ class PanelPlacer {
     }
     return of_part;
   }
-  // Whether a ring around the part has a closure or a slit. Closures between two parts, such as a fly between two legs,
-  // are in no ring.
+  // Whether the ring around a part has a closure or a slit. A closure between two parts (a fly) belongs to no ring.
   bool has_opening(Around part) const {
     std::set<std::pair<std::size_t, std::size_t>> sewn;  // panels and their edges
     for (const Seam& seam : pattern_.seams) {
@@ -146,8 +145,8 @@ class PanelPlacer {
     return false;
   }
 
-  // Computes the ease of each ring: how far outward the panels must move to close the ring. Narrow sleeves move toward
-  // the skin, since closing them across an arm would pull them through the arm.
+  // Computes the ease of each ring: the distance by which its panels move outward so that the ring closes. For narrow
+  // sleeves it is negative: without this, closing their seams would pull them through the arm.
   void update_eases() {
     eases_.clear();
     for (const auto& [part, of_level] : widths()) {
@@ -161,9 +160,9 @@ class PanelPlacer {
       for (const auto& [level, width] : of_level) {
         const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
         const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
-        // The cap of a sleeve narrows and does not close: it keeps the ease of the level below.
+        // The cap of a sleeve narrows and does not close around the arm: use the ease of the level below.
         const double kept = arm && width < widest - kCapNarrowing ? raw.back() : ease;
-        // Between panels that lie apart, the ease is that of the nearer one.
+        // In a gap between panels, use the ease of the nearer panel.
         if (const auto index = static_cast<std::size_t>(level - of_level.begin()->first); index > raw.size()) {
           raw.resize((raw.size() + index) / 2, double(raw.back()));
           raw.resize(index, kept);
@@ -171,7 +170,7 @@ class PanelPlacer {
         raw.push_back(kept);
         widest = std::max(widest, width);
       }
-      // Smooth over height: where a panel begins or ends, the width changes abruptly.
+      // Smooth over height, since the width jumps where a panel begins or ends.
       constexpr long kSmooth = 4;
       const auto count = static_cast<long>(raw.size());
       for (long i = 0; i < count; ++i) {
@@ -183,7 +182,7 @@ class PanelPlacer {
     }
   }
 
-  // Position of panel p along its part at which its seams with placed panels are shortest.
+  // The position of panel p along its part at which its seams to placed panels are shortest.
   std::optional<Vec2> position_from_seams(std::size_t p) const {
     struct Pair {
       Vec2 own;
@@ -206,7 +205,7 @@ class PanelPlacer {
       }
     if (pairs.empty()) return std::nullopt;
     const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
-    // Start from the end nearest to the trunk.
+    // Start at the end of the tube that is nearest to the trunk.
     Vec2 position(0, tube.high());
     for (int round = 0; round < kSeamRounds; ++round) {
       double sum = 0;
@@ -219,13 +218,13 @@ class PanelPlacer {
     return position;
   }
 
-  static constexpr double kStep = 0.01;  // step of the heights at which widths are measured [m]
+  static constexpr double kStep = 0.01;  // height step at which widths are measured [m]
 
   const Pattern& pattern_;
   std::span<const FlatMesh> meshes_;
   std::vector<std::optional<Vec2>> positions_;
   std::map<Around, Tube> tubes_;
-  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and the ease at each step [m]
+  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and ease at each kStep [m]
 };
 
 /// Nearest-neighbour search among the vertices of the skin, sorted into cubic cells.
@@ -294,7 +293,7 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
 
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing) {
-  // With this weight, the anchor acts over the distance kBendingDistance.
+  // With this weight, the effect of closing a seam decays over the distance kBendingDistance.
   JoinedPlaces<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
   for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
   return places.solve();
@@ -302,7 +301,7 @@ std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::
 
 void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
                       std::span<Vec3> x) {
-  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth in the skin from which cloth is moved out [m]
+  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth inside the skin [m]
   constexpr int kRounds = 30, kRings = 3;
   const SkinSearch skin(wearer, kMaxSkinDepth);
   std::vector<std::vector<Index>> neighbours(x.size());
@@ -313,7 +312,7 @@ void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> tria
     if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
   for (const mesh::Edge& edge : edges.edges) {
     const auto [a, b] = edge.vertices;
-    // Of the neighbours of a vertex on the rim, only those along the rim count.
+    // A vertex on the rim is smoothed along the rim only: it has no inner neighbours.
     if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
     if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
   }

@@ -28,11 +28,13 @@ void paste(Image& onto, const Image& image, int x, int y) {
     std::copy_n(image.pixel(0, row), 3 * static_cast<std::size_t>(image.width), onto.pixel(x, y + row));
 }
 
-// Length of the longest prefix of `text` that is at most `max_width` pixels wide [bytes]; at least one character.
+// Length [bytes] of the longest prefix of `text` that fits into `max_width` [pixels]; at least one character.
 std::size_t fitting(const Font& font, std::string_view text, int max_width) {
   std::size_t length =
-      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));  // at most 4 bytes per pixel
-  const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };  // UTF-8
+      // A character is at least one pixel wide and at most 4 bytes long.
+      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));
+  // Whether the byte `at` continues a character of UTF-8.
+  const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };
   while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > max_width)) --length;
   while (is_continued(length)) ++length;
   return length;
@@ -67,7 +69,7 @@ std::vector<std::string> caption_lines(const Font& font, const SheetPicture& pic
   return lines;
 }
 
-/// Where everything on a sheet is.
+/// Size and captions of a sheet; `top`: distance of the first row of pictures from the upper edge [pixels].
 struct Plan {
   Plan(std::span<const SheetPicture> pictures, int wanted_columns) : layout(pictures[0].image.width) {
     columns = std::min(wanted_columns, static_cast<int>(pictures.size()));

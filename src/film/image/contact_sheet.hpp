@@ -1,4 +1,4 @@
-// A contact sheet: many small pictures on one.
+// A contact sheet: many small pictures on one large picture.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ struct SheetSize {
   bool is_writable() const;
 };
 
-/// Size of the sheet that contact_sheet() makes. Only the sizes of the pictures count, not their pixels.
+/// Size of the sheet that contact_sheet() makes. Reads the captions and sizes of the pictures, but not their pixels.
 SheetSize contact_sheet_size(std::span<const SheetPicture> pictures, int columns);
 
 /// Lays out pictures of one size in rows under a heading. The size of the text is proportional to the width of the

@@ -44,8 +44,8 @@ Picture decode_png(std::string_view bytes) {
   if (png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()) == 0) fail(png.message);
   try {
     check_size(png.width, png.height);
-    // Deflate expands a byte to at most 1032 bytes, and a pixel takes at least one bit. A file that claims more pixels
-    // is damaged, and is refused before memory for the pixels is allocated.
+    // Refuses a damaged file that claims too many pixels before memory for them is allocated. Deflate expands a byte to
+    // at most 1032 bytes, and a pixel takes at least one bit.
     if (std::uint64_t{png.width} * png.height / 8 > 1032 * bytes.size())
       fail(fmt::format("{} bytes cannot hold {}x{} pixels", bytes.size(), png.width, png.height));
     picture.width = static_cast<int>(png.width);
@@ -62,8 +62,8 @@ Picture decode_png(std::string_view bytes) {
   return picture;
 }
 
-/// The format for swscale. JPEG uses the full range of values: libav expresses this by separate formats, swscale by a
-/// parameter.
+/// The format for swscale. JPEG uses the full range of values. libav has separate formats for this range; swscale takes
+/// the range as a parameter.
 AVPixelFormat plain_format(int format) {
   switch (format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -122,7 +122,7 @@ Picture to_picture(const AVFrame& frame) {
 }
 
 Picture decode_jpeg(std::string_view bytes) {
-  // libav fills the missing part of a truncated file with grey, so the end marker is checked.
+  // Searches for the end marker, because libav fills the missing part of a truncated file with grey.
   if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 1024)).rfind("\xff\xd9") ==
       std::string_view::npos)
     fail("the file ends too early");

@@ -69,7 +69,7 @@ ExrHeader read_exr_header(const std::filesystem::path& file) {
     Imf::InputFile in(file.c_str());
     const Imath::Box2i& area = in.header().dataWindow();
     ExrHeader found{area.max.x - area.min.x + 1, area.max.y - area.min.y + 1, {}};
-    // Reads the line of pixels at the end of the file: the table of line offsets does not show whether it is truncated.
+    // Reads the last line of pixels to detect a truncated file, because the table of line offsets does not show this.
     const int end = in.header().lineOrder() == Imf::DECREASING_Y ? area.min.y : area.max.y;
     std::vector<float> line(static_cast<std::size_t>(found.width));
     Imf::FrameBuffer last;

@@ -9,8 +9,8 @@
 
 namespace weft::image {
 
-/// Channels of one size, row-major, top row first. The part of a channel's name before the dot is its layer, as in
-/// "normal.X"; R, G, B and A without a layer are the picture in linear RGB.
+/// Channels of the same size, row-major, top row first. The part of a channel's name before the dot is its layer, as in
+/// "normal.X". The channels R, G, B and A, which have no layer, are the picture in linear RGB.
 struct Layers {
   struct Channel {
     std::string name;

@@ -14,10 +14,10 @@ struct Picture {
   std::vector<std::uint8_t> rgba;
 };
 
-/// Limit on a side of a picture [pixels]; current OpenGL implementations support it.
+/// Maximum width and height of a picture [pixels]; current OpenGL implementations support textures of this size.
 inline constexpr int kMaxPictureSide = 16384;
 
-/// Limit on the file of a picture [bytes].
+/// Maximum size of the file of a picture [bytes].
 inline constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;
 
 /// Whether the bytes start with a TGA header. The format has no magic bytes, so all header fields with restricted

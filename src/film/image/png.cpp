@@ -35,8 +35,8 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 constexpr int kLevel = 6;
 constexpr int kFilter = PNG_FILTER_SUB;
 
-// Deflate expands a byte to at most 1032 bytes (RFC 1951: 258 bytes from two bits). A file that claims more pixels is
-// damaged, and is refused before memory for the pixels is allocated.
+// Deflate expands a byte to at most 1032 bytes (RFC 1951: 258 bytes from two bits). read_png() refuses a damaged file
+// that claims more pixels before it allocates memory for them.
 constexpr std::uintmax_t kMaxDeflateRatio = 1032;
 
 // An error message of libpng or the system, stored outside the stack frames that a longjmp skips.
@@ -54,7 +54,7 @@ void on_error(png_structp png, png_const_charp words) {
 // Ignores warnings: they concern private chunks and colour profiles, which this reader does not use.
 void on_warning(png_structp, png_const_charp) {}
 
-// Stores the system's reason before libpng replaces it by "Write Error".
+// Stores the system's error message, because libpng passes only its own text to on_error().
 void write_bytes(png_structp png, png_bytep data, std::size_t size) {
   auto* file = static_cast<std::FILE*>(png_get_io_ptr(png));
   if (std::fwrite(data, 1, size, file) == size) return;
@@ -135,8 +135,8 @@ bool ask_for_rgb(const Reader& reader) {
   png_set_expand(reader.png);
   png_set_scale_16(reader.png);
   png_set_gray_to_rgb(reader.png);
-  // Blends over white in sRGB values, as browsers do. Equal gammas prevent libpng from blending in linear light for
-  // files with certain chunks.
+  // Blends over white in sRGB values, as browsers do. Equal gammas prevent libpng from blending in linear light if the
+  // file states its gamma.
   png_set_gamma(reader.png, 1.0, 1.0);
   png_color_16 white{};
   white.red = white.green = white.blue = white.gray = 255;
@@ -157,7 +157,7 @@ bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
 }
 
-// Whether a key obeys the rule of PNG: 1 to 79 printable characters without spaces at the ends. libpng would silently
+// Whether a key is allowed in PNG: 1 to 79 printable characters without spaces at the ends. libpng would silently
 // change other keys.
 bool is_key(std::string_view key) {
   const bool printable = std::all_of(key.begin(), key.end(), [](unsigned char c) { return c >= 32 && c < 127; });
@@ -199,10 +199,10 @@ Metadata metadata_of(const Reader& reader) {
   throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), words);
 }
 
-// Checks that no chunk is longer than the rest of the file, since libpng would first allocate the claimed length, up to
-// 2 GB. For files that are not PNG, does nothing: libpng reports them.
+// Checks that no chunk is longer than the rest of the file, because libpng allocates the length that the chunk claims,
+// up to 2 GB, before it reads. Does nothing for files that are not PNG: libpng reports them.
 void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax_t file_size) {
-  // Sizes [bytes] of the signature, and of length, name and checksum of a chunk together.
+  // Size of the signature, and total size of the length, name and checksum of a chunk [bytes].
   constexpr std::uintmax_t kSignature = 8, kAround = 12;
   std::array<png_byte, kSignature> signature{};
   const bool is_png = std::fread(signature.data(), 1, kSignature, in) == kSignature &&
@@ -218,7 +218,7 @@ void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax
   std::rewind(in);
 }
 
-// `bytes`: size of the available data.
+// `bytes`: size of the data in `rows`.
 void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t bytes) {
   const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxPngSide && rows.height <= kMaxPngSide;
   if (!in_range || bytes != rows.row_bytes() * static_cast<std::size_t>(rows.height)) {
@@ -244,7 +244,7 @@ void write(const std::filesystem::path& file, const Rows& rows, std::size_t byte
   File out(std::fopen(temporary.path().c_str(), "wbe"), std::fclose);
   if (!out) fail_to_write(file, std::strerror(errno));
   encode(file, rows, std::move(texts), out.get());
-  // fclose() writes the last bytes, so that only it may notice a full disk.
+  // If the disk is full, fclose() may be the first call to fail, because it writes the last bytes.
   if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
   temporary.commit();
 }
@@ -262,7 +262,7 @@ void write_png(const std::filesystem::path& file, const Image16& image, const Me
 
 namespace {
 
-// `bytes`: size of the available data.
+// `bytes`: size of the data in `rows`.
 std::string bytes_of(const Rows& rows, std::size_t bytes) {
   const std::filesystem::path name = "a picture in memory";
   check_size(name, rows, bytes);
@@ -324,7 +324,7 @@ Image read_png(const std::filesystem::path& file, Metadata* metadata) {
   const Reader& reader = opened.reader;
   const Complaint& complaint = opened.complaint;
 
-  // Compares the claimed size with the size of the file before allocating memory.
+  // Checks the size that the header claims before memory for the pixels is allocated.
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const std::uintmax_t packed_size = std::uintmax_t{height} * png_get_rowbytes(reader.png, reader.info);

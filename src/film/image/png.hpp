@@ -10,7 +10,7 @@
 
 namespace weft::image {
 
-/// Limit on a side [pixels]; the software renderer's frame buffer and x264 have the same limit.
+/// Maximum width and height [pixels]; the software renderer's frame buffer and x264 have the same limit.
 inline constexpr int kMaxPngSide = 16384;
 
 /// Pairs of key and text, stored as tEXt chunks, or as iTXt chunks if the text is not ASCII.

@@ -14,17 +14,17 @@ class CameraMounts {
  public:
   CameraMounts(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Moves each camera that follows a body along with that body, from the position that the camera's keys give.
-  /// Takes time linear in the vertices of the followed obstacles.
+  /// Moves each camera that follows a body: applies the motion of the body since its start to position and target, as
+  /// the camera's keys give them. Takes time linear in the number of vertices of the followed obstacles.
   void move(frame::FrameSnapshot& snapshot) const;
 
  private:
   struct Mount {
-    std::size_t camera = 0;
-    model::Parent parent;
-    bool follows_rotation = true;  ///< also rotate with the parent
-    std::size_t surface = 0;       ///< of an obstacle: index of its surface in the snapshot
-    std::vector<Vec3> mesh;        ///< of an obstacle: its vertices in its own coordinates [m]
+    std::size_t camera = 0;        ///< index
+    model::Parent parent;          ///< obstacle or part of a character that the camera follows
+    bool follows_rotation = true;  ///< whether the camera also rotates with the parent
+    std::size_t surface = 0;       ///< if the parent is an obstacle: index of its surface in the snapshot
+    std::vector<Vec3> mesh;        ///< if the parent is an obstacle: its vertices in its own coordinates [m]
   };
   std::vector<Mount> mounts_;
 };

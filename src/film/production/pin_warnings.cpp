@@ -18,13 +18,13 @@ namespace {
 
 // Smallest jump of a pin at the start that is reported [m].
 constexpr double kMinJump = 1e-3;
-// A pin that starts farther than this from the body that it follows gives a warning [m]; pins of capes are 5 cm away.
+// Maximum distance without a warning between a pin and the body that it follows, at the start [m]; 5 cm for capes.
 constexpr double kMaxPinDistance = 0.1;
-// Minimum depth in an obstacle at which a particle counts as inside [m].
+// Minimum depth in an obstacle from which a particle counts as inside [m].
 constexpr double kEntryDepth = 1e-3;
-// Sampled times per frame.
+// Number of sampled times per frame.
 constexpr int kSamplesPerFrame = 4;
-// Maximum number of sampled particles of one pin, besides its last one.
+// Maximum number of sampled particles of one pin; held_regions() adds its last particle.
 constexpr std::size_t kMaxSampledParticles = 41;
 
 using simulation::kMaxHoldSpeed;
@@ -47,10 +47,11 @@ std::string pin_name(const scene::Cloth& cloth, std::size_t number) {
   return fmt::format("{}.{}.pin.{}", cloth.rope ? "rope" : "cloth", cloth.name, number);
 }
 
+// The pins of a scene with the start positions of all particles.
 struct MovingPins {
   std::vector<Index> first;  // first particle of each cloth, then the number of all particles
   simulation::Pins pins;
-  std::vector<Vec3> start;  // of all particles
+  std::vector<Vec3> start;  // start positions of all particles [m]
 
   explicit MovingPins(const environment::Environment& environment)
       : first(firsts(environment)), pins(environment.model, first) {
@@ -74,13 +75,13 @@ struct MovingPins {
   }
 };
 
-// Sampled particles that a pin without a strength holds on a rectangle of cloth: positions at one time and at rest [m].
+// Sampled particles of a pin without a strength on a rectangular cloth.
 struct HeldRegion {
-  std::vector<Vec3> x;
-  std::vector<Vec2> rest;
+  std::vector<Vec3> x;     // positions at one time [m]
+  std::vector<Vec2> rest;  // rest coordinates [m]
 };
 
-// Returns one region per pin; empty for pins with a strength, and for cloth that is no rectangle.
+// Returns one region per pin, at the time t [s]. Regions of pins with a strength, and of other cloth, are empty.
 std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environment::Environment& environment,
                                      const MovingPins& moving, const HeldParticles& held, double t) {
   std::vector<HeldRegion> regions(moving.pins.size());
@@ -99,7 +100,7 @@ std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environmen
   return regions;
 }
 
-// Whether some particle belongs to both pins; `a`, `b`: numbers within the cloth.
+// Whether any particle belongs to both pins. `a`, `b`: indices of the pins within the cloth.
 bool overlap(const model::Cloth& cloth, std::size_t a, std::size_t b) {
   const std::vector<model::Chosen>& others = cloth.pins[b].particles;
   return std::ranges::any_of(cloth.pins[a].particles, [&](const model::Chosen& chosen) {
@@ -107,7 +108,7 @@ bool overlap(const model::Cloth& cloth, std::size_t a, std::size_t b) {
   });
 }
 
-// Largest ratio of distance to distance at rest, between particles of two regions.
+// Largest ratio of distance to rest distance between particles of two regions.
 double stretch_between(const HeldRegion& a, const HeldRegion& b) {
   double max_ratio = 0;
   for (std::size_t i = 0; i < a.x.size(); ++i)
@@ -116,7 +117,7 @@ double stretch_between(const HeldRegion& a, const HeldRegion& b) {
   return max_ratio;
 }
 
-// Sampled times: several in each frame, and the midpoints between neighbouring keys of pins.
+// The times to sample [s]: several in each frame, and the middle between each two neighbouring keys of a pin.
 std::vector<double> times_of(const scene::Scene& scene) {
   std::set<double> times;
   const int samples = kSamplesPerFrame * (scene.frame_count() - 1);
@@ -162,7 +163,7 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
     for (const integrator::HeldParticle& particle : held) {
       const std::size_t number = moving.pins.pin_of(particle.constraint.particle, t);
       Vec3& x = before[static_cast<std::size_t>(particle.constraint.particle)];
-      // A jump between two samples shows only in the distance, not in the velocity.
+      // Compare the mean speed, too: the velocity of a target does not show a jump between two samples.
       const double mean = t > last && last >= 0 ? (particle.x_end - x).norm() / (t - last) : 0;
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
@@ -269,7 +270,7 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       const bool may_be_in = box.contains(p) || body.infinite_floor;
       return may_be_in ? collision::nearest_point(p, body.mesh.topology.triangles, x).height : 1;
     };
-    // The start positions count too, because keys may begin inside.
+    // Test the start positions, too, because keys may begin inside of the body.
     const double start = -scene.preroll_frames() / scene.time.fps;
     sample_at(start);
     for (const integrator::HeldParticle& particle : held)
@@ -280,8 +281,8 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       for (const integrator::HeldParticle& particle : held) {
         const std::size_t pin = moving.pins.pin_of(particle.constraint.particle, t);
         if (entered.contains(pin) || !moving.is_moved(scene, pin)) continue;
-        // An open surface, such as a floor, has no inside: a pin enters it only if it was in front of the surface
-        // before.
+        // A pin enters a body only if it was outside before: an open surface, such as a floor, has no inside, and what
+        // is behind it has not entered it.
         const double height = height_of(particle.x_end);
         if (height > 0) outside.insert(pin);
         if (height > -kEntryDepth || !outside.contains(pin)) continue;

@@ -9,19 +9,19 @@
 
 namespace weft::production {
 
-/// One warning ("cloth.a.pin.0: ...") for each key-framed pin that jumps at the start, and for each pin, key-framed or
-/// following a body, that moves too fast for cloth to follow. Computes nothing if no pin moves.
+/// One warning ("cloth.a.pin.0: ...") for each key-framed pin whose keys begin away from its particles, and for each
+/// pin with moving particles that is too fast for cloth to follow.
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment);
 
-/// One warning for each pair of a key-framed pin and a rigid, not dynamic obstacle that the pin enters; it states when
-/// the pin first enters.
+/// One warning for each pair of a key-framed pin and an obstacle that the pin enters, with the time of the first entry.
+/// Only for rigid obstacles without a mass.
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment);
 
-/// One warning for each pair of rigid pins (no `strength`) on a rectangular cloth, at least one of them key-framed,
-/// that move farther apart than the cloth between them can stretch.
+/// One warning for each pair of pins on a rectangular cloth that move farther apart than `max_stretch` of the cloth
+/// between them allows. Only for pins without a `strength`, at least one of them key-framed.
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment);
 
-/// One warning for each pin that follows a body, except an infinite floor, from more than 0.1 m away at the start.
+/// One warning for each pin that follows a body and starts more than 0.1 m away from it. Ignores infinite floors.
 std::vector<std::string> find_far_pins(const scene::Scene& scene, const environment::Environment& environment);
 
 /// Whether any pin has keys or follows a body.

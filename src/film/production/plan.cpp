@@ -20,7 +20,7 @@ using scene::Scene;
 
 constexpr const char* kNoCloth = "no cloth";
 
-// Item of a part that some cloths need: "2 of 3 cloths", or why no cloth needs it.
+// Item of a part that some cloths use. The reason is "2 of 3 cloths", or `absent` if no cloth uses it.
 template <class Test>
 PlanItem cloth_item(std::string part, const Scene& scene, Test needs, std::string_view absent) {
   const auto count = std::count_if(scene.cloths.begin(), scene.cloths.end(), needs);
@@ -171,8 +171,8 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                           fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));
 }
 
-// Adds where the rest shape of each mesh comes from, and the fit of each fitted pattern: known only once they are
-// built.
+// Adds where the rest shape of each mesh comes from, and the fit of each fitted pattern. Builds these cloths, because
+// the scene does not state either.
 void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
   environment::Wearers wearers(scene);
   for (const Cloth& cloth : scene.cloths)
@@ -207,8 +207,8 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
                           "time.preroll is 0"));
 }
 
-// Adds the parts of each character that do not collide, and the size of its key frames: known only once its files are
-// read.
+// Adds the parts of each character that do not collide, and the size of its key frames. Reads the files of characters,
+// because the scene does not state either.
 void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
   for (const scene::Character& character : scene.characters) {
@@ -223,7 +223,7 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   }
 }
 
-// Whether forces move the obstacle, and it may roll (as any shape but boxes and half pipes may) or starts with a spin.
+// Whether forces move the obstacle, and it can roll (any shape except boxes and half pipes) or starts with a spin.
 bool turns_freely(const scene::Obstacle& obstacle) {
   const bool is_round = !std::holds_alternative<scene::BoxShape>(obstacle.shape) &&
                         !std::holds_alternative<scene::HalfPipe>(obstacle.shape);

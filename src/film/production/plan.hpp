@@ -1,4 +1,4 @@
-// Lists the parts of a simulation of a scene, and settings that the author of the scene may not intend.
+// Lists the parts that the simulation of a scene uses, and warns of settings that its author may not intend.
 #pragma once
 
 #include <string>
@@ -8,27 +8,27 @@
 
 namespace weft::production {
 
-/// One line of `weft check --plan`: a part and whether this scene needs it.
+/// One line of `weft check --plan`: a part (a force, a constraint, …), whether this scene uses it, and why.
 struct PlanItem {
   std::string part;
   bool used = false;
   std::string reason;
 };
 
-/// Lists the parts of which a simulation of this scene can consist, without building it. Reads only the files of
-/// characters (size of key frames), and of cloths from meshes and fitted patterns (rest shapes). Throws
-/// Error(asset_unreadable, scene_invalid) if they cannot be used.
+/// Lists the parts without building the simulation. Reads only the files of characters (for the size of their key
+/// frames), and of cloths from meshes and fitted patterns (for their rest shapes). If one cannot be used, throws Error
+/// with the code asset_unreadable or scene_invalid.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
 /// Whether anything in the scene can collide.
 bool can_collide(const scene::Scene& scene);
 
-/// One warning for each visible infinite plane, and for each light, that pictures do not show because there are too
-/// many.
+/// One warning for each infinite plane beyond the first, and for each light beyond the maximum number: pictures do not
+/// show them.
 std::vector<std::string> find_undrawn(const scene::Scene& scene);
 
-/// Warnings of `weft check`, one text each: settings that may end a run, or that the author hardly intends. If the
-/// scene has moving pins, throws as the constructor of SceneSimulation does.
+/// The warnings of `weft check`: find_undrawn(), bodies that implicit Euler slows down, and pin_warnings.hpp. If the
+/// scene has moving pins, throws what the constructor of SceneSimulation throws.
 std::vector<std::string> find_warnings(const scene::Scene& scene);
 
 }  // namespace weft::production

@@ -11,7 +11,7 @@
 
 namespace weft::production {
 
-/// What a scene starts with.
+/// Environment and simulation of a scene at its start.
 struct SceneSimulation::Start {
   const scene::Scene& scene;
   environment::Environment environment;
@@ -52,7 +52,7 @@ frame::SnapshotPtr SceneSimulation::snapshot() const {
   return current_;
 }
 
-// The quantity that colours show, per cloth and particle; none until all cloths are put on.
+// The quantity that heat colours show, per cloth and particle; empty until all cloths are put on.
 std::vector<std::vector<float>> SceneSimulation::heat() const {
   std::vector<std::vector<float>> heat;
   for (std::size_t c = 0; c < model().cloths.size() && heat_ != scene::HeatQuantity::none && all_dressed(); ++c) {

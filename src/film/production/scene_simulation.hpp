@@ -1,4 +1,4 @@
-// Simulates a scene, and makes a snapshot of each frame.
+// Simulates a scene, and makes snapshots of frames.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,13 @@ namespace weft::production {
 
 class SceneSimulation : public simulation::Simulation {
  public:
-  /// If a garment cannot be untangled from its wearer, the wearer grows into it (environment/growing.hpp). Throws
-  /// Error(asset_unreadable, scene_invalid). Warns of pins that jump or move too fast.
+  /// Poses wearers with their arms in the sleeves of their garments. If a garment cannot be untangled from its wearer,
+  /// lets the wearer grow into it (environment/growing.hpp). Logs the warnings of find_undrawn() and find_jumps().
+  /// Throws Error with the code asset_unreadable or scene_invalid.
   explicit SceneSimulation(const scene::Scene& scene);
 
-  /// The current frame. After construction: frame 0, or the first frame of the preroll (with a negative number). Made
-  /// when it is first asked for.
+  /// Snapshot of the current frame, made at the first call in each frame. After construction, this is frame 0 or, with
+  /// a preroll, its first frame, whose number is negative.
   frame::SnapshotPtr snapshot() const;
   std::vector<frame::ObjectInfo> objects() const;
 
@@ -34,14 +35,15 @@ class SceneSimulation : public simulation::Simulation {
   mutable std::uint64_t current_changes_ = 0;  // changes() when `current_` was made
 };
 
-/// The start of a scene before its preroll, even if a run would refuse it.
+/// The start of a scene before its preroll, and where surfaces touch or cross there.
 struct StartView {
   frame::SnapshotPtr snapshot;
-  std::vector<simulation::IntersectionPlace> places;  ///< as of simulation::find_start_intersections()
-  std::string description;                            ///< describes the places, for a message; empty if there are none
+  std::vector<simulation::IntersectionPlace> places;  ///< result of simulation::find_start_intersections()
+  std::string description;                            ///< describes `places` for a message; empty if there are none
 };
 
-/// Makes the start as the scene gives it, without untangling. Throws Error(asset_unreadable, scene_invalid).
+/// Makes the start as the scene gives it: does not untangle, and does not refuse surfaces that touch or cross. Throws
+/// Error with the code asset_unreadable or scene_invalid.
 StartView view_start(const scene::Scene& scene);
 
 }  // namespace weft::production

@@ -21,13 +21,13 @@ namespace {
 using CameraValue = motion::Spline<7>::Value;
 using LightValue = motion::Spline<10>::Value;
 
-// Characters are round: faces that meet below this angle are shaded smoothly [degrees].
+// Maximum angle between the normals of two faces of a character at which their edge is shaded smoothly [degrees].
 constexpr double kCharacterCrease = 80;
 
-// Largest roll of a camera in a file that is ignored without a warning [degrees].
+// Maximum roll of a camera in a file that is ignored without a warning [degrees].
 constexpr double kMaxIgnoredRoll = 0.1;
 
-// Default paleness of the back of a cloth: fraction of the way from the front's colour to white.
+// Default colour of the back of a cloth: this fraction of the way from the colour of its front to white.
 constexpr double kBackPaleness = 0.35;
 
 frame::Appearance appearance(const scene::Look& look) {
@@ -43,16 +43,16 @@ frame::Appearance appearance(const scene::Look& look) {
   return result;
 }
 
-/// Default widths of hems: of garments and of other cloth [m].
+/// Default widths of the hems of garments, and of other cloth [m].
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
-// Thickness per density of fabrics without a name, estimated from the named ones [m per kg/m²].
+// Ratio of thickness to density of cloth without a named fabric [m per kg/m²], estimated from the named fabrics.
 constexpr double kThicknessPerDensity = 2.2e-3;
-// kStrandTurnLength: lay length of a rope, along which a strand turns once [diameters]. kMinTwistedDiameter: smallest
-// diameter of ropes drawn with strands [m], since strands finer than pixels would flicker.
+// kStrandTurnLength: length of a rope along which a strand turns once [diameters]. kMinTwistedDiameter: minimum
+// diameter of ropes that are drawn with strands [m], because strands finer than a pixel would flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
-/// The look of a cloth or rope. For cloth, values that the scene does not set come from the fabric, and the width of
-/// hems also from the shape.
+/// The look of a cloth or rope. If the scene does not set a value of a cloth, it comes from the fabric; the width of
+/// hems also depends on the shape.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
   if (cloth.rope) {
@@ -74,7 +74,7 @@ scene::Look look_of(const scene::Cloth& cloth) {
   return look;
 }
 
-/// Sets the colours of a look and, if there is a picture, lays it along weft and warp.
+/// Sets the colours of an appearance and, if there is a picture, maps it along weft and warp.
 void apply_paint(frame::Appearance& look, const scene::Paint& paint, Pictures& pictures) {
   look.color = paint.color;
   look.back_color = paint.back_color.value_or(paint.color + kBackPaleness * (Vec3::Ones() - paint.color));
@@ -92,8 +92,8 @@ void apply_paint(frame::Appearance& look, const scene::Paint& paint, Pictures& p
   if (paint.cutout) look.color.setOnes();
 }
 
-/// Makes the picture on a floor opaque, and sets the floor's colour to the mean light of the picture: the light that
-/// the floor reflects to other objects.
+/// Makes the picture on a floor opaque. Sets the floor's colour, with which the floor lights other objects, to the mean
+/// of the picture in linear light.
 void make_opaque(frame::Appearance& look) {
   auto filled = std::make_shared<frame::Texture>(*look.paint.texture);
   const Vec3 below = image::linear_from_srgb(look.color);
@@ -118,18 +118,18 @@ void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pict
   apply_paint(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth && surface.kind != frame::ObjectKind::rope)
     surface.appearance.thread_spacing = 0;
-  // On obstacles, texture coordinates are in units of the picture.
+  // The texture coordinates of obstacles are in units of the picture already.
   if (surface.kind == frame::ObjectKind::obstacle) {
     surface.appearance.paint.texture_from_uv.setIdentity();
     surface.appearance.coat = look.gloss.value_or(0);
   }
   if (surface.infinite_floor && look.image) make_opaque(surface.appearance);
-  // The parts already have the materials of the character's file.
+  // Keep the materials of the character's file, which its parts have already.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
     const frame::Paint figure = part.appearance.paint;
     part.appearance = surface.appearance;
-    // The mannequin's hair, face and shoes are painted over any colour.
+    // Keep the texture of a character's part: the mannequin's hair, face and shoes are painted over any colour.
     if (surface.kind == frame::ObjectKind::character) part.appearance.paint = figure;
     for (const scene::PanelPaint& panel : look.panels)
       if (panel.name == part.name) apply_paint(part.appearance, panel, pictures);
@@ -161,7 +161,7 @@ std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
   return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
 }
 
-/// Surface part with a material of a file. Warns if a picture cannot be decoded, and leaves it out.
+/// Surface part with a material of a character's file. Warns if its picture cannot be decoded, and leaves it out.
 frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
   frame::SurfacePart part{material.name, {}};
   part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
@@ -207,7 +207,7 @@ std::shared_ptr<frame::Surface> make_body_surface(const model::Body& body, const
   return surface;
 }
 
-/// Where the picture of an obstacle lies; the obstacle must have one.
+/// Texture coordinates of the picture of an obstacle; the obstacle must have one.
 environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obstacle& obstacle, Pictures& pictures) {
   std::optional<Vec2> tile;
   if (obstacle.look.tile_width) {
@@ -247,7 +247,7 @@ Box3 box_around(std::span<const Vec3> positions) {
   return box;
 }
 
-/// Bounding box of a body at sampled times from 0 to `duration` [s].
+/// Bounding box of a body over sampled times from 0 to `duration` [s].
 Box3 bounds_over_run(const model::Model& model, std::size_t body, double duration) {
   constexpr int kSamples = 100;
   std::vector<Vec3> positions(model.bodies[body].mesh.positions.size());
@@ -259,8 +259,8 @@ Box3 bounds_over_run(const model::Model& model, std::size_t body, double duratio
   return bounds;
 }
 
-/// Sensor height of a camera with a focal length [mm], else 0. The sensor's width lies along the longer side of the
-/// picture.
+/// Sensor height of a camera [mm]; 0 if it has no focal length. The width of the sensor lies along the longer side of
+/// the picture.
 double sensor_height(const scene::Camera& camera, const scene::Render& render) {
   if (!scene::has_focal_length(camera)) return 0;
   return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
@@ -277,7 +277,7 @@ motion::Spline<7> camera_track(const scene::Camera& camera) {
   return {camera.interpolation, std::move(times), std::move(values)};
 }
 
-// Track of a camera from a file, where y is up and the front faces z.
+// Track of a camera from a file, in whose coordinates y is up and z points to the front.
 motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
   const std::string where =
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
@@ -341,7 +341,7 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment* environm
                                                                     : camera_track(camera));
     orbits_.push_back(camera.orbit);
     sensor_heights_.push_back(sensor_height(camera, scene.render));
-    // The renderer assumes a film 24 mm high: scale the f-number so that the aperture has the same diameter there.
+    // The renderer assumes a film 24 mm high. Scale the f-number so that the aperture has the same diameter there.
     constexpr double kFilmHeight = 24;  // [mm]
     if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilmHeight / sensor_heights_.back();
   }

@@ -11,13 +11,13 @@ namespace {
 using Kind = frame::Camera::Kind;
 
 // A camera of kind `whole` keeps cloth in view up to this distance from the subjects of the first frame [diagonals of
-// their bounding box]. Without a limit, cloth that falls for ever would shrink everything else to a dot.
+// their bounding box]. Without this limit, the camera would have to move very far away from cloth that falls endlessly.
 constexpr double kClothRange = 1.5;
 
-// The Gaussian kernel ends at this number of standard deviations; 0.3 % of its weight is cut off.
+// The smoothing kernel, a Gaussian, ends at this number of standard deviations; 0.3 % of its weight is beyond.
 constexpr double kKernelSigmas = 3;
 
-constexpr double kMaxFieldOfView = 100;   // maximum of computed fields of view [degrees]
+constexpr double kMaxFieldOfView = 100;   // limit on computed fields of view [degrees]
 constexpr double kMinEyeDistance = 0.05;  // minimum distance of orbiting and following cameras from their target [m]
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
@@ -134,7 +134,7 @@ frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string&
   return result;
 }
 
-/// Places one camera as close as all frames together allow.
+/// Places one camera for all frames, at the smallest distance that shows every frame.
 void CameraPath::compute_fixed_camera() {
   FrustumFit all = frames_.front().fit;
   for (const Frame& frame : frames_) all.add(frame.fit);
@@ -157,8 +157,8 @@ double CameraPath::frames_in(double seconds) const {
   return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;
 }
 
-/// Gaussian means of the subjects' centres over neighbouring frames. Beyond each end, the trajectory is continued by
-/// point reflection about that end, so that the camera follows a steady walk steadily from the first frame on.
+/// Gaussian means of the subjects' centres over neighbouring frames. At both ends, point reflection continues the
+/// trajectory of the centre, so that the camera moves steadily with a steady walk from the first frame on.
 std::vector<Vec3> CameraPath::smooth_centers() const {
   const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
   const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;
@@ -177,9 +177,9 @@ std::vector<Vec3> CameraPath::smooth_centers() const {
   return smooth;
 }
 
-/// Moves the camera with the centre of the subjects. `follow`: keeps the largest distance that any frame needs.
-/// `close`: takes for each frame the maximum of the needed distances within the kernel, then smooths these maxima with
-/// the kernel, so that no frame gets less than the distance that it needs.
+/// Moves the camera with the centre of the subjects. Each frame needs a certain distance to show its subjects. Kind
+/// `follow` keeps the largest of these distances. Kind `close` takes for each frame the maximum of the needed distances
+/// within the kernel, then smooths these maxima with the kernel; thus no frame gets less than it needs.
 void CameraPath::compute_following_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   const auto count = static_cast<std::ptrdiff_t>(frames_.size());

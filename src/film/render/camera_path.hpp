@@ -12,7 +12,7 @@ namespace weft::render {
 
 class CameraPath {
  public:
-  /// `camera`: name of the camera. If empty: the first of the scene or, without any, one that shows the whole run.
+  /// `camera`: name of the camera. Empty: the scene's first camera; without any, one that shows the whole run.
   /// `aspect`: width / height of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
@@ -23,12 +23,12 @@ class CameraPath {
   void see(const frame::FrameSnapshot& snapshot);
   void find();
 
-  /// The camera of a frame. A computed camera is that of the last frame given to see() whose number is not above that
-  /// of `snapshot`, or of the first frame if all are later. see() must have received at least one frame.
+  /// The camera of a frame. If the camera is computed, see() must have received at least one frame. The result is then
+  /// that of the last such frame whose number is at most that of `snapshot`, or of the first frame if all are later.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:
-  /// What a frame requires of the camera, and the camera computed for it.
+  /// One frame: the points that must be in view (`fit`), their bounding box, and the camera.
   struct Frame {
     int number = 0;
     double time = 0;
@@ -48,7 +48,7 @@ class CameraPath {
   double aspect_;
   std::vector<Frame> frames_;
   Vec3 up_ = Vec3::UnitZ();        // upward axis of the scene
-  std::optional<Box3> cloth_box_;  // box to which positions of cloth are clamped
+  std::optional<Box3> cloth_box_;  // box that limits how far a camera of kind `whole` follows cloth (kClothRange)
   Box3 subject_bounds_;            // bounds of the subjects of all frames
   bool azimuth_changes_ = false;   // the azimuth differs between frames
 };

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kRounding = 1e-6;  // motions below this are rounding errors [pixels]
 
-/// Intersection of a ray from `eye` with the plane of a triangle (Möller and Trumbore 1997): the distance in lengths of
-/// `along`, and the barycentric weights of the second and third corner.
+/// Intersection of a ray from `eye` with the plane of a triangle (Möller and Trumbore 1997): the distance [lengths of
+/// `along`], and the barycentric weights b and c of the second and third corner.
 struct PlaneIntersection {
   double distance = 0, b = 0, c = 0;
 
@@ -33,7 +33,6 @@ struct PlaneIntersection {
   }
 };
 
-/// Values of one pixel.
 struct PixelValues {
   double depth = std::numeric_limits<double>::infinity();
   Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
@@ -109,7 +108,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
-      // Ray through the pixel; its length along the view axis is one metre.
+      // Ray through the pixel, one metre long along the view axis.
       const Vec3 along = view.axes.forward + (2 * here.x() / width_ - 1) * view.tan_half_width * view.axes.right +
                          (2 * here.y() / height_ - 1) * view.tan_half_height * view.axes.up;
       const Hit& hit = hits_[static_cast<std::size_t>(y) * width_ + x];
@@ -147,7 +146,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
         }
       }
       if (shown.object != kNothing && before) shown.motion = here - to_picture(before->view, position_before);
-      if (shown.motion.norm() < kRounding) shown.motion.setZero();  // noise does not compress
+      if (shown.motion.norm() < kRounding) shown.motion.setZero();  // exact zeros compress better
       const double values[] = {shown.depth,      shown.position.x(), shown.position.y(), shown.position.z(),
                                shown.normal.x(), shown.normal.y(),   shown.normal.z(),   shown.object,
                                shown.part,       shown.uv.x(),       shown.uv.y(),       shown.motion.x(),

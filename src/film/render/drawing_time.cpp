@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-/// Distributes the rasteriser's CPU time over the pictures that are being drawn. `sums`: one pointer per picture.
+/// Distributes the rasteriser's CPU time evenly over the pictures that are being drawn. `sums`: the time of each.
 struct RasteriserTime {
   std::mutex mutex;
   std::vector<double*> sums;

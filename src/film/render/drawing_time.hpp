@@ -41,7 +41,7 @@ class DrawingTimer {
 
  private:
   double start_seconds_;                   // CPU time of this thread at construction
-  mutable double rasteriser_seconds_ = 0;  // this picture's part of rasteriser time; every timer updates those of all
+  mutable double rasteriser_seconds_ = 0;  // rasteriser time of this picture; each timer updates that of all timers
 };
 
 }  // namespace weft::render

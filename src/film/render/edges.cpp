@@ -8,8 +8,8 @@ namespace weft::render {
 namespace {
 
 constexpr double kLineOpacity = 0.62;  // fraction by which a line lowers sRGB values
-constexpr double kDepthTolerance =
-    4e-3;  // relative depth tolerance: an edge farther behind the visible surface is hidden
+// An edge is hidden if it is behind the visible surface by more than this fraction of its distance from the eye.
+constexpr double kDepthTolerance = 4e-3;
 
 std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
   std::vector<std::pair<Index, Index>> edges;

@@ -1,4 +1,4 @@
-// Which part of the world a picture shows: the camera that a scene names, or one that frames everything.
+// Finds the camera that a scene names, and places computed cameras so that the subjects are in view.
 #pragma once
 
 #include <algorithm>
@@ -17,20 +17,21 @@ bool is_subject(const frame::Surface& surface);
 /// Smallest box around all subjects [m]; a cube of 1 m around the origin if there are none.
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
-/// Box around Surface::run_bounds of all subjects [m]: the motion of bodies and the start of cloth. It is the same in
-/// all frames, since backdrop and floor depend on it. If no subject has such bounds: subject_bounds().
+/// Box around Surface::run_bounds of all subjects [m]: the motion of bodies and the start of cloth. This box is the
+/// same in all frames, so that backdrop and floor, which depend on it, do not change. If no subject has such bounds:
+/// subject_bounds().
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 
-/// The camera for scenes that name none: it shows the whole run.
+/// The camera of scenes without cameras. It shows the whole run.
 frame::Camera automatic_camera();
 
 /// Axes of a computed camera, from its azimuth and elevation.
 ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
-/// Where an eye with given axes may stand so that all points are in its picture. t is the tangent of half the field of
-/// view times (1 - margin). A point (x, y, z) in the eye's axes (z forward) is between the left and right edges of the
+/// The positions from which an eye with given axes has all points in its picture. t is the tangent of half the field of
+/// view times (1 - margin). In the eye's axes (z forward), a point (x, y, z) is between the left and right edges of the
 /// picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together require t cz - cx <= min(t z - x) = low
-/// and t cz + cx <= min(t z + x) = high; the same holds for y.
+/// and t cz + cx <= min(t z + x) = high. The same holds for y.
 class FrustumFit {
  public:
   FrustumFit() = default;
@@ -44,9 +45,9 @@ class FrustumFit {
   const ViewAxes& axes() const { return axes_; }
   /// Distance from `center` that an eye looking at it needs, so that all points are in the picture [m].
   double distance(const Vec3& center) const;
-  /// Sets position and target of the camera. The eye is as close as the points allow; the points are centred in the
-  /// direction of the picture (horizontal or vertical) that needs the larger distance. The target has the depth of
-  /// `center`.
+  /// Sets position and target of the camera. The eye is at the smallest distance that has all points in the picture.
+  /// The points are centred in the direction of the picture (horizontal or vertical) that needs the larger distance.
+  /// The target is on the view axis, at the depth of `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:
@@ -64,8 +65,8 @@ class FrustumFit {
   Span horizontal_, vertical_;
 };
 
-/// The camera called `name`, or the first if `name` is empty; null if the snapshot has no cameras. Throws Error(usage)
-/// that lists the names if none matches.
+/// The camera called `name`. If `name` is empty: the first camera, or null if the snapshot has none. Throws
+/// Error(usage) with the names of all cameras if none matches.
 const frame::Camera* find_camera(const frame::FrameSnapshot& snapshot, const std::string& name);
 
 }  // namespace weft::render

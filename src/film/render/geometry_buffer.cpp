@@ -22,8 +22,8 @@ int laid(const frame::Appearance& look) {
   return 1;
 }
 
-// Curved triangles deviate from the simulated faces by about this distance [m]. This depth offset keeps the surfaces
-// below from showing through.
+// Depth offset of refined cloth towards the viewer [m], about the distance of its curved triangles from the simulated
+// faces. Without this offset, parts of the surfaces below the cloth would be visible.
 constexpr float kDepthOffset = 1.5e-3f;
 float nearer(const SurfaceBuffers& surface) {
   return surface.refined() ? kDepthOffset : 0.0f;
@@ -94,7 +94,7 @@ void GeometryBuffer::begin(std::span<const SurfaceBuffers> surfaces) {
   const bool painted = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.painted(); });
   const bool trimmed = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.trimmed(); });
   if (painted != painted_ || trimmed != trimmed_) attach(painted, trimmed);
-  // Default attribute for surfaces without hems.
+  // Value of attribute 5 (Trim::distance) for surfaces without trims.
   if (trimmed) gl_->VertexAttrib3f(5, kNoTrim, kNoTrim, kNoTrim);
 }
 
@@ -126,7 +126,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
     const GeometryProgram& program = use({});
     gl_->Uniform1f(program.surface, kFloor);
     gl_->Uniform1f(program.nearer, 0);
-    // The floor is invisible from below. Its normal is constant, and it has no rest coordinates.
+    // The floor is invisible from below. It writes neither its normal, which is constant, nor rest coordinates.
     gl_->Enable(GL_CULL_FACE);
     for (const GLuint unused : {0, 1, 3, 4}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     floor->draw();
@@ -138,7 +138,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
 
 void GeometryBuffer::draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper) {
   if (!layers_) layers_.emplace(*gl_, width_, height_);
-  // Each layer starts from the result of draw(), which the first layer saves for the later ones.
+  // Each layer starts from the result of draw(). The call for the first layer saves this result.
   if (deeper) {
     copy(seen_, layers_->peeled);
     copy(layers_->seen, seen_);
@@ -164,7 +164,7 @@ void GeometryBuffer::copy(const Texture& from, const Texture& to) const {
                         1);
 }
 
-/// Colours and trims have framebuffer attachments of their own, which are bound only if some surface has them.
+/// Colours and trims have framebuffer attachments of their own, which are attached only if some surface has them.
 void GeometryBuffer::attach(bool painted, bool trimmed) {
   if (painted && !painting_) painting_.emplace(*gl_, width_, height_);
   if (trimmed && !trims_) trims_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
@@ -179,7 +179,7 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
   check_framebuffer(*gl_, target_, "geometry buffer");
 }
 
-/// If any surface of the picture is painted, all surfaces write for each pixel whether it is painted.
+/// If any surface of the picture is painted, the shaders of all surfaces write whether a pixel is painted.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
   const auto use_for = [&](int laid) -> const GeometryProgram& {
     const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});

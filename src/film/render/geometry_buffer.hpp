@@ -14,8 +14,8 @@
 
 namespace weft::render {
 
-/// Stencil values that select the shading pass. Shading turns `floor` into `shaded_floor` in the areas where light is
-/// missing or added; the lower two bits stay the same.
+/// Classes of pixels. They are stencil values, by which a shading pass selects its pixels. Shading turns `floor` into
+/// `shaded_floor` in areas with shadow, occlusion or reflected light; the lower two bits stay the same.
 enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, shaded_floor = 7 };
 
 class GeometryBuffer {
@@ -27,20 +27,22 @@ class GeometryBuffer {
   /// 4, rest coordinates to 5, seen() to 8, colours to 10 if something is painted, trims to 11 if cloth has trims.
   void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
             const Vec3& eye, double far);
-  /// Draws the nearest layer of the surfaces flagged in `left_out` over the result of draw(), as PixelClass::cloth, and
-  /// replaces an earlier layer. `deeper`: draws instead the nearest layer behind that of the previous call.
+  /// Depth peeling, for translucent cloth: draws the nearest layer of the surfaces flagged in `left_out` over the
+  /// result of draw(), as PixelClass::cloth. It replaces the layer of the previous call. `deeper`: draws the nearest
+  /// layer behind that of the previous call.
   void draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper);
 
-  /// Whether a surface of the last picture has a texture, or parts of different colours.
+  /// Whether frame::is_painted() holds for a surface of the last picture.
   bool painted() const { return painted_; }
   /// Whether some surface of the last picture is drawn with hems and seams.
   bool trimmed() const { return trimmed_; }
-  /// For each range of a painted mesh: the opacity of its picture, or null if it has no holes. Class Holes needs it.
+  /// For class Holes: the opacity of the picture of each range of a painted mesh, or null if the range has no holes.
   std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
 
   /// Reads back what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
-  /// For each pixel that shows a surface: world normal times (1 + rise(), see geometry.frag); w: heat.
+  /// Reads back, for each pixel that shows a surface, the world normal towards the viewer, of length 1 + rise()
+  /// (geometry.frag); w: heat.
   void read_normals(std::vector<Eigen::Vector4f>& normals) const;
 
   /// Distance and surface number of each pixel; see Seen.

@@ -14,9 +14,9 @@ struct Instant {
   Vec2 lens{0, 0};  ///< point on the lens [radii of the lens]
 };
 
-/// `count` instants, evenly spread over the time in which the shutter is open: `shutter` degrees (360: the time between
-/// two frames) that end at the drawn frame. If `lens`, they are also spread over the lens, else all are at its centre.
-/// Empty if there is no blur: if `shutter` is 0 and `lens` is false.
+/// `count` instants, evenly spread over the time in which the shutter is open. This time is `shutter` degrees long
+/// (360: the time between two frames) and ends at the drawn frame. If `lens` is true, the instants are also spread over
+/// the lens; else, all are at its centre. The result is empty if `shutter` is 0 and `lens` is false.
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
 /// Interpolates linearly between a frame (back = 0) and the one before (back = 1): time, positions, and direction,

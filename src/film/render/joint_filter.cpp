@@ -10,11 +10,10 @@ namespace {
 
 constexpr int kFilterReach = 2;      // points to either side
 constexpr float kNarrow = 1.5f;      // distance in space that halves a weight in smooth_where() [steps]
-constexpr float kAny = 1e9f;         // value of `wide` for which the distance does not matter
+constexpr float kAny = 1e9f;         // value of `wide` in likeness() if the distance in space does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
 
-/// Data of one row of points.
 struct Rows {
   const float *surface, *x, *y, *z, *nx, *ny, *nz, *density;
   Rows(const PixelPoints& points, int row)
@@ -32,8 +31,8 @@ struct Rows {
 template <int kCount>
 using Values = Eigen::Array<float, kCount, 1>;
 
-/// Weights of kCount points of row `there`, from k on, in the means at kCount points of row `here`, from i on. `wide`:
-/// distance in space that halves the weight [points].
+/// The weights that kCount points of row `there`, from k on, have in the means at kCount points of row `here`, from i
+/// on. `wide`: distance in space that halves a weight [points].
 template <int kCount>
 Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
   using Real = Values<kCount>;
@@ -48,8 +47,8 @@ Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float
   return same * agree.square() * agree.square() / ((1 + off) * (1 + along));
 }
 
-// The filters treat eight points at a time, because compilers do not vectorise loops over so many rows (measured: 322
-// CPU ms per picture instead of 352).
+// The filters process eight points at a time explicitly, because compilers do not vectorise loops over so many rows.
+// (Measured: 322 ms of CPU time per picture instead of 352 ms.)
 Lanes load(const float* from) {
   return Eigen::Map<const Lanes>(from);
 }
@@ -71,7 +70,7 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
           if (y + dy < 0 || y + dy >= height) continue;
           Lanes weights = likeness<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
           if (step > 1 && k != 0) {
-            // After the pass with step 1, a difference larger than the remaining noise is a feature, to be kept.
+            // The filter with step 1 has left little noise. A larger difference is a feature, and is kept.
             Lanes differences = Lanes::Zero();
             for (const Plane& plane : from)
               differences += (load(plane.row(y) + x) - load(plane.row(y + dy) + x + dx)).abs();
@@ -125,7 +124,7 @@ void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane
 
 void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few, const PixelPoints& many, int begin,
                  int end, std::span<Eigen::Vector4f> results) {
-  // In both `few` and `many`, point i lies at pixel i * divisor + divisor / 2.
+  // In both `few` and `many`, point i is at pixel i * divisor + divisor / 2.
   const int shift = many.divisor() / 2 - few.divisor() / 2;
   struct Place {
     int low, high;  // points to either side
@@ -138,7 +137,8 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
   };
   std::vector<Place> columns;
   for (int x = 0; x < many.width(); ++x) columns.push_back(place(x, few.width()));
-  // Of the 2 x 2 points around pixels: whether all have the same value; else whether they show a smooth surface.
+  // Flags of the 2 x 2 points from each point on. `even`: all have the same value. `alike`, only if not `even`: all
+  // show the same smooth surface.
   std::vector<char> even(static_cast<std::size_t>(few.width())), alike(even.size());
   int known_row = -1;
   for (int y = begin; y < end; ++y) {
@@ -178,13 +178,13 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       Eigen::Vector4f sum = Eigen::Vector4f::Zero(), any = sum;
       float total = 0;
       for (int k = 0; k < 4; ++k) {
-        constexpr float kLeast = 0.01f;  // lower bound: if only one point shows the surface, it counts at any distance
+        constexpr float kLeast = 0.01f;  // a point that alone shows the surface counts even if `plain` is 0
         const float weight = (plain[k] + kLeast) *
                              likeness<1>(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny).value();
         sum += weight * *corners[k], total += weight;
         any += 0.25f * *corners[k];
       }
-      // Beside nearer objects, it can happen that none of the four points shows this surface.
+      // If none of the four points shows this surface, as beside nearer objects, takes their mean.
       result[x] = total > 1e-4f ? Eigen::Vector4f(sum / total) : any;
     }
   }

@@ -1,5 +1,6 @@
-// Removes the noise of few rays: averages a picture over neighbours that show the same surface (joint bilateral filter:
-// Petschnig et al., "Digital Photography with Flash and No-Flash Image Pairs", 2004).
+// Removes the noise of few rays: averages the values of a pixel and of its neighbours on the same surface (joint
+// bilateral filter: Petschnig et al., "Digital Photography with Flash and No-Flash Image Pairs", 2004). A `Plane` is
+// one channel of a picture (pixel_points.hpp).
 #pragma once
 
 #include <span>
@@ -8,21 +9,21 @@
 
 namespace weft::render {
 
-/// Averages each of the planes over 5 x 5 points, first along rows, then along columns. `step`: distance between these
-/// points, in points of the plane. A neighbour on the same surface has more weight if it is near the tangent plane, if
-/// its normal is similar and, if `step` exceeds 1, if its value is similar. Its distance along the plane does not
-/// count: floors seen at an angle would be averaged along rows alone, which shows as streaks. `scratch`: as many planes
-/// as `planes`; their content is overwritten.
+/// Averages each of `planes` over 5 x 5 points, first along rows, then along columns. `step`: distance between these
+/// points [points]. A neighbour on the same surface has more weight if it is near the tangent plane and if its normal
+/// is similar; if `step` exceeds 1, also if its value is similar. The weight does not depend on the distance within the
+/// tangent plane: otherwise, floors at oblique view would be averaged along rows only, which would be visible as
+/// streaks. `scratch`: as many planes as `planes`; overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
-/// Averages one plane over 5 x 5 points in a single pass, only at points whose `wanted` is above 0, and only over
-/// neighbours whose `known` is above 0. The weights are as in smooth(), but also decrease with the distance. `scratch`
-/// is overwritten.
+/// Averages `plane` over 5 x 5 points in a single pass, only at points whose `wanted` is above 0, and only over
+/// neighbours whose `known` is above 0. The weights are as in smooth(), but also fall with distance. `scratch`:
+/// overwritten.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);
 
-/// Interpolates the values at the points `few` (row by row) to rows [`begin`, `end`) of `many`, the denser points of
-/// the same picture.
+/// Interpolates `values` from the points `few` to rows [`begin`, `end`) of `many`, the denser points of the same
+/// picture. `values` and `results` are stored row by row.
 void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few, const PixelPoints& many, int begin,
                  int end, std::span<Eigen::Vector4f> results);
 

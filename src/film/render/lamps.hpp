@@ -6,11 +6,11 @@
 
 namespace weft::render {
 
-/// Directions from eight points toward a lamp, and its relative intensity at these points: 1 for a sun; for a spot, 1
-/// at its target.
+/// Directions from eight points toward a lamp, and the relative intensity of the lamp at these points: 1 for a sun; for
+/// a spot, 1 at its target.
 struct Toward {
   Lanes3 direction;  ///< unit length
-  Lanes distance;    ///< of a spot [m]; 1e30 for suns
+  Lanes distance;    ///< distance of the lamp [m]; 1e30 for suns
   Lanes intensity;
 };
 inline Toward toward(const Lamp& lamp, const Lanes3& point) {

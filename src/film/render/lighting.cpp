@@ -18,7 +18,7 @@ double half_cone(const frame::Light& light) {
   return radians(std::clamp(light.cone_angle, 1.0, 170.0)) / 2;
 }
 
-/// Tangent of half the angular size of the light source. A minimum avoids shadow edges without any penumbra.
+/// Tangent of half the angular width of the light source. Its lower limit avoids shadows without penumbra.
 double source_tangent(const frame::Light& light) {
   return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2);
 }

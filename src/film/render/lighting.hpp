@@ -1,4 +1,4 @@
-// Lights in the layout of the shaders.
+// The lights of a picture, and their layout in shaders.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@ namespace weft::render {
 
 using frame::kMaxLights;
 
-/// The snapshot's lights, at most kMaxLights. If it has none, the lights of the look: a warm key light from above,
-/// beside the camera; the look `stage` has a second light from the other side.
+/// The first kMaxLights lights of the snapshot. If it has none, the lights of the look: a warm key light from above and
+/// beside the camera; for the look `stage`, also a second light from the other side.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
                                            const ViewAxes& camera, const Vec3& up);
 
@@ -38,10 +38,11 @@ struct LightsUniform {
   std::array<LightUniform, kMaxLights> lights;
 };
 
-/// A light of a picture.
+/// A light, prepared for shaders and rays.
 struct Lamp {
   LightUniform packed;
-  float source_tangent = 0;  ///< tangent of half the angular size of its source; of a spot: seen from its target
+  /// Tangent of half the angular width of the source; that of a spot is seen from its target.
+  float source_tangent = 0;
 
   bool is_spot() const { return packed.toward_light.w() != 0; }
   /// Distance of a spot from its target [m].

@@ -17,7 +17,7 @@ class Mirror {
   /// For pictures of width x height pixels; reflections have half that size.
   Mirror(const Gl& gl, const QualitySettings& quality, int width, int height);
 
-  /// The scene, as the main passes hold it.
+  /// The subjects, as prepared for the main passes.
   struct Subjects {
     std::span<const SurfaceBuffers> surfaces;
     std::span<const Shading::Material> materials;
@@ -26,8 +26,9 @@ class Mirror {
     double heat_scale;
     bool painted;  ///< whether pictures on surfaces are shown
   };
-  /// The light block must be bound. Binds the reflection to unit 13 and its distances to unit 14. Leaves the frame
-  /// block and the other units bound to the data of this pass.
+  /// Draws the subjects from `view`, a mirrored() view, whose frame block is `block`. The light block must be bound.
+  /// Binds the picture to texture unit 13 and its distances to unit 14. Leaves the frame block and the other units
+  /// bound to the data of this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }

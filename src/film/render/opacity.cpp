@@ -11,7 +11,7 @@ namespace {
 
 using Wrap = frame::Paint::Wrap;
 
-/// One texel of a scaled line: weights of the old texels that it covers, from texel `first` on.
+/// One texel of a scaled row or column: weights of the old texels that it covers, from texel `first` on.
 struct TexelWeights {
   int first = 0;
   std::vector<float> weights;
@@ -29,7 +29,7 @@ std::vector<TexelWeights> texel_weights(int from, int to) {
   return all;
 }
 
-/// Texel index after wrapping; -1 outside a picture that appears once.
+/// Texel index after wrapping; -1 outside a picture with Wrap::once.
 int wrapped(int texel, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat:

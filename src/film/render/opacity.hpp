@@ -15,17 +15,18 @@ struct MipLevel {
   std::vector<Eigen::Vector4f> texels;
 };
 
-/// The next smaller mip level: each texel is the mean of those it covers. `level` must be larger than 1 x 1.
+/// The next smaller mip level: each texel is the mean of those that it covers. `level` must be larger than 1 x 1.
 MipLevel next_mip_level(const MipLevel& level);
 
-/// Level 0 of the picture; `opaque` ignores alpha and uses 1.
+/// Mip level 0 of a texture. `opaque`: all texels have alpha 1.
 MipLevel base_mip_level(const frame::Texture& texture, bool opaque);
 
 class Opacity {
  public:
   Opacity(std::vector<MipLevel> levels, frame::Paint::Wrap wrap_u, frame::Paint::Wrap wrap_v);
 
-  /// Interpolated opacity at a point of the picture. `footprint`: width of the sampled area, in texels of level 0.
+  /// Interpolated opacity at a point of the picture (coordinates as in Paint::texture_from_uv). `footprint`: width of
+  /// the sampled area [texels of level 0].
   float at(const Eigen::Vector2f& place, float footprint) const;
   /// Width and height of level 0 [texels].
   Eigen::Vector2f size() const;

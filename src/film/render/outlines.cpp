@@ -14,25 +14,25 @@ namespace {
 
 constexpr int kWordBits = 64;
 
-// Offsets of the samples from the pixel's lower left corner: Direct3D's pattern of 16 samples. No two share a row or
-// column of sixteenths, so that nearly horizontal and vertical edges also have seventeen levels. (Measured with eight
-// samples: a resting edge that repeatedly crosses one of them flickers visibly.)
+// Offsets of the samples from the pixel's lower left corner: Direct3D's pattern of 16 samples. No two samples share one
+// of the 16 rows or columns, so that nearly horizontal and vertical edges also have 17 levels of coverage. (With eight
+// samples, an edge that moves slightly back and forth over a sample flickers visibly.)
 constexpr float kOffsetX[] = {19 / 32.f, 15 / 32.f, 11 / 32.f, 25 / 32.f, 7 / 32.f, 21 / 32.f, 27 / 32.f, 23 / 32.f,
                               13 / 32.f, 17 / 32.f, 9 / 32.f,  5 / 32.f,  1 / 32.f, 31 / 32.f, 29 / 32.f, 3 / 32.f};
 constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 32.f, 27 / 32.f, 23 / 32.f, 7 / 32.f,
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
-// 1 / distance is linear over the picture of any plane. It has a step where a surface ends, and a kink where it folds.
-// For a crease seen head-on, the relative change of slope is the tangent of its angle times the angle of a pixel. Folds
-// with smaller tangents are not antialiased.
+// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance is linear. It has a
+// step where a surface ends, and a kink where a surface folds. At a crease seen head-on, the change of slope from pixel
+// to pixel, relative to 1 / distance, is this tangent times the angle of a pixel.
 constexpr double kMinCreaseTangent = 0.4;
-// A sample takes its pixel's colour if the point that the pixel shows lies in the plane of the sample's triangle,
-// within this fraction of `kink_`.
+// A sample takes the colour of its pixel if the point that the pixel shows is in the plane of the sample's triangle, up
+// to this tolerance [`kink_`].
 constexpr float kSamePlane = 0.25f;
 
 /// Edge function: twice the signed area of the triangle of a, b and a point; positive if the point is left of the edge
-/// from a to b. The edge from b to a gives exactly the negative value, because both use the same reference end. Thus no
-/// sample falls between two triangles.
+/// from a to b. The function of the edge from b to a has exactly the negative value, because both are computed from the
+/// same end. Thus no sample falls between the two triangles of an edge.
 struct Edge {
   float along, across, from_x, from_y;
 
@@ -49,11 +49,11 @@ struct Edge {
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
 
-// Opacity threshold of each sample [sixteenths]; the thresholds of consecutive samples differ much.
+// Opacity threshold of each sample [sixteenths]. The thresholds of consecutive samples differ much.
 constexpr int kThresholdOrder[] = {0, 8, 12, 4, 10, 2, 6, 14, 9, 1, 5, 13, 3, 11, 15, 7};
 
-/// The opacity of a triangle at points of the picture. If an attribute is linear over the triangle, then attribute /
-/// distance is linear over the picture (perspective-correct interpolation).
+/// The opacity of a triangle at points of the rendered picture. If an attribute is linear over the triangle, then
+/// attribute / distance is linear over the rendered picture (perspective-correct interpolation).
 class HoleTest {
  public:
   template <class Vertex>
@@ -67,7 +67,7 @@ class HoleTest {
     if (!(std::abs(area) > 0)) return;
     along_x_ = (c_y * b - b_y * c) / area;
     along_y_ = (b_x * c - c_x * b) / area;
-    // Texels for each pixel, from the ratio of areas at the mean distance.
+    // Texels per pixel: the root of the triangle's area in texels over its area in pixels.
     const Eigen::Vector2f q = (places[1] - places[0]).cwiseProduct(opacity.size()),
                           r = (places[2] - places[0]).cwiseProduct(opacity.size());
     footprint_ = std::sqrt(std::abs(q.x() * r.y() - q.y() * r.x()) / std::abs(area));
@@ -92,7 +92,7 @@ Outlines::Outlines(int width, int height)
       bits_(static_cast<std::size_t>(words_) * height),
       first_(bits_.size()) {}
 
-/// Sets the bits of the pixels in the area at which a neighbour shows another surface, or at which the surface folds.
+/// Sets the bits of the pixels in `area` that have a neighbour with another surface, or at which the surface folds.
 void Outlines::find_outlines(std::span<const Seen> seen, const PixelArea& area) {
   std::fill(bits_.begin(), bits_.end(), Bits{0});
   // `nearness_` holds three rows of 1 / distance at a time, with a padding column on either side.
@@ -145,8 +145,8 @@ Outlines::Vertex Outlines::to_picture(const Eigen::Vector4d& clip) const {
           static_cast<float>((0.5 + 0.5 * clip.y() * nearness) * height_), static_cast<float>(nearness)};
 }
 
-/// Writes the triangle to each sample that it covers, if it is nearer than the sample's content and `shows(x, y,
-/// nearness, sample)` is true.
+/// Writes the triangle to each sample that it covers, if it is nearer than what the sample has shown so far, and if
+/// `shows(x, y, nearness, sample)` is true.
 template <class Shows>
 void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows) {
   const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
@@ -180,7 +180,7 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
   const float b_a = b.nearness - a.nearness, c_a = c.nearness - a.nearness;
   const float slope_x = (b_a * (c.y - a.y) - c_a * (b.y - a.y)) / area;
   const float slope_y = (c_a * (b.x - a.x) - b_a * (c.x - a.x)) / area;
-  // Slivers have extreme slopes, so interpolated values are clamped to this range.
+  // Slivers have extreme slopes, so interpolated values are clamped to the range of the corners.
   const auto [min_nearness, max_nearness] = std::minmax({a.nearness, b.nearness, c.nearness});
 
   float edge_offsets[3][kSamples], nearness_offsets[kSamples];
@@ -234,7 +234,7 @@ void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
   }
 }
 
-/// Each sample has its own threshold: the fraction of samples that show the surface equals its opacity.
+/// Each sample has its own threshold, so that the fraction of samples that show the surface equals its opacity.
 void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const View& view) {
   for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
     const PaintedRange& range = mesh.holes->ranges()[r];
@@ -278,17 +278,18 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
   }
 }
 
-/// The pixel from which each sample takes its colour. This is the sample's own pixel if it shows the same surface in
-/// the same plane; else, of the pixels around it that show this surface, the one nearest to the plane of the sample's
-/// triangle. Thus samples on each side of an edge take colours from their own side.
+/// The pixel from which each sample takes its colour. If the sample's own pixel shows the sample's surface in the plane
+/// of the sample's triangle, it is this pixel. Else it is that neighbour with the same surface whose point is nearest
+/// to this plane. Thus samples on each side of an edge take colours from their own side.
 std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t slot, std::span<const Seen> seen) const {
   const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
   const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
   const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
   const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * width_ + i; };
-  // Finds the plane of the triangle at the pixel's centre: of the samples on the same surface, the one whose plane is
-  // nearest. If a crease passes close to the centre, the planes of both sides are near, but only one is shown.
+  // Finds the slopes of the triangle that the pixel's centre shows: those of the sample on the same surface whose plane
+  // is nearest to the point at the centre. If a crease passes close to the centre, the planes of both sides are near,
+  // but the centre shows only one of them.
   const Seen& own = seen[index(x, y)];
   float min_own_offset = 1e9f, own_slope_x = 0, own_slope_y = 0;
   for (int s = 0; s < kSamples; ++s) {
@@ -304,11 +305,11 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
   std::size_t chosen = 0;
   for (int s = 0; s < kSamples; ++s) {
     const float surface = samples.surface[s], slope_x = samples.slope_x[s], slope_y = samples.slope_y[s];
-    // Most samples belong to the same triangle as the one before.
+    // Most samples belong to the same triangle as the sample before, and then have the same source.
     if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
         slope_y != samples.slope_y[s - 1]) {
-      // Distance of the point that pixel (i, j) shows from the sample's plane, relative to its distance from the eye;
-      // very large if the pixel shows another surface.
+      // Distance of the point that pixel (i, j) shows from the sample's plane along the view axis, relative to the
+      // distance from the eye. 1e9 if the pixel shows another surface; 0 for the backdrop.
       const auto off_plane = [&](int i, int j) {
         const Seen& there = seen[index(i, j)];
         if (there.surface != surface) return 1e9f;
@@ -348,7 +349,7 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   number_samples();
   for (std::size_t i = 0; i < meshes.size(); ++i) sample(meshes[i], static_cast<float>(kFirstSurface + i), view);
   if (floor) sample_floor(*floor, view);
-  // Resolves all pixels before it writes the first, because they read each other.
+  // Computes all pixels before the first is written, because they read each other.
   resolved_.clear();
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
     std::uint64_t sums[3] = {}, mean = 0;

@@ -1,5 +1,5 @@
-// Antialiasing: pixels in which a surface ends or folds get 16 samples. Each sample takes the colour of its own surface
-// from the neighbouring pixels.
+// Antialiasing: pixels in which a surface ends or folds get 16 samples. Each sample takes its colour from the pixel, or
+// from a neighbour, that shows the same surface as the sample.
 #pragma once
 
 #include <array>
@@ -14,29 +14,28 @@
 
 namespace weft::render {
 
-/// Works on the CPU: only a few thousand pixels of a picture have outlines, and OpenGL can only multisample all of
-/// them.
+/// Works on the CPU, because only a few thousand pixels have outlines, whereas OpenGL would multisample all pixels.
 class Outlines {
  public:
   Outlines(int width, int height);
 
-  /// Antialiases `picture`, RGBA of 16 bits each with the lowest row first, inside `area`. `seen`: what each of its
-  /// pixels shows. `meshes`: all surfaces except the floor; mesh i has the number kFirstSurface + i.
+  /// Antialiases `picture` (RGBA with 16 bits per channel, lowest row first) inside `area`. `seen`: what each pixel of
+  /// the picture shows. `meshes`: all surfaces except the floor; mesh i has the number kFirstSurface + i.
   void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
               const View& view, const PixelArea& area, std::span<std::uint64_t> picture);
 
-  /// The surfaces of the last picture without floor and backdrop, lowest row first: linear colours premultiplied by
-  /// coverage, and coverage. `unsmoothed`: the picture before smooth().
+  /// Computes `surfaces`, the last picture without floor and backdrop, lowest row first: linear colours premultiplied
+  /// by coverage; w: coverage. `unsmoothed`: the picture before smooth().
   void cut_out(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
                std::vector<Eigen::Vector4f>& surfaces) const;
 
-  /// Number of pixels of the last picture that were sampled.
+  /// Number of pixels of the last picture that have samples.
   std::size_t count() const { return pixels_.size(); }
 
  private:
   static constexpr int kSamples = 16;
-  /// What the samples of one pixel show: 1 / distance [1/m] (0: nothing), its change from pixel to pixel in the plane
-  /// of the triangle [1/m], and the surface.
+  /// What the samples of one pixel show: 1 / distance [1/m] (0: nothing), the change of this value from pixel to pixel
+  /// in the plane of the triangle [1/m], and the number of the surface.
   struct Samples {
     float nearness[kSamples] = {}, slope_x[kSamples] = {}, slope_y[kSamples] = {}, surface[kSamples] = {};
   };
@@ -62,7 +61,7 @@ class Outlines {
   Vertex to_picture(const Eigen::Vector4d& clip) const;
 
   int width_, height_, words_;  // words_: bit words in a row
-  float kink_ = 0;              // folds: minimum second difference of 1 / distance, relative to it
+  float kink_ = 0;              // minimum second difference of 1 / distance at a fold, relative to 1 / distance
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
   std::vector<int> first_;      // by word of `bits_`: index of its first pixel in `pixels_`
   std::vector<Pixel> pixels_;

@@ -7,8 +7,8 @@
 namespace weft::render {
 namespace {
 
-/// Paint coordinates of each drawn vertex. If the corners at a vertex have different coordinates, the vertex is copied,
-/// once for each of them.
+/// Paint coordinates of each drawn vertex. If the corners at a vertex have different coordinates, splits the vertex
+/// into one for each coordinate pair.
 std::vector<Eigen::Vector2f> split_by_place(std::span<const std::array<Vec2, 3>> corners, ShadedMesh& mesh) {
   constexpr Index kNone = -1;
   std::vector<Eigen::Vector2f> places(mesh.source.size(), Eigen::Vector2f::Zero());

@@ -1,4 +1,4 @@
-// Picture coordinates on a drawn mesh, and the holes that pictures cut into it.
+// Coordinates of pictures on a drawn mesh, and the holes that pictures cut into the mesh.
 #pragma once
 
 #include <span>
@@ -10,13 +10,13 @@
 
 namespace weft::render {
 
-/// Consecutive triangles of one appearance.
+/// Consecutive triangles with the same appearance.
 struct PaintedRange {
   std::size_t first = 0, count = 0;
   const frame::Appearance* look = nullptr;
 };
 
-/// What a painted surface has in addition to its drawn mesh.
+/// Data of a painted surface in addition to its drawn mesh.
 struct PaintedMesh {
   std::vector<Eigen::Vector2f> places;  ///< per drawn vertex: paint coordinates (Surface::paint_uv or uv)
   std::vector<PaintedRange> ranges;
@@ -25,17 +25,16 @@ struct PaintedMesh {
 /// Splits drawn vertices whose corners have different paint coordinates, as at seams, and sorts the triangles by part.
 PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
 
-/// The holes of a painted mesh.
 class Holes {
  public:
-  /// `opacity`: per range, that of its picture; null if the range has no holes.
+  /// `opacity`: per range, the opacity of its picture; null if the range has no holes.
   Holes(const PaintedMesh& mesh, std::vector<const Opacity*> opacity);
 
   bool any() const;
   /// Opacity of the triangles of a range; null if they have no holes.
   const Opacity* opacity(std::size_t range) const { return opacity_[range]; }
   std::span<const PaintedRange> ranges() const { return mesh_->ranges; }
-  /// Picture coordinates of a drawn vertex for a range.
+  /// Coordinates of a drawn vertex in the picture of a range.
   Eigen::Vector2f place(std::size_t range, Index vertex) const;
 
  private:

@@ -14,8 +14,8 @@ namespace {
 using Wrap = frame::Paint::Wrap;
 using Alpha = frame::Paint::Alpha;
 
-// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, which llvmpipe has as an extension. The value 8 keeps prints sharp on cloth
-// that is seen at an angle of 7 degrees.
+// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, which llvmpipe has as an extension. The value 8 keeps prints sharp down to
+// an angle of 7 degrees between cloth and line of sight.
 constexpr GLenum kMaxAnisotropy = 0x84FE;
 constexpr float kAnisotropy = 8;
 
@@ -35,7 +35,7 @@ GLint gl_wrap(Wrap wrap) {
 
 /// Converts linear light to a byte of an sRGB texture, with an error below one level of 255.
 std::uint8_t srgb_byte(float linear) {
-  constexpr int kSteps = 8192;  // adjacent bytes are 2.5 steps apart near black, more elsewhere
+  constexpr int kSteps = 8192;  // table entries; adjacent bytes are 2.5 entries apart near black, more elsewhere
   static const auto kTable = [] {
     std::vector<std::uint8_t> table;
     for (int i = 0; i <= kSteps; ++i)
@@ -79,7 +79,7 @@ const PaintTexture& Paints::of(const frame::Paint& paint) {
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_S, gl_wrap(paint.wrap_u));
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_T, gl_wrap(paint.wrap_v));
   gl_->TextureParameterf(name, kMaxAnisotropy, kAnisotropy);
-  gl_->GetError();  // clears the error of an OpenGL that has no anisotropic filtering
+  gl_->GetError();  // clears the error if OpenGL has no anisotropic filtering
   if (paint.alpha == Alpha::cutout) made.opacity.emplace(std::move(levels), paint.wrap_u, paint.wrap_v);
   return known_.emplace(key, std::move(made)).first->second;
 }

@@ -1,4 +1,4 @@
-// Pictures of surfaces as OpenGL textures.
+// Pictures on surfaces as OpenGL textures.
 #pragma once
 
 #include <map>
@@ -12,8 +12,8 @@
 
 namespace weft::render {
 
-/// One picture with all mip levels, and its opacity if it cuts holes. The CPU makes the levels from premultiplied
-/// linear colour, so that the levels average light and transparent texels contribute no colour.
+/// One picture with all mip levels, and its opacity if it cuts holes. The mip levels are computed on the CPU from
+/// premultiplied linear colour, so that they average light, and transparent texels contribute no colour.
 struct PaintTexture {
   Texture texture;
   std::optional<Opacity> opacity;

@@ -30,7 +30,7 @@ void PixelPoints::read(std::span<const Seen> seen, std::span<const Eigen::Vector
   const Eigen::Vector3f up = floor ? Eigen::Vector3f(floor->normal.cast<float>()) : Eigen::Vector3f::UnitZ();
   const Eigen::Vector2f half(static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height));
   const float per_metre = static_cast<float>(picture_height_) / (2 * half.y() * static_cast<float>(divisor_));
-  // By column of points: the column of pixels, and the tangent of its horizontal angle to the view axis.
+  // Per column of points: the column of pixels, and the tangent of its horizontal angle to the view axis.
   std::vector<int> pixel(static_cast<std::size_t>(width_));
   std::vector<float> across(pixel.size());
   for (std::size_t x = 0; x < pixel.size(); ++x) {
@@ -49,7 +49,7 @@ void PixelPoints::read(std::span<const Seen> seen, std::span<const Eigen::Vector
         distance[x] = seen_row[pixel[x]].distance;
         surface[x] = seen_row[pixel[x]].surface;
       }
-      // Loops over arrays of one number each, which the compiler vectorises.
+      // Each loop writes one array, so that the compiler vectorises it.
       float* const density = density_.row(y);
       for (int x = 0; x < width_; ++x) density[x] = per_metre / distance[x];
       for (int axis = 0; axis < 3; ++axis) {

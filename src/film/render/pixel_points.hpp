@@ -1,4 +1,4 @@
-// The surface points that pixels show, stored as one array per number, so that loops can process eight points at once.
+// The surface points that pixels show. Each coordinate has its own array, so that loops process eight points at once.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,7 +15,7 @@
 
 namespace weft::render {
 
-/// A picture with one number per pixel, and a border so that neighbours can be read without a check.
+/// One channel of a picture: a number per pixel. Each row has a border, so that neighbours can be read without a check.
 class Plane {
  public:
   static constexpr int kBorder = 8;  ///< border on either side of each row [numbers]: as many as a packet has lanes
@@ -36,11 +36,10 @@ class PixelPoints {
  public:
   enum class Kind : std::uint8_t { nothing, floor, solid, cloth };
 
-  /// For pictures of width x height pixels; every `divisor`-th pixel in both directions gives a point.
+  /// For pictures of width x height pixels, with a point at every `divisor`-th pixel in both directions.
   PixelPoints(int width, int height, int divisor);
 
-  /// Reads what a picture shows. `normals`: world normals of surfaces towards the viewer, of length 1 + rise(), see
-  /// geometry.frag. `kinds`: one per surface.
+  /// Fills in the points. `seen`, `normals`: as read from the geometry buffer. `kinds`: one per surface.
   void read(std::span<const Seen> seen, std::span<const Eigen::Vector4f> normals, std::span<const Kind> kinds,
             const View& view, const std::optional<Floor>& floor);
 
@@ -48,16 +47,16 @@ class PixelPoints {
   int height() const { return height_; }
   int divisor() const { return divisor_; }
 
-  /// What a point of row y shows; beyond the ends of the row, up to Plane::kBorder: Kind::nothing.
+  /// What a point of row y shows: Kind::nothing if x is up to Plane::kBorder beyond an end of the row.
   Kind kind(int x, int y) const { return static_cast<Kind>(static_cast<int>(kinds_.row(y)[x])); }
-  /// The functions below return values of eight points of row y, from x on. kinds(): numbers of the enumeration.
+  /// The next four functions return values of eight points of row y, from x on. kinds(): values of Kind as numbers.
   Lanes kinds(int x, int y) const { return Eigen::Map<const Lanes>(kinds_.row(y) + x); }
   Lanes3 positions(int x, int y) const { return lanes(position_, x, y); }
   Lanes3 normals(int x, int y) const { return lanes(normal_, x, y); }
   /// Height of the smooth surface above the drawn one, along the normal [m].
   Lanes rises(int x, int y) const { return Eigen::Map<const Lanes>(rise_.row(y) + x); }
 
-  /// The functions below return a row. surfaces(): number as in Seen; -1 beyond the ends of the row.
+  /// The functions below return a row of values. surfaces(): number as in Seen; -1 beyond the ends of the row.
   const float* surfaces(int y) const { return surface_.row(y); }
   const float* position(int axis, int y) const { return position_[axis].row(y); }
   const float* normal(int axis, int y) const { return normal_[axis].row(y); }

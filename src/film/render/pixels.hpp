@@ -15,7 +15,7 @@ Eigen::Vector3f linear_of(std::uint64_t rgba);
 /// Inverse of linear_of(); alpha is 1.
 std::uint64_t encoded(const Eigen::Vector3f& linear);
 
-/// 8-bit image, top row first. Dithers by half a level either way, so that wide gradients show no bands.
+/// 8-bit image, top row first. Dithers by up to half a level, so that smooth gradients show no bands.
 image::Image to_image(std::span<const std::uint64_t> rgba, int width, int height);
 /// 16-bit image, top row first, not dithered.
 image::Image16 to_image16(std::span<const std::uint64_t> rgba, int width, int height);

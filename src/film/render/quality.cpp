@@ -2,7 +2,7 @@
 
 namespace weft::render {
 
-// Costs of each stage: tests/bench/history.md, render.
+// The cost of each stage is measured in tests/bench/history.md, section "render".
 QualitySettings quality_settings(Quality quality) {
   switch (quality) {
     case Quality::draft:

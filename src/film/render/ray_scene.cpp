@@ -20,7 +20,7 @@ float random_fraction(unsigned ray, unsigned triangle) {
   return static_cast<float>(((state >> 22u) ^ state) >> 8) / 16777216.0f;
 }
 
-/// Opacity of a triangle at barycentric coordinates u, v: that of the mesh, times that of a picture that cuts holes.
+/// Opacity of a triangle at barycentric coordinates u, v: that of the mesh, times that of its picture if it cuts holes.
 float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) {
   if (mesh.holes == nullptr) return mesh.opacity;
   const auto ranges = mesh.holes->ranges();
@@ -36,7 +36,8 @@ float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) 
   return mesh.opacity;
 }
 
-/// Embree calls this function for hits of surfaces that do not stop all light. It makes a random fraction of rays pass.
+/// Filter that Embree calls for hits on surfaces that do not stop all light. It rejects the hits of a random fraction
+/// of the rays, which then pass the surface.
 void let_pass(const RTCFilterFunctionNArguments* args) {
   const auto& mesh = *static_cast<const DrawnMesh*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
@@ -131,8 +132,8 @@ void RayScene::build(std::span<const DrawnMesh> meshes) {
   tree_->scene = rtcNewScene(tree_->device);
   for (std::size_t i = 0; i < meshes.size(); ++i)
     if (!meshes[i].triangles.empty()) tree_->add(meshes[i], static_cast<unsigned>(i));
-  // Builds with one thread, so that the hierarchy does not depend on the number of threads. (Embree's own setting would
-  // limit all parallel loops of the process.)
+  // Builds with one thread, so that the hierarchy does not depend on the number of threads. (Embree's own setting of
+  // the number of threads would limit all parallel loops of the process.)
   tbb::task_arena one(1);
   one.execute([&] { rtcCommitScene(tree_->scene); });
   tree_->check();

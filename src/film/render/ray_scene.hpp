@@ -39,13 +39,13 @@ inline Lanes dot(const Lanes3& a, const Lanes3& b) {
 struct Rays {
   Lanes3 origin, direction;            ///< [m]
   Lanes end = Lanes::Constant(1e30f);  ///< largest distance, in lengths of `direction`
-  Mask wanted = Mask::Zero();          ///< rays to trace; the others meet nothing
+  Mask wanted = Mask::Zero();          ///< rays to trace; the others hit nothing
   unsigned seed = 0;                   ///< seed of the random choice of rays that pass through translucent cloth
 };
 
 struct Hits {
   static constexpr int kNone = -1;
-  std::array<int, kLanes> mesh;  ///< kNone: the ray meets nothing
+  std::array<int, kLanes> mesh;  ///< index of the mesh; kNone: the ray hits nothing
   std::array<std::size_t, kLanes> triangle;
   Lanes distance;  ///< in lengths of the ray's direction
   Lanes3 normal;   ///< unit length, on the side from which the corners run counter-clockwise
@@ -62,10 +62,10 @@ class RayScene {
   /// rays. Throws std::bad_alloc, or Error(internal) with Embree's reason.
   void build(std::span<const DrawnMesh> meshes);
 
-  /// 1 for each wanted ray that meets a surface, else 0. A surface with holes or an opacity below 1 stops a random
-  /// fraction of the rays, equal to its opacity at that point.
+  /// 1 for each wanted ray that a surface stops, else 0. A surface with holes or an opacity below 1 stops a random
+  /// fraction of the rays that hit it. This fraction is the opacity at the point.
   Lanes blocked(const Rays& rays) const;
-  /// The nearest surface that stops each wanted ray; which rays pass is random as in blocked().
+  /// The nearest surface that stops each wanted ray. Translucent surfaces stop a random fraction, as in blocked().
   Hits nearest(const Rays& rays) const;
 
  private:

@@ -1,4 +1,4 @@
-// Draws cloth as a smooth surface: splits each triangle in four, with new vertices on cubic patches.
+// Draws cloth as a smooth surface: splits each triangle in four, with the new vertices on cubic curves.
 #pragma once
 
 #include <algorithm>
@@ -29,18 +29,18 @@ class Refinement {
   std::vector<Edge> edges_;
 };
 
-/// Midpoint of an edge on the cubic curve given by the normals of its ends (Vlachos et al., "Curved PN Triangles",
-/// 2001). Its normal is the mean of both normals, because the paper's quadratic normals oscillate along sharp folds.
-/// The midpoint is at most `max_offset` [m] from the edge, so that layers in contact stay apart and bad normals make no
-/// spikes.
+/// Midpoint of the cubic curve from a to b that is perpendicular to the normals at both ends (Vlachos et al., "Curved
+/// PN Triangles", 2001). The normal of the midpoint is the mean of both normals, because the paper's quadratic normals
+/// oscillate along sharp folds. The midpoint is at most `max_offset` [m] from the middle of the straight edge, so that
+/// layers in contact do not intersect and inaccurate normals cause no spikes.
 struct Middle {
   Vec3 position, normal;
 };
 Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b, double max_offset);
 
-/// Maximum distance of midpoints from their edges [m]: the thickness of the cloth, at least 0.2 mm. This is below half
-/// of the gap that contacts keep between layers. (Measured: with 0.5 mm, the inner side of a fold of silk, 0.18 mm
-/// thick, showed through its outer one.)
+/// The `max_offset` for cloth of a thickness [m]: the thickness, at least 0.2 mm. This is below half of the gap that
+/// contacts keep between layers. (Measured with 0.5 mm: the inner layer of a fold of silk 0.18 mm thick was visible
+/// through the outer layer.)
 inline double max_midpoint_offset(double thickness) {
   return std::max(thickness, 2e-4);
 }

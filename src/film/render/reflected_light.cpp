@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Assumed open fraction of the surroundings at the point that a ray meets; no second ray measures it.
+// Assumed open fraction of the surroundings at the point that a ray hits. From there, only rays to lamps are traced.
 constexpr float kOpenAtHits = 0.6f;
 constexpr float kMinSlope = 0.02f;  // the floor is ignored for rays that descend less steeply [m/m]
 
@@ -80,7 +80,6 @@ Lanes3 ReflectedLight::surroundings(const Lanes3& normal) const {
 ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
   const Hits hits = rays_->nearest(rays);
   Arriving result;
-  // Where rays end: on surfaces, or on the floor.
   enum class End : std::uint8_t { nowhere, surface, floor };
   std::array<End, kLanes> ends{};
   Lanes3 normal, albedo, point;
@@ -125,7 +124,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     shadow.wanted = mask(on_surface + on_floor > 0 && strength > 0);
     if ((shadow.wanted == 0).all()) continue;
     const Lanes dark = rays_->blocked(shadow);
-    // The surroundings already contain the floor in full light, so that a shadow on the floor subtracts.
+    // The surroundings already contain the fully lit floor, so that a shadow on the floor subtracts light.
     const Lanes added =
         (shadow.wanted != 0).select(strength * (on_surface - dark * (on_surface + on_floor)), Lanes::Zero());
     result.light.x += added * lamp.packed.color.x();

@@ -1,4 +1,4 @@
-// The light that arrives along a ray: light of lamps and surroundings, reflected by the surface that the ray meets.
+// The light that arrives along a ray: light of lamps and surroundings, reflected by the surface that the ray hits.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@
 
 namespace weft::render {
 
-/// Mean linear colours of appearances, without the holes that pictures cut. Each picture is averaged only once.
+/// Mean linear colours of appearances. Holes that pictures cut do not count. Each picture is averaged only once.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back);
@@ -35,7 +35,7 @@ struct ReflectingSurface {
   std::vector<Range> ranges;  ///< the last range also covers all further triangles
 };
 
-/// `look`: of the surface as a whole. `plain`: ignores the colours of parts. `dark`: reflects nothing.
+/// `look`: appearance of the whole surface. `plain`: all parts have this appearance. `dark`: all colours are black.
 ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
                                      bool dark, MeanColors& colors);
 
@@ -49,9 +49,9 @@ class ReflectedLight {
   std::span<const Lamp> lamps() const { return lamps_; }
 
   struct Arriving {
-    Lanes open = Lanes::Zero();  ///< 1 if the ray meets no surface; the floor counts as part of the surroundings
-    Lanes3 light;                ///< radiance to add to that of the surroundings, which include floor in full light;
-                                 ///< negative if the ray meets shaded floor
+    Lanes open = Lanes::Zero();  ///< 1 if the ray hits no surface; the floor counts as part of the surroundings
+    Lanes3 light;                ///< radiance to add to that of the surroundings, which include the fully lit floor;
+                                 ///< negative if the ray hits shaded floor
   };
   Arriving arriving(const Rays& rays) const;
 

@@ -26,12 +26,12 @@
 namespace weft::render {
 namespace {
 
-// Cloth is refined if all cloths together have at most this number of triangles: those of finer meshes are small.
+// Cloth is refined if all cloths together have at most this number of triangles; finer meshes look smooth without it.
 constexpr std::size_t kMaxRefinedTriangles = 20000;
-constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth
-constexpr double kMaxMotionPerPicture =
-    5;  // limit on the motion during each of the sharp pictures that are averaged for motion blur [pixels]
-constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor, relative to subject radius plus eye distance
+constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth that are drawn
+// Motion blur averages so many sharp pictures that the motion during the time of each is at most this [pixels].
+constexpr double kMaxMotionPerPicture = 5;
+constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor / (subjects' radius + distance of the eye)
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3(0, 0, 1);
@@ -98,8 +98,8 @@ struct Renderer::Impl {
   std::optional<DataPasses> data;
   image::Layers layers;
 
-  // The picture and what it shows, lowest row first; members, so that their memory is reused. Only if layers are
-  // requested: `unsmoothed`, the picture before antialiasing, and `open_floor`, the picture with its floor unshadowed.
+  // The picture and what it shows, lowest row first. If layers are requested, also the picture before antialiasing
+  // (`unsmoothed`) and the picture with unshadowed floor (`open_floor`). They are members to reuse their memory.
   std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
   std::vector<Seen> seen;
 
@@ -150,7 +150,7 @@ Renderer::Impl::~Impl() {
   context->release();
 }
 
-/// Updates the buffers to match the snapshot's surfaces: keeps those of known surfaces, creates those of new ones.
+/// Updates the buffers to the surfaces of the snapshot: keeps those of known surfaces, creates those of new ones.
 void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const View& view) {
   std::size_t cloth_triangles = 0;
   for (const auto& surface : snapshot.surfaces)
@@ -165,7 +165,7 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const
       next.push_back(std::move(*known));
       passes->surfaces.erase(known);
     } else {
-      // With layers for compositors, cloth is drawn without refinement and rims: the layers show the simulated faces.
+      // If layers for compositors are requested, cloth is not refined and has no rims: layers show the simulated faces.
       const bool cloth = surface->kind == frame::ObjectKind::cloth;
       const bool free = cloth && !settings.layers;
       next.emplace_back(gl, surface,
@@ -225,7 +225,7 @@ std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const
   return list;
 }
 
-/// Uploads the lights, and collects the properties of lights and surfaces that rays need.
+/// Uploads the light block, and collects the properties of lights and surfaces for tracing rays.
 ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
   std::vector<Lamp> lamps;
   LightsUniform block{};
@@ -252,7 +252,7 @@ void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double h
   passes->shading.draw(materials(plan), heat, features(plan), subjects, passes->traced.shaded_floor());
 }
 
-/// Draws the geometry buffer, traces light, then draws colours and smooth outlines.
+/// Draws one picture without blur: draws the geometry buffer, traces light, computes colours, antialiases outlines.
 void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
   update_surfaces(snapshot, plan.view);
   update_floor(plan);
@@ -314,8 +314,8 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   if (plan.lighting.style.edges) draw_edges(passes->surfaces, plan.view, settings.width, settings.height, seen, rgba);
 }
 
-/// Blends translucent cloth over the picture of everything else by depth peeling, nearest layer first (Everitt,
-/// "Interactive Order-Independent Transparency", 2001). Afterwards, `seen` also contains translucent cloth.
+/// Blends translucent cloth over the picture of everything else. Depth peeling draws the layers of this cloth, nearest
+/// first (Everitt, "Interactive Order-Independent Transparency", 2001). Afterwards, `seen` also contains this cloth.
 void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                              std::span<const DrawnMesh> opaque, const PixelArea& area) {
   std::vector<std::uint64_t> behind = rgba;
@@ -374,7 +374,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const frame::Camera camera = choose_camera(snapshot);
   const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
-  // With data layers, the picture stays sharp: compositors blur it by the motion and depth layers.
+  // If layers are requested, the picture stays sharp: compositors blur it, using the layers of motion and depth.
   if (data || (shutter <= 0 && camera.aperture <= 0)) {
     const Plan plan = plan_of(snapshot, camera, up_of(snapshot));
     draw_sharp(snapshot, plan);
@@ -387,8 +387,8 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     return make_view(between(camera, camera_before, back), up_of(moved), settings.aspect(), subject_bounds(moved),
                      find_floor(moved, up_of(moved)));
   };
-  // Without depth of field: draws so many pictures, up to `instants`, that the motion in each is at most
-  // kMaxMotionPerPicture pixels, and smears each picture along its motion.
+  // Without depth of field, draws as few pictures as kMaxMotionPerPicture allows (at most `instants`), and smears each
+  // of them along the motion.
   int count = quality.instants;
   const bool smears = camera.aperture <= 0;
   if (smears) {
@@ -405,8 +405,8 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     const frame::FrameSnapshot moved = snapshot_at(instant.back);
     const frame::Camera middle = between(camera, camera_before, instant.back);
     const Vec3 up = up_of(moved);
-    // From all points of the lens, the same direction is upright. With `up` itself, the pictures of a camera that looks
-    // steeply down would be rotated against each other.
+    // The same direction is upright in the pictures from all points of the lens. If it were `up`, pictures of a camera
+    // that looks steeply down would be rotated against each other.
     const Vec3 upright = smears ? up : view_axes(middle.target - middle.position, up).up;
     const Plan plan = plan_of(moved, through_lens(middle, up, instant.lens), upright);
     draw_sharp(moved, plan);

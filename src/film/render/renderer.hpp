@@ -19,7 +19,7 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;   ///< name; empty: the first or, if there is none, one that shows the whole run
+  std::string camera;   ///< name; empty: the scene's first camera; without any, one that shows the whole run
   int threads = 0;      ///< number of threads of the software rasteriser; 0: its default
   bool layers = false;  ///< whether layers() will be called; pictures are then sharp, without blur
   bool deep = false;    ///< whether deep() will be called
@@ -34,8 +34,7 @@ struct DrawTimes {
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
-/// Owns one OpenGL context and, inside it, copies of the data that do not change during a run. Use from a single
-/// thread.
+/// Owns an OpenGL context, which keeps the data that do not change during a run. Use from a single thread.
 class Renderer {
  public:
   /// Throws as make_context() does, and Error(usage) for a bad size.
@@ -46,14 +45,14 @@ class Renderer {
 
   /// Sets the camera of a run. If this is not called, a computed camera is derived from the first drawn frame alone.
   void set_camera_path(CameraPath path);
-  /// `before`: the previous frame, for motion blur and for the motion in layers(); null: there is neither.
+  /// `before`: the previous frame, for motion blur and for the motion in layers(); null: no motion.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
   /// The last picture as linear layers for compositors. Channels R, G, B and A hold the surfaces alone, premultiplied.
   /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor and no
   /// translucent cloth, channel caught.A holds the alpha of the surfaces over the floor's shadow (black, with the
   /// fraction of blocked light as alpha). All layers of DataPasses follow.
   image::Layers layers();
-  /// The last picture with 16 bits per channel.
+  /// The last picture with 16 bits per channel, not dithered.
   image::Image16 deep();
   DrawTimes last_times() const;
 

@@ -11,13 +11,13 @@ namespace weft::render {
 struct Saliency {
   double coverage = 0;  ///< fraction of the picture that shows unoccluded cloth
   double folding = 0;   ///< 0: all cloth is flat; 1: the normals of its faces cancel each other
-  double motion = 0;    ///< rate of change of shape; 1/2 at half of the cloth's size per second
+  double motion = 0;    ///< v / (v + 1/2), v: mean speed of vertices within the cloth [cloth sizes per second]
 
   /// Cloth outside the picture scores 0. Folding and motion each weigh at most as much as coverage.
   double score() const { return coverage * (1 + folding + motion); }
 };
 
-/// `previous`: the frame before, `seconds` earlier; null for the first frame. `camera`: as in Settings; a computed
+/// `previous`: the frame that is `seconds` earlier; null for the first frame. `camera`: as in Settings. A computed
 /// camera is derived from this frame alone.
 Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
                      const std::string& camera, double aspect);

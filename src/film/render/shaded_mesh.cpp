@@ -10,8 +10,8 @@
 namespace weft::render {
 namespace {
 
-// Margin added to the crease angle [degrees]. The faces of a regular prism can meet exactly at the crease angle;
-// without the margin, rounding would decide in each frame anew. No usual number of faces gives the angle plus margin.
+// Margin added to the crease angle [degrees]. The normals of a regular prism can differ by exactly the crease angle (12
+// faces: 30 degrees). Without the margin, rounding would decide in each frame whether such an edge is sharp.
 constexpr double kCreaseMargin = 0.37;
 
 Vec3 unit_or_up(const Vec3& sum) {
@@ -29,7 +29,8 @@ class VertexSplitter {
     const std::size_t first = mesh_.normals.size();
     for (const std::int32_t corner : corners) {
       const Vec3 normal = corner_normal(corner, corners);
-      // Corners that average the same triangles have bitwise equal normals, because the order of addition is the same.
+      // Corners whose normals are means over the same triangles have bitwise equal normals, because the order of
+      // addition is the same.
       std::size_t drawn = first;
       while (drawn < mesh_.normals.size() && mesh_.normals[drawn] != normal) ++drawn;
       if (drawn == mesh_.normals.size()) {

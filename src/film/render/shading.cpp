@@ -15,10 +15,10 @@ std::vector<std::string> shading_defines(const LightSet& lights, const std::vect
   return defines;
 }
 
-// Cloth thicker than kTopstitchedThickness has topstitching on both sides of a seam, kTopstitchDistance from it [m].
+// Cloth thicker than kTopstitchedThickness [m] has topstitching on both sides of a seam, at kTopstitchDistance [m].
 constexpr double kTopstitchedThickness = 0.7e-3, kTopstitchDistance = 4e-3;
 
-// Gloss of cotton: up to this value, the highlights of threads are below half a level of 255 and are not computed.
+// Gloss of cotton. Up to this Finish::gloss, highlights of threads are below half a level of 255 and not computed.
 constexpr double kMaxMatteGloss = 0.1;
 
 Texture make_heat_colors(const Gl& gl) {
@@ -49,8 +49,8 @@ void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corn
   gl.VertexArrayAttribBinding(array.name(), 0, 0);
 }
 
-/// Cells with two triangles each. Interpolating the light of the floor has an error below half a level of 255, except
-/// where fades_steeply().
+/// The grid for slowly varying colours: cells with two triangles each. For the light of the floor, the error of
+/// interpolation is below half a level of 255, except if fades_steeply().
 struct Grid {
   std::vector<Eigen::Vector2f> corners;
   std::vector<GLuint> triangles;
@@ -88,7 +88,7 @@ frame::Appearance clay(const frame::Appearance& look) {
 }  // namespace
 
 double opacity_of(const frame::Surface& surface) {
-  constexpr double kFirst = 0.5, kSlope = 1.25;  // chiffon, with a sheerness of 0.9, stops half of the light
+  constexpr double kFirst = 0.5, kSlope = 1.25;  // chiffon, whose `sheer` is 0.9, stops half of the light
   if (surface.kind != frame::ObjectKind::cloth) return 1;
   return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
 }
@@ -132,8 +132,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 }
 
 // The light of a sun on open floor, and the fading of the floor into the backdrop, vary so slowly over the picture that
-// they can be interpolated on a grid. The edges of checkers, pictures and reflections cannot, nor can steep fading and
-// the edges of spots, except, in qualities with spots_on_grid, the latter.
+// they can be interpolated on a grid. Checkers, pictures, reflections and steep fading cannot. The light of spots is
+// interpolated only in qualities with spots_on_grid, because the edges of their cones become inaccurate.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting && !features.steep) {
@@ -231,7 +231,7 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
     corners.insert(corners.end(), {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
   }
   upload<Eigen::Vector2f>(*gl_, area_vertices_, corners);
-  // Only floor pixels have both lower bits set.
+  // Marks only floor: no other class has both lower bits set.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::shaded_floor), static_cast<GLuint>(PixelClass::floor));
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   gl_->BindVertexArray(area_array_.name());
@@ -269,7 +269,7 @@ void Shading::draw_open_floor(const Features& features) {
   const Programs& chosen = programs(features);
   bind();
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  // Both classes of floor have the same lower bits.
+  // Selects both classes of floor, which have the same lower bits.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::floor), static_cast<GLuint>(PixelClass::floor));
   use_floor(chosen.open_floor, features);
   if (chosen.floor_on_grid) {
@@ -340,7 +340,7 @@ double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stag
       for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
     }
   }
-  // If the largest value is 0, the scale does not matter: all cloth has the coldest colour.
+  // If the largest value is 0, all cloth has the coldest colour with any scale.
   return hottest > 0 ? 1 / hottest : 1;
 }
 

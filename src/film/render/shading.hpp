@@ -35,8 +35,8 @@ class Shading {
     bool tiled = false;       ///< the floor shows the picture of set_floor()
     bool painted = false;     ///< the geometry buffer has colours
     bool trimmed = false;     ///< the geometry buffer has hems and seams
-    bool shiny = false;       ///< the floor mirrors lamps
-    bool reflecting = false;  ///< the whole floor shows the picture of a Mirror
+    bool shiny = false;       ///< the floor has highlights of lamps
+    bool reflecting = false;  ///< the floor reflects the picture of a Mirror
     bool steep = false;       ///< the floor fades too steeply for the grid: fades_steeply() over kGridCell
     bool sheer = false;       ///< cloth writes its opacity
     bool glossy = false;      ///< some cloth has shiny threads; set by draw(), as are the next three
@@ -47,12 +47,13 @@ class Shading {
   };
   /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture. Call before draw().
   void set_floor(const std::optional<Floor>& floor, double tint);
-  /// `materials`: in the order of the surfaces. `heat_scale`: 1 / hottest value, or 0 if cloth has its own colours.
-  /// `subjects`: area that contains all surfaces. Outside `shaded_floor`, floor is fully lit and open to the sky. Frame
-  /// and light blocks, traced light and geometry must be bound.
+  /// Computes the colours of the picture. `materials`: in the order of the surfaces. `heat_scale`: 1 / value at the hot
+  /// end of the scale, or 0 if cloth has its own colours. `subjects`: area that contains all surfaces. Outside
+  /// `shaded_floor`, the floor has neither shadow nor occlusion. The frame and light blocks, the textures of
+  /// TracedLight and those of the geometry buffer must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
             std::span<const PixelArea> shaded_floor);
-  /// Draws the whole floor without shadows or occlusion. Call after draw() of the same picture.
+  /// Draws the whole floor again, without shadow and occlusion. Call after draw() of the same picture.
   void draw_open_floor(const Features& features);
   /// Draws cloth only and writes its opacity to alpha. Call after draw() of the same picture.
   void draw_layer(Features features, const PixelArea& subjects);
@@ -99,11 +100,11 @@ double opacity_of(const frame::Surface& surface);
 /// Whether a body, such as the mannequin, shows skin where no picture covers its colour.
 bool is_skin(const frame::Surface& surface);
 
-/// `plain`: clay, in place of the surface's own colours.
+/// `plain`: clay in place of the colours of the surface.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
-/// The heat that a stage shows for a frame: none for the looks `clay` and `wire`, strain for the look `strain`, else as
-/// the stage says. Throws Error(usage) if the look is `strain` and the frame has no strain.
+/// The heat to show in a frame: none for the looks `clay` and `wire`, strain for the look `strain`, else Stage::heat.
+/// Throws Error(usage) if the look is `strain` and the frame has no strain.
 frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
 /// 1 / value at the hot end of the scale; 0 if no heat is drawn.

@@ -10,8 +10,8 @@
 namespace weft::render {
 
 /// Fraction of the floor's light that the subjects block, per pixel. `shaded`: the picture; `open`: the same picture
-/// with its floor unshadowed (both as read from OpenGL, lowest row first). A pixel that shows no floor takes the
-/// maximum of its neighbours that do, because part of it may be floor.
+/// with unshadowed floor (both as read from OpenGL, lowest row first). A pixel that shows no floor gets the maximum of
+/// its neighbours that show floor, because part of the pixel may be floor.
 std::vector<float> floor_shadows(std::span<const Seen> seen, std::span<const std::uint64_t> shaded,
                                  std::span<const std::uint64_t> open, int width, int height);
 

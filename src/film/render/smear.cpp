@@ -10,12 +10,14 @@
 namespace weft::render {
 namespace {
 
-constexpr int kTile =
-    8;  // [pixels]; a smear extends by half of the motion to each side, so that it stays within the next tile
+constexpr int kTile = 8;  // side of the tiles of dilate_motions() [pixels]
+// Longer motions are shortened to this length [pixels]. A smear extends by half of the motion to each side, so that it
+// does not extend beyond the neighbouring tile.
 constexpr float kMaxMotion = 2 * kTile;
-constexpr float kMinMotion = 1.2f;  // [pixels]; shorter motions are no wider than an antialiased edge
+// Shorter motions are not smeared, because they are no wider than an antialiased edge [pixels].
+constexpr float kMinMotion = 1.2f;
 
-/// Position in the picture [pixels], lowest row first; z: 1 / distance, 0 if it is nearer than the near plane.
+/// Position in the picture [pixels], from the lower left corner; z: 1 / distance [1/m]. 0 in front of the near plane.
 Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   if (clip.w() < view.near) return Eigen::Vector3f::Zero();
@@ -23,7 +25,7 @@ Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int
       .cast<float>();
 }
 
-/// Positions of a surface in a snapshot; null if it lacks the surface, or if the number of vertices is not `count`.
+/// Positions of `surface` in a snapshot; null if the snapshot has no surface of this name with `count` vertices.
 const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
                                       std::size_t count) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
@@ -88,7 +90,7 @@ void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& v
   }
 }
 
-/// Stores for each tile the longest motion in it and in its neighbours. Pixels far from moving surfaces stay sharp.
+/// Stores for each tile the longest motion in this tile and its neighbours. Pixels of tiles without motion stay sharp.
 void Smear::dilate_motions() {
   const int columns = (width_ + kTile - 1) / kTile, rows = (height_ + kTile - 1) / kTile;
   std::vector<Eigen::Vector2f> tiles(static_cast<std::size_t>(columns) * rows, Eigen::Vector2f::Zero());
@@ -109,13 +111,13 @@ void Smear::dilate_motions() {
 }
 
 /// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
-/// Motion Blur", 2012. A sample shows the picture at its own place in two cases: if the surface there moves across (x,
-/// y), or if it is behind the surface at (x, y), which moves away. Else it shows the picture at (x, y).
+/// Motion Blur", 2012. A sample has the colour at its own position in two cases: if the surface there moves across (x,
+/// y), or if this surface is behind the surface at (x, y), which moves away. Else, it has the colour at (x, y).
 Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
   const float length = motion.norm(), own = 0.5f * motions_[here].motion.norm();
-  // Samples are at most one pixel apart; one of them is at (x, y).
+  // Samples are at most one pixel apart. The middle one is at (x, y).
   const int taps = 2 * static_cast<int>(std::ceil(0.5f * length)) + 1;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   for (int k = 0; k < taps; ++k) {
@@ -123,7 +125,8 @@ Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
     const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * motion.x())), 0, width_ - 1),
               to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
     const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
-    // `extent`: distance that the nearer surface moves to either side; the weight falls off over one pixel around it.
+    // `extent`: distance that the nearer surface moves to either side [pixels]. The weight `share` of the sample's own
+    // colour falls from 1 to 0 over one pixel around this distance.
     constexpr float kSame = 1.01f;
     const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
     const bool before = motions_[there].nearness > kSame * motions_[here].nearness,

@@ -1,5 +1,5 @@
-// Motion blur is the mean of several sharp pictures. Each of these is smeared along the motion of what it shows, so
-// that few pictures suffice.
+// Motion blur: the mean of several sharp pictures. Each pixel of these is averaged along the motion of what it shows
+// (smeared), so that few pictures suffice.
 #pragma once
 
 #include <span>
@@ -25,8 +25,8 @@ class Smear {
  public:
   Smear(int width, int height) : width_(width), height_(height) {}
 
-  /// Adds to `sum` the picture `sharp` (linear, lowest row first) smeared along the motion from `from` to `to`. The
-  /// picture was taken from `view`, halfway between the two.
+  /// Smears the picture `sharp` (linear, lowest row first) along the motion from frame `from` to frame `to`, and adds
+  /// it to `sum`. `surfaces` and `view`: those of the picture, which is halfway in time between the two frames.
   void add(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
            const View& from_view, const frame::FrameSnapshot& to, const View& to_view,
            std::span<const Eigen::Vector3f> sharp, std::vector<Eigen::Vector3f>& sum);

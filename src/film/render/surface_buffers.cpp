@@ -9,7 +9,7 @@
 namespace weft::render {
 namespace {
 
-/// Whether pictures cut holes into the surface; through holes, back faces are visible.
+/// Whether pictures cut holes into the surface. Back faces are visible through holes.
 bool has_holes(const frame::Surface& surface) {
   const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
   return cuts(surface.appearance) ||
@@ -68,7 +68,7 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
-  // Unchanged surfaces are not uploaded again: most obstacles do not move.
+  // Unchanged surfaces are not uploaded again, because most obstacles do not move.
   if (!detail_.rims) rim = 0;
   if (has_corner_map_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_width_) return;
   rim_width_ = rim;
@@ -79,7 +79,7 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
     has_corner_map_ = true;
   }
   if (closed_) {
-    double volume_times_6 = 0;  // negative if the front is inside
+    double volume_times_6 = 0;  // negative if the fronts of the triangles face inwards
     bounds_.setEmpty();
     for (const Vec3& position : state.positions) bounds_.extend(position);
     for (const auto& [a, b, c] : surface_->triangles) {
@@ -131,12 +131,12 @@ void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
 
 /// Appends the strips along borders after all other vertices and triangles.
 void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
-  // Takes one drawn vertex for each surface vertex, and if the surface is refined, adds the midpoints of the rims.
+  // `points`: one drawn vertex for each surface vertex and, if the surface is refined, the midpoints of the rims.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
   std::vector<Vec3> points = state_.positions, normals(vertex_count_);
   for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
-  std::vector<std::pair<Index, Index>> ends;  // per point: the two drawn vertices whose mean it is
+  std::vector<std::pair<Index, Index>> ends;  // per point: two drawn vertices, whose attributes are averaged
   for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
   const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
   std::vector<Trims::Rim> rims;
@@ -175,7 +175,7 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
     for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
     return;
   }
-  // For each painted range, a second range contains its strips.
+  // Each painted range that has strips gets a second range, which contains them.
   const auto& parts = surface_->part_of_triangle;
   const auto look_of = [&](std::int32_t triangle) {
     return parts.empty() ? &look : &surface_->parts[static_cast<std::size_t>(parts[triangle])].appearance;
@@ -196,7 +196,8 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // The strips along borders show neither the hem's fold nor its stitches: their distance lies between both.
+  // The strips along borders must show neither the fold of the hem nor its stitches. Their distance from the border is
+  // therefore set between that of the fold and that of the stitches.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);
@@ -213,7 +214,7 @@ void SurfaceBuffers::upload_trims() {
 
 void SurfaceBuffers::draw(const PaintedRange& range) const {
   gl_->BindVertexArray(array_.name());
-  // OpenGL takes the offset in its buffer as a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr)
+  // OpenGL takes the offset in the index buffer as a pointer. NOLINTNEXTLINE(performance-no-int-to-ptr)
   const auto* first = reinterpret_cast<const void*>(range.first * sizeof(Triangle));
   gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT, first);
 }

@@ -16,12 +16,12 @@ namespace weft::render {
 /// Detail of the drawn surface beyond its simulated triangles.
 struct Detail {
   bool refines = false;  ///< splits each triangle in four (Refinement); mesh() keeps the coarse ones
-  bool rims = false;     ///< strips along borders, as wide as the cloth is thick; mesh() excludes them
+  bool rims = false;     ///< strips along borders, which show the thickness of the cloth; mesh() excludes them
   bool trims = false;    ///< hems and seams
 };
 
-/// Vertex attributes, as in the shaders: 0 position, 1 normal, 2 rest (u, v), 3 heat. Painted surfaces also have 4,
-/// paint coordinates; trimmed ones 5 and 6, a Trim.
+/// Vertex attributes, numbered as in geometry.vert: 0: position, 1: normal, 2: rest (u, v), 3: heat; if the surface is
+/// painted, 4: paint coordinates; if it has trims, 5 and 6: Trim::distance and Trim::along.
 class SurfaceBuffers {
  public:
   SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail);
@@ -40,7 +40,7 @@ class SurfaceBuffers {
   /// Whether only front faces are visible from `eye`: the surface is closed, its normals point outwards, and the eye is
   /// outside its bounding box.
   bool shows_only_fronts(const Vec3& eye) const { return faces_outward_ && !bounds_.contains(eye); }
-  /// World position of each drawn vertex [m], and triangles of them.
+  /// World positions of the drawn vertices [m], and the drawn triangles.
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const {
     if (!with_rims_.empty()) return with_rims_;

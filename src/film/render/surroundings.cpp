@@ -93,8 +93,8 @@ Vec3 Surroundings::light(const Vec3& toward, double alpha) const {
 
 Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
                       std::span<const frame::Light> lights, const Vec3& ground) {
-  // Horizontal direction of the key light. The boxes are placed relative to it, not to the camera, so that they stay
-  // still when the camera moves.
+  // `key`: horizontal direction to the first light. The boxes are placed relative to this direction, not to the camera,
+  // so that they do not move with the camera.
   Vec3 key = Vec3::Zero();
   if (!lights.empty()) {
     const frame::Light& first = lights.front();
@@ -129,7 +129,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
       around.boxes = {box(0.2, 0.1, 1, 5, 1.2), box(-0.4, -1, 0.5, 4, 1.1), box(-1, 0.8, 0.45, 14, 2.0)};
       break;
   }
-  // Scales sky and boxes so that a horizontal surface receives the style's fraction of light. The ground light stays.
+  // Scales sky and boxes so that a horizontal surface receives the style's fraction of all light.
   const Vec3 flat = at(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));
   const bool tinted = stage.look == Look::daylight;
@@ -142,7 +142,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
 }
 
 Irradiance irradiance_of(const Surroundings& surroundings) {
-  // Integrates over 24 x 48 cells of the sphere, uniform in height; enough, because the projected function is smooth.
+  // Integrates over 24 x 48 cells of the sphere, uniform in height. They suffice, because the integrand is smooth.
   constexpr int kRows = 24, kColumns = 48;
   constexpr double kPi = std::numbers::pi;
   // Squared normalisation factors of the harmonics, times the factors of the clamped cosine (pi, 2 pi / 3 and pi / 4),

@@ -14,11 +14,11 @@ namespace weft::render {
 struct Style {
   Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface
   double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
-  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon, relative to fully lit floor
-  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above, relative to fully lit floor
-  double glow = 0;                ///< the backdrop is brighter by this fraction behind the subjects
+  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon; if this is a grey: a factor on the colour of open floor
+  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above; if `horizon` is a grey: a factor as well
+  double glow = 0;                ///< fraction by which the backdrop is darker far from the subjects than behind them
   double floor_tint = 1;          ///< factor on the colour of the floor
-  double floor_roughness = 1;     ///< upper limit of the roughness of a floor, unless the floor is fully matte (1)
+  double floor_roughness = 1;     ///< upper limit on the roughness of a floor, unless the floor is fully matte (1)
   double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
   bool exposes = true;            ///< direct light is increased until floor shows its own colour
   bool plain = false;             ///< all surfaces are clay, without own colours
@@ -38,8 +38,8 @@ struct Surroundings {
   Vec3 up = Vec3::UnitZ(), sky = Vec3::Zero(), horizon = Vec3::Zero(), ground = Vec3::Zero();
   std::array<Box, kBoxes> boxes;
 
-  /// Light from around `toward` (unit), blurred for a reflection with roughness² `alpha`. Same as surroundings() in
-  /// shaders/surroundings.glsl.
+  /// Light from direction `toward` (unit), blurred as by a reflection with roughness squared `alpha`. Same as
+  /// surroundings() in shaders/surroundings.glsl.
   Vec3 light(const Vec3& toward, double alpha) const;
 };
 

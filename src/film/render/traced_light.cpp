@@ -15,22 +15,23 @@ using Kind = PixelPoints::Kind;
 
 constexpr float kGoldenAngle = 2.39996323f;
 constexpr std::size_t kRowsAtOnce = 8;
-constexpr int kTurns = 64;        // number of rotations of the sample points on a lamp
+constexpr int kTurns = 64;        // number of rotations of the points on a lamp to which rays are traced
 constexpr int kFirstRays = 1;     // rays per point of the first pass, which finds penumbrae
 constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
 constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
 constexpr int kMirrorRays = 4;
-// No shadow rays start where the cosine between normal and light is below this value (on the floor: 0). From cloth,
-// which lets light through, they always start. Skin shows light slightly beyond the terminator (surface.frag).
+// Shadow rays are traced only if the cosine between normal and light is above this value (on the floor: above 0). It is
+// negative, because skin shows light slightly beyond the terminator (surface.frag). From cloth, rays are always traced,
+// because light passes through it.
 constexpr float kLeastCosine = -0.2f;
-// Changes of the floor's light below this fraction are ignored: half a level of 255.
+// Changes of the floor's light below this value are ignored: they are below half a level of 255.
 constexpr float kUnseen = 0.002f;
 
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
 
-/// A rotation for each pixel, from 0 to kTurns - 1. Any 4 x 4 pixels have 16 evenly spread rotations, in an order that
-/// shows no rows or columns (the 8 x 8 matrix of Bayer, "An optimum method for two-level rendition of continuous-tone
-/// pictures", 1973).
+/// A rotation for each pixel, from 0 to kTurns - 1. Any 4 x 4 pixels have 16 evenly spread rotations, in an order
+/// without visible rows or columns (the 8 x 8 matrix of Bayer, "An optimum method for two-level rendition of
+/// continuous-tone pictures", 1973).
 int turn_of(int x, int y) {
   static constexpr auto kOrder = [] {
     std::array<int, kTurns> order{};
@@ -46,8 +47,8 @@ int turn_of(int x, int y) {
   return kOrder[static_cast<std::size_t>((y & 7) * 8 + (x & 7))];
 }
 
-/// Point k of n points that cover a disc of radius 1 evenly (Vogel 1979). `turn`: rotation of all points [turns].
-/// `along` in [0, 1): radial position of each point within its ring.
+/// Point k of n points that are evenly spread over a disc of radius 1 (Vogel 1979). `turn`: rotation of all points
+/// [turns]. `along` in [0, 1): radial position of each point within its annulus, one of n with equal areas.
 Vector2f on_disc(float k, int n, float turn, float along) {
   const float radius = std::sqrt((k + along) / static_cast<float>(n));
   const float angle = kGoldenAngle * k + 2 * std::numbers::pi_v<float> * turn;
@@ -71,9 +72,10 @@ void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
   second = {b, sign + n.y * n.y * a, -n.y};
 }
 
-/// A pair of numbers in [0, 1) for each point. The 25 pairs of a block of 5 x 5 points are evenly spread. 64 kinds of
-/// blocks have different shifts of these pairs, by the R2 sequence (Roberts, "The Unreasonable Effectiveness of
-/// Quasirandom Sequences", 2018). Without shifts, the same few directions would cause the same error everywhere.
+/// spread(spread_number(x, y)) is a pair of numbers in [0, 1) for point (x, y). The 25 pairs of a block of 5 x 5 points
+/// are evenly spread. Each of 64 kinds of blocks shifts these pairs differently, by the R2 sequence (Roberts, "The
+/// Unreasonable Effectiveness of Quasirandom Sequences", 2018). Without shifts, the same few directions would cause the
+/// same error in all blocks.
 constexpr int kSpreads = 25 * 64;
 int spread_number(int x, int y) {
   const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence: a large change of both numbers
@@ -88,7 +90,7 @@ Vector2f spread(int number) {
   return at - Vector2f(at.array().floor());
 }
 
-/// Directions of rays about +z, with a density proportional to their cosine: `rays` rays for each number of spread().
+/// Directions about +z with a density proportional to their cosine: `rays` of them for each argument of spread().
 std::vector<Vector3f> cosine_directions(int rays) {
   std::vector<Vector3f> all;
   for (int number = 0; number < kSpreads; ++number) {
@@ -100,8 +102,9 @@ std::vector<Vector3f> cosine_directions(int rays) {
   return all;
 }
 
-/// Marks the tiles that may contain penumbrae: those in which two values differ or one lies between 0 and 1, and their
-/// neighbours. At the rim of a penumbra, few rays differ from the rest, but likely at least one of a whole tile.
+/// Sets `wanted` in the tiles that may contain penumbrae: those in which two known values differ or a value is between
+/// 0 and 1, and their neighbours. Whole tiles are marked, because near the rim of a penumbra the results of single rays
+/// are the same at most points.
 void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted) {
   const int width = points.width(), height = points.height();
   const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
@@ -133,7 +136,7 @@ void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& poi
   });
 }
 
-/// Of the wanted points, keeps those with a value between 0 and 1, and those within two points of a different value.
+/// Keeps a point in `wanted` only if its value is between 0 and 1, or if a known value at most two points away differs.
 /// `low`, `high`: scratch, overwritten.
 void keep_mixed(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted, Plane& low,
                 Plane& high) {
@@ -218,12 +221,12 @@ void TracedLight::trace_shadows(const ReflectedLight& light) {
   upload(lit_, points, lit_texture_, 0, Eigen::Vector4f::Ones());
 }
 
-/// Traces rays from each point to the lamp: one ray to find penumbrae, half of all rays if the point may lie in one,
-/// and all rays if it does.
+/// Traces rays from each point to the lamp: one ray to find penumbrae, half of all rays if the point may be in a
+/// penumbra, and all rays if it is.
 void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit) {
   const PixelPoints& points = lit_points();
   const int width = points.width(), height = points.height(), rays = quality_.shadow_rays;
-  // Target of each ray, per rotation: directions to a sun, positions on a spot.
+  // `places`: target of each ray, for each rotation: a direction to a sun, or a position on a spot.
   const Vector3f axis = lamp.packed.toward_light.head<3>();
   const Vector3f center = lamp.is_spot() ? Vector3f(lamp.packed.position.head<3>()) : axis;
   const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.reach() : 1);
@@ -232,7 +235,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   std::vector<Vector3f> places;
   for (int turn = 0; turn < kTurns; ++turn) {
     for (int k = 0; k < rays; ++k) {
-      // In this order, the first half of the rays already covers the disc.
+      // In this order, the first half of the rays is already spread over the disc.
       const auto order = static_cast<float>((k * 5 + rays / 2) % rays);
       const Vector2f at = on_disc(order, rays, static_cast<float>(turn) / kTurns, 0.5f);
       places.emplace_back(center + radius * (at.x() * first + at.y() * second));
@@ -254,7 +257,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
           Rays packet;
           packet.wanted = mask(kinds * asked > 0 && to.intensity > 0 && (kinds == kClothKind || side > least));
           if ((packet.wanted == 0).all()) continue;
-          // Rays start on the side that faces the lamp, at the smooth surface. If they started at the flat triangles,
+          // Rays start at the smooth surface, on the side that faces the lamp. If they started at the flat triangle,
           // neighbouring triangles would block them.
           const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
           const Lanes lift = facing * (kRayStart + (facing * points.rises(x, y)).max(0.0f));
@@ -375,7 +378,8 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
   upload(mirrored_, points, *mirrored_texture_, 2, Eigen::Vector4f::Zero());
 }
 
-/// Interpolates four planes at all pixels, and marks the tiles in which floor has other values than `on_open_floor`.
+/// Interpolates four planes at all pixels and uploads them as a texture. Marks the tiles in which the values of a floor
+/// pixel differ from `on_open_floor`.
 void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit,
                          const Eigen::Vector4f& on_open_floor) {
   texels_.resize(static_cast<std::size_t>(width_) * height_);

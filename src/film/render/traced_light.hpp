@@ -1,6 +1,6 @@
-// Computes the light that reaches each pixel by tracing rays: the visible fractions of the lamps and of the
-// surroundings, and the light that surfaces reflect onto each other. Each pixel has only a few rays; joint_filter.hpp
-// removes their noise.
+// Computes by ray tracing which light reaches the point that a pixel shows: the visible fractions of the lamps and of
+// the surroundings, and the light that surfaces reflect onto each other. Each pixel has only a few rays;
+// joint_filter.hpp removes their noise.
 #pragma once
 
 #include <optional>
@@ -22,16 +22,17 @@ class TracedLight {
   /// Properties of a surface for rays that start on it.
   struct Surface {
     PixelPoints::Kind kind;
-    float mirror_alpha;  ///< squared roughness of its reflections; negative: it mirrors only the surroundings
+    float mirror_alpha;  ///< squared roughness of its reflections; negative: it reflects only the surroundings
 
     static Surface of(const frame::Appearance& look, bool cloth);
   };
 
   /// Traces the light that reaches the points that the geometry buffer shows, and binds textures:
   /// - unit 0: the visible fractions of up to four lamps
-  /// - unit 1: light from other surfaces, as the radiance that a matte white surface would reflect (irradiance / π); w:
-  /// open fraction of the surroundings
-  /// - unit 2, if a surface mirrors: light of mirrored surfaces; w: fraction of the mirror image that they cover
+  /// - unit 1: irradiance from other surfaces, divided by π; w: fraction of the surroundings that no surface covers
+  /// - unit 2, if a surface has a `mirror_alpha` >= 0: light of mirrored surfaces; w: fraction of the mirror image that
+  ///   they cover
+  ///
   /// `seen`: what read_seen() of the geometry buffer returns.
   void draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Seen> seen,
             std::span<const Surface> surfaces, const View& view, const std::optional<Floor>& floor);

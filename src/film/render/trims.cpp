@@ -12,10 +12,10 @@ std::uint64_t key(Index a, Index b) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32 | static_cast<std::uint32_t>(b);
 }
 
-constexpr double kMaxSmoothCosine = 0.87;  // cosine of 30 degrees: borders that turn by more have a corner
+constexpr double kMaxSmoothCosine = 0.87;  // cosine of 30 degrees; a border that turns by more has a corner
 
-/// Assigns the two border kinds alternately to the sides between corners. A closed border starts with the first edge
-/// after a corner. If it has an odd number of sides, its first and last side have the same kind.
+/// Assigns the two kinds of borders alternately to the sides between corners. On a closed border, the first side begins
+/// at a corner. If the number of sides is odd, the first and last side have the same kind.
 template <class Segment>
 void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::size_t> chain, std::span<const Vec2> uv) {
   const auto direction = [&](std::size_t k) { return Vec2(uv[segments[chain[k]].b] - uv[segments[chain[k]].a]); };
@@ -36,8 +36,8 @@ void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::si
   }
 }
 
-/// Chains consecutive edges and stores the arc length at the start of each edge. Each seam is measured once, along its
-/// first side; both sides get the same arc lengths.
+/// Joins consecutive edges to chains, and stores the arc length at the start of each edge. A seam is measured only
+/// along its first side, and both sides get the same arc lengths.
 template <class Segment>
 void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::unordered_multimap<Index, std::size_t> by_start;
@@ -61,8 +61,8 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
         std::swap(twin.a, twin.b);
         twin.start = segments[i].start;
       }
-      // If several edges continue the chain, prefers one in the same panel, then the lowest index, so that the result
-      // does not depend on the order of the map.
+      // If several edges continue the chain, takes one in the same panel, else the one with the lowest index. Thus the
+      // result does not depend on the order of the map.
       std::size_t next = segments.size();
       const auto [from, to] = by_start.equal_range(segments[i].to);
       const auto rank = [&](std::size_t k) { return std::pair(segments[k].a != segments[i].b, k); };
@@ -80,8 +80,8 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
 
 }  // namespace
 
-/// Assigns places, the positions of vertices in their flat panels. A vertex on a seam has one place on each side of the
-/// seam, even if both sides belong to one panel.
+/// Fills in places, the positions of vertices in their flat panels. A vertex on a seam has one place for each side of
+/// the seam, even if both sides belong to one panel. Returns the places of the corners of each triangle.
 std::vector<Triangle> Trims::find_places(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
   const bool by_part = surface.part_of_triangle.size() == triangles.size(),
@@ -159,8 +159,8 @@ Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& 
   return {(at - from - along / length * direction).norm(), line.start + along};
 }
 
-/// Finds the nearest segment of each place by propagation along mesh edges. Thus distances are measured within the
-/// cloth, although panels may overlap in the plane in which they are laid out.
+/// Finds the nearest segment of each place by propagation along mesh edges. A search by position would fail, because
+/// panels may overlap in the plane in which they are laid out.
 Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const {
   Lines result{std::move(segments), std::vector<std::int32_t>(places_.size(), -1), {}};
   result.at.resize(places_.size());
@@ -197,8 +197,8 @@ Trim Trims::trim(const Vec2& at, std::span<const Index> near) const {
       const std::int32_t nearest = lines.nearest[vertex];
       if (nearest < 0) continue;
       try_segment(nearest);
-      // At a vertex of a line, both of its segments are equally near, but only one is stored. A point beside the vertex
-      // may be closer to the other one.
+      // At a vertex of a line, two segments are equally near, but only one is stored. A point beside the vertex may be
+      // closer to the other one.
       for (const Index end : {lines.segments[nearest].a, lines.segments[nearest].b})
         std::ranges::for_each(lines.at[end], try_segment);
     }
@@ -251,7 +251,7 @@ double rim_width(const frame::Appearance& look, std::span<const Vec3> positions,
 RimStrip rim_strip(std::span<const Trims::Rim> rims, std::span<const Vec3> positions, std::span<const Vec3> normals,
                    double thickness) {
   RimStrip strip;
-  // Direction away from the cloth at each border vertex, summed over its border edges.
+  // Per border vertex: direction away from the cloth, summed over its border edges.
   std::unordered_map<Index, Vec3> outward;
   for (const auto& [a, b, triangle] : rims) {
     const Vec3 direction = positions[b] - positions[a];

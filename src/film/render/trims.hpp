@@ -1,4 +1,4 @@
-// Borders and seams of cloth, from which hems, stitches and visible edge thickness are drawn.
+// Borders and seams of cloth, along which hems, stitches and the thickness of the edge are drawn.
 #pragma once
 
 #include <span>
@@ -12,9 +12,10 @@ namespace weft::render {
 
 inline constexpr float kNoTrim = 1e3f;
 
-/// Distances from a point to the nearest line of each kind, in rest coordinates [m]; kNoTrim if there is none. Two
-/// borders that meet at a corner have different kinds: across the corner, each distance can be interpolated linearly,
-/// but not their minimum. (A closed border with an odd number of sides has one corner with a single kind.)
+/// Distances from a point to the nearest line (border or seam) of each kind, in rest coordinates [m]; kNoTrim if there
+/// is none. The borders on both sides of a corner have different kinds, `border` and `other_border`, because near the
+/// corner each distance can be interpolated linearly, but not their minimum. (If a closed border has an odd number of
+/// sides, both sides of one of its corners have the same kind.)
 struct Trim {
   enum Kind { border, other_border, seam };
   static constexpr int kKinds = 3;
@@ -23,7 +24,7 @@ struct Trim {
   float from_border() const { return std::min(distance[border], distance[other_border]); }
 };
 
-/// Borders and seams of the rest shape, the same in all frames.
+/// The borders and seams of a surface in its rest shape. They are the same in all frames.
 class Trims {
  public:
   /// Uses the surface's rest coordinates; without them, all trims are kNoTrim.
@@ -42,18 +43,19 @@ class Trims {
 
  private:
   struct Segment {
-    Index a, b;              // indices of places
-    Index from, to;          // indices of vertices
+    Index a, b;              // ends, as indices into places_
+    Index from, to;          // ends, as indices of vertices
     double start = 0;        // arc length of its start along its border or seam [m]
     bool other = false;      // is an `other_border`
     std::int32_t twin = -1;  // same edge on the other side of a seam
   };
-  /// All lines of one kind, with lookup by place.
+  /// All lines of one kind, with lookup by index into places_ ("by place").
   struct Lines {
     std::vector<Segment> segments;
-    std::vector<std::int32_t> nearest;          // by place; -1 if there is none
+    std::vector<std::int32_t> nearest;          // by place: nearest segment; -1 if there is none
     std::vector<std::vector<std::int32_t>> at;  // by place: segments that begin or end there
   };
+  /// Distance of a point from a segment, and arc length of the nearest point of the segment along its line [m].
   struct Place {
     double distance = kNoTrim, along = 0;
   };
@@ -62,24 +64,24 @@ class Trims {
   std::vector<Triangle> find_places(const frame::Surface& surface);
   Trim trim(const Vec2& at, std::span<const Index> near) const;
 
-  std::vector<Vec2> places_;                   // positions of vertices in their panels [m]
+  std::vector<Vec2> places_;                   // positions of vertices in their flat panels [m], see find_places()
   std::vector<std::int32_t> part_;             // by place: its panel
   std::vector<std::vector<Index>> places_of_;  // by vertex; empty without rest coordinates
   std::vector<Rim> rims_;
   std::array<Lines, Trim::kKinds> lines_;
 };
 
-/// The visible thickness at the edge of cloth: a strip along each border, from front to back.
+/// A strip along each border, from the front to the back of the cloth, which shows its thickness.
 struct RimStrip {
   std::vector<Vec3> positions, normals;
-  std::vector<Index> source;        ///< per position: the argument's vertex at or behind which it lies
+  std::vector<Index> source;        ///< per position: the border vertex at which, or behind which, it lies
   std::vector<Triangle> triangles;  ///< indices into positions, from 0
   std::vector<std::int32_t> owner;  ///< by triangle: the triangle of the surface at its border
 };
 
-/// Width of the strips [m]: the thickness of the edge, doubled if it is folded to a hem. Reduced if it covers less than
-/// 2.5 pixels in a picture with `rows` rows; 0 if less than about a pixel would remain, because thinner strips break
-/// into dots.
+/// Width of the strips [m]: the thickness of the cloth, doubled at a hem. If this covers less than 2.5 pixels in a
+/// picture with `rows` rows, the width is reduced. If less than a pixel would remain, it is 0, because thinner strips
+/// are drawn as separate dots.
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows);
 
 /// The strips of a surface in one frame, `thickness` [m] wide; `normals` by vertex.

@@ -11,14 +11,14 @@ namespace {
 
 // Rec. 709 luminance weights.
 const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
-constexpr double kGroundLight =
-    0.8;  // light from below / light of open floor; less than 1, since far floor fades to a darker backdrop
-constexpr double kReflectedGround =
-    0.5;  // factor on the light from below in reflections: the floor near glossy surfaces is often shaded
-constexpr double kMaxGain = 1.8;           // maximum gain of direct light; darker scenes are meant to be dark
-constexpr double kMaxWhiteBalance = 0.08;  // maximum relative change of a channel by white balance
+// Light from below / light of open floor. It is below 1, because far floor fades into a darker backdrop.
+constexpr double kGroundLight = 0.8;
+// Factor on the light from below in reflections. It is below 1, because floor near glossy surfaces is often shaded.
+constexpr double kReflectedGround = 0.5;
+constexpr double kMaxGain = 1.8;           // limit on the increase of direct light; darker scenes are meant to be dark
+constexpr double kMaxWhiteBalance = 0.08;  // limit on the relative change of a channel by the white balance
 
-/// Map from the world to picture coordinates, given the corners of a triangle in both.
+/// Map from the world to picture coordinates, from the corners of a triangle in both.
 Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, const std::array<Vec2, 3>& places) {
   const Vec3 p = x[1] - x[0], q = x[2] - x[0];
   Mat3 axes;
@@ -67,13 +67,15 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
   const double reach = (subjects.center() - view.eye).norm() + radius;
   double nearest = view.axes.forward.dot(subjects.center() - view.eye) - radius;
   if (floor) {
-    // Visible floor is nearest at an edge of the picture, and never nearer than the eye's height / `widest`.
+    // `widest`: length of the longest ray of the picture that advances one metre along the view axis. No visible floor
+    // is nearer along this axis than the height of the eye / `widest`.
     const double height = floor->normal.dot(view.eye - floor->point);
     const double widest = std::hypot(1.0, view.tan_half_width, view.tan_half_height);
     if (height > 0) nearest = std::min(nearest, height / widest);
   }
-  // Something far away must not move the near plane beyond close cloth.
-  constexpr double kClosest = 0.01;  // no lens focuses at a shorter distance [m]
+  // If the eye is close to the subjects, `nearest` may be negative. `near` is then a fraction of the scene's size, but
+  // at most kClosest [m], so that the near plane of a large scene does not cut close cloth. No lens focuses closer.
+  constexpr double kClosest = 0.01;
   view.near = std::max(0.8 * nearest, std::min(1e-3 * reach, kClosest));
   view.far = 200 * reach;
   view.view_from_world = look_along(view.eye, view.axes);
@@ -101,7 +103,8 @@ PixelArea visible_area(const View& view, std::span<const Vec3> points, int width
 bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Box3& surroundings, int height,
                    int cell) {
   if (!floor) return false;
-  // The floor is seen at height / slope, if a ray descends by `slope` per metre. It fades from 1.5 radii on.
+  // A ray that descends by `slope` per metre hits the floor at the distance eye_height / slope. The floor fades into
+  // the backdrop from 1.5 radii on.
   const double radius = 0.5 * surroundings.diagonal().norm();
   const double eye_height = floor->normal.dot(view.eye - floor->point);
   if (eye_height <= 0) return false;
@@ -111,8 +114,8 @@ bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Bo
       least_slope =
           std::min(least_slope, -floor->normal.dot(view.axes.forward + x * view.axes.right + y * view.axes.up));
   if (least_slope > eye_height / (1.5 * radius)) return false;
-  // Over a change of slope * radius / height by 0.06, linear interpolation of the fraction of backdrop errs by 0.025:
-  // one level of 255 if floor and backdrop differ by 40.
+  // If slope * radius / eye_height changes by 0.06 over a cell, linear interpolation of the fraction of backdrop has an
+  // error of 0.025: one level of 255 if floor and backdrop differ by 40 levels.
   constexpr double kMaxChange = 0.06;
   return cell * 2 * view.tan_half_height / height * radius > kMaxChange * eye_height;
 }
@@ -123,7 +126,7 @@ Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span
   if (!floor) return {Vec3::Constant(share), 0.8 * style.sky_color};
   Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
-    // The distant floor receives no spot light.
+    // The light of spots does not count: distant floor does not receive it.
     if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
     direct += share * each.intensity * facing * image::linear_from_srgb(each.color);
@@ -144,7 +147,7 @@ Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::opt
   lighting.style = style_of(stage);
   lighting.exposure = expose(lighting.style, floor, lights);
   lighting.gain = std::exp2(stage.exposure);
-  // The light from below is that of open floor; for shaded floor, reflected_light.hpp subtracts the difference.
+  // The light from below is that of open floor. ReflectedLight subtracts the light that shaded floor lacks.
   const Vec3 ground =
       floor && !stage.ground_color
           ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
@@ -171,7 +174,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   const double radius = 0.5 * scene_bounds.diagonal().norm();
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
-  // A style with a coloured horizon has a sky with colours of its own; a grey backdrop takes the colour of the floor.
+  // If Style::horizon is coloured, the backdrop has the style's colours. If it is grey, they are factors on open floor.
   const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
 
   FrameUniform frame;

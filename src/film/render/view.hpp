@@ -32,7 +32,7 @@ struct View {
   Mat4 view_from_world = Mat4::Identity(), clip_from_world = Mat4::Identity();
 };
 
-/// The near plane is as far away as the subjects and the visible floor allow.
+/// Places the near plane as far away as `subjects` and the visible part of `floor` allow.
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
                const std::optional<Floor>& floor);
 
@@ -46,12 +46,13 @@ struct PixelArea {
 PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
 
 /// Whether the floor fades into the backdrop (fade_out() in shaders/open_floor.glsl) within so few pixels that colours
-/// cannot be interpolated over `cell` pixels: at the horizon, if the eye is low beside the size of the surroundings.
+/// cannot be interpolated over `cell` pixels. This is so if the horizon is in view and the eye is low compared with the
+/// size of `surroundings`. `height`: that of the picture [pixels].
 bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Box3& surroundings, int height, int cell);
 
 /// The frame block of shaders/frame.glsl, in the layout std140.
 struct FrameUniform {
-  // Matrices first: Eigen aligns them to 16 or 32 bytes, depending on the CPU level; std140 aligns to 16.
+  // The matrices are first: Eigen aligns them to 16 or 32 bytes, depending on the instruction set; std140 aligns to 16.
   Eigen::Matrix4f clip_from_world, view_from_world;
   Eigen::Vector4f eye_world, center_world, up_world, right_world;
   Eigen::Vector4f sky, horizon, ground, backdrop, backdrop_top, viewport, frustum, floor_plane_world, floor_look;
@@ -66,11 +67,10 @@ struct Exposure {
   Vec3 floor = Vec3::Zero();   ///< linear colour of open floor; without a floor, 0.8 times Style::sky_color
 };
 
-/// Exposes for the floor, as product photographers do for a white ground. Direct light is increased, never decreased,
-/// until open floor shows its own colour. White balance then raises or lowers each channel slightly, against a bluish
-/// sky or coloured light, so that a white floor stays white. The increase and the balance are limited, so that dark or
-/// coloured scenes stay dark or coloured. Without a floor, or if the style does not expose, nothing changes. `lights`:
-/// those of the picture.
+/// Exposes for the floor, as product photographers do for a white ground: if open floor is darker than its own colour,
+/// increases direct light. A white balance then changes each channel slightly, so that a white floor stays white under
+/// a bluish sky or coloured light. Both changes are limited, so that dark or coloured scenes stay dark or coloured.
+/// Without a floor, or if Style::exposes is false, direct light is not changed.
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
 
 /// Style, environment and exposure of a picture.
@@ -83,8 +83,8 @@ struct Lighting {
 Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
                        std::span<const frame::Light> lights);
 
-/// Roughness of the floor, from its own appearance and from the style; 1 without a floor. Below kLampMirrorRoughness
-/// the floor mirrors lamps (the default floor does not); below kSubjectMirrorRoughness also the subjects.
+/// Roughness of the floor, from its appearance and from the style; 1 without a floor. Below kLampMirrorRoughness, the
+/// floor has highlights of lamps (the default floor has none); below kSubjectMirrorRoughness, it reflects the subjects.
 double floor_roughness(const Style& style, const std::optional<Floor>& floor);
 inline constexpr double kLampMirrorRoughness = 0.6, kSubjectMirrorRoughness = 0.5;
 

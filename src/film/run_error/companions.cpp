@@ -10,22 +10,22 @@
 namespace weft::run_error {
 namespace {
 
-// Displacement of the start that should not affect the result [m].
+// Maximum displacement of a particle at the start, in the companion for ErrorSource::start [m].
 constexpr double kStartDisplacement = 1e-6;
-// The motion is chaotic if kStartDisplacement grows more than tenfold and to more than this fraction of the step and
+// The motion is chaotic if this displacement grows more than tenfold, and to more than this fraction of the step and
 // solver errors.
 constexpr double kChaosRatio = 0.3;
-// It is also chaotic if the displacement grows more than a thousandfold, however large those errors are.
+// The motion is also chaotic if the displacement grows by more than this factor, however large those errors are.
 constexpr double kMaxAmplification = 1e3;
 constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
 // Lower bound of observed orders, relative to the expected order, which is the upper bound. Stiff waves and borders
-// lower the order; below the bound, differences hardly fall with step or spacing.
+// lower the order. If it is below the lower bound, the difference of the companions hardly depends on step or spacing.
 constexpr double kMinOrderRatio = 0.5;
 // Fraction of the expected order that is assumed if there is only one companion.
 constexpr double kAssumedOrderRatio = 0.75;
-// Minimum number of cells along each side of the coarsest mesh; with fewer cells, no order is observed.
+// Minimum number of cells along each side of the coarsest mesh. With fewer, the order is assumed instead of observed.
 constexpr int kMinCellsForOrder = 4;
-// Bending and stretch converge with second order in the spacing.
+// Expected order of the error in the particle spacing: bending and stretch converge with second order.
 constexpr double kMeshOrder = 2;
 
 double order_of(scene::Integrator integrator) {
@@ -42,9 +42,9 @@ struct Change {
   Errors errors;
 };
 
-// Order p in [least, most] for which an error C h^p explains both changes, C h^p |r^p - 1|. h is the step or spacing of
-// the run, r the ratio of the companion. `quotient`: change of the coarser companion / change of the finer one; it
-// grows with p.
+// Finds the order p in [least, most] by bisection. With an error C h^p, where h is the step or spacing of the run, a
+// companion with the ratio r differs from the run by C h^p |r^p - 1|. `quotient`: difference of the coarser companion /
+// difference of the finer one; this quotient grows with p.
 double observed_order(double coarse_ratio, double fine_ratio, double quotient, double least, double most) {
   constexpr int kHalvings = 30;
   const auto expected = [&](double p) {
@@ -57,8 +57,8 @@ double observed_order(double coarse_ratio, double fine_ratio, double quotient, d
   return 0.5 * (least + most);
 }
 
-// Error of a run, extrapolated from its difference to one companion and, if given, to a coarser one. `order`: the
-// expected order.
+// Error of a run, extrapolated from its difference to one companion and, if there is one, to a coarser companion.
+// `order`: the expected order.
 Errors richardson(double order, const Change& change, const std::optional<Change>& coarser) {
   Errors errors{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
@@ -102,7 +102,7 @@ Trajectory Companions::follow(const scene::Scene& scene) {
   return trajectory;
 }
 
-// Difference to a companion with the same particles.
+// Simulates `scene`, a companion with the same particles as the run, and returns its difference to the run.
 Errors Companions::difference(const scene::Scene& scene) {
   return compare(follow(scene), run_);
 }
@@ -118,8 +118,9 @@ ErrorPart Companions::part(ErrorSource source, const std::function<Errors()>& me
   return part;
 }
 
-// Difference to a companion with the shortest step that is at least `ratio` times the step of the run and divides a
-// frame evenly; for time.tolerance, to one with a tolerance that multiplies the steps by `ratio`.
+// Simulates a companion and returns its difference to the run. Its step is the shortest one that is at least `ratio`
+// times the step of the run and divides a frame evenly. If the scene has time.tolerance, the companion has a tolerance
+// that multiplies the steps by `ratio`.
 Change Companions::change_with_step(double ratio) {
   scene::Scene companion = scene_;
   if (scene_.time.tolerance) {
@@ -156,7 +157,7 @@ Errors Companions::measure_solver_error() {
   Trajectory solved = follow(companion);
   Errors errors = compare(solved, run_);
   for (double& error : errors) error /= 1 - kCompanionToleranceRatio;
-  // From here on, all companions use this tolerance, so that solver errors do not count as errors of steps and meshes.
+  // All later companions use this tolerance, so that solver errors do not count as errors of steps or mesh.
   scene_ = std::move(companion);
   run_ = std::move(solved);
   return errors;

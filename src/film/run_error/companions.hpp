@@ -1,4 +1,4 @@
-// Error estimate of a run from companions: the same scene, simulated with other settings.
+// Estimates the error of a run from companions: runs of the same scene with other settings.
 #pragma once
 
 #include <functional>
@@ -16,44 +16,45 @@ enum class ErrorSource { steps, solver, mesh, start };
 inline constexpr std::size_t kErrorSources = 4;
 std::string_view name_of(ErrorSource source);
 
+/// The error due to one source.
 struct ErrorPart {
   ErrorSource source;
   Errors errors{};
-  std::string missing = {};  ///< why the error is not known; empty if it is
+  std::string missing = {};  ///< why `errors` are not known; empty if they are
 };
 
 struct ErrorEstimate {
-  /// The motion is chaotic: random offsets of the particles at the start, of up to 1 µm, change positions by more than
-  /// 0.3 of the step and solver errors. This limit is at least 10 µm and at most 1 mm. Also true if the run with these
-  /// offsets fails.
+  /// The motion is chaotic. If particles start with random offsets of up to 1 µm, the companion fails, or its error of
+  /// position exceeds a limit: 0.3 of the step and solver errors together, but at least 10 µm and at most 1 mm.
   bool start_matters = false;
-  /// The error does not follow the order of the method: the run with twice the step fails, or differs from the run too
-  /// little in relation to the run with half the step.
+  /// The step error does not follow the order of the method. The companion with twice the step fails, or its difference
+  /// to the run is too small compared with that of the companion with half the step.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
-  Errors all{};      ///< root of the sum of squares of the parts
+  Errors all{};      ///< root of the sum of squares of the errors of all parts
   double cpu_s = 0;  ///< CPU time of all companions
 
-  /// Whether the estimate is only a lower bound: the motion is chaotic, or the step error does not follow the order.
+  /// Whether the estimate is only a lower bound of the error.
   bool is_lower_bound() const { return start_matters || steps_irregular; }
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
 };
 
 struct CompanionOptions {
-  bool mesh = false;                   ///< whether coarser meshes are simulated too
+  bool mesh = false;                   ///< whether to estimate the error of the mesh, too, from coarser meshes
   std::function<bool()> proceed = {};  ///< called before each frame of a companion; false: interrupt
 };
 
-/// Estimates the distance of a run from the limit of infinitely short, exactly solved steps, and with options.mesh of
-/// infinitely small cells. Companions: particles moved at random by up to a micrometre at the start; a tenth of
-/// solver.newton_tolerance; and, with that tolerance, half and twice the step (time.tolerance accordingly), and half
-/// and a quarter of the cells along each side. A fixed step as long as a frame is not doubled, and cells are quartered
-/// only if four remain along each side. Differences between steps and between meshes are extrapolated by Richardson's
-/// method with the observed order, clamped to between 0.5 and 1 times the expected order; with only one companion, with
-/// 0.75 times the expected order. Only the frames in `run` are compared. If a companion other than that with twice the
-/// step fails, its part is marked as missing. Throws Error(usage) if the scene has neither cloth nor ropes, and
-/// Error(interrupted) if options.proceed returns false.
+/// Estimates the difference of a run to the limit of infinitely short, exactly solved steps; with options.mesh, also of
+/// infinitely small cells. Simulates these companions:
+/// - start: particles displaced at random by up to 1 µm at the start,
+/// - solver: a tenth of solver.newton_tolerance; the companions below use this tolerance, too,
+/// - steps: half of the step, and twice the step unless a step is as long as a frame (or time.tolerance accordingly),
+/// - mesh: half of the cells along each side, and a quarter if at least four remain.
+/// Richardson extrapolation gives the errors of steps and mesh. It uses the observed order, limited to 0.5 to 1 times
+/// the expected order; if there is only one companion, 0.75 times the expected order. Only the frames in `run` are
+/// compared. If a companion fails (except that with twice the step), ErrorPart::missing has the reason. Throws
+/// Error(usage) if the scene has neither cloth nor ropes, and Error(interrupted) if options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::run_error

@@ -10,7 +10,7 @@
 namespace weft::run_error {
 namespace {
 
-// Number of scan lines. With 1000 lines, the relative error of the area of a disc is 1e-5.
+// Number of scan lines. With 1000 lines, the area of a disc has a relative error of 1e-5.
 constexpr int kLines = 1000;
 
 using Interval = std::pair<double, double>;

@@ -1,4 +1,4 @@
-// Projected area of a surface, as used by the drape coefficient.
+// Projected area of a surface, for the drape coefficient.
 #pragma once
 
 #include <span>
@@ -7,9 +7,9 @@
 
 namespace weft::run_error {
 
-/// Area [m²] of the union of the triangles, projected along `up`. The drape coefficient of a specimen on a disc is
-/// (shadow − disc) / (specimen − disc), with the areas of all three (ISO 9073-9). The integral is exact along scan
-/// lines, and uses the midpoint rule across them.
+/// Area of the shadow of the triangles: of the union of their projections along `up` [m²]. The drape coefficient of a
+/// specimen on a disc is (shadow − disc) / (specimen − disc), where each name stands for an area (ISO 9073-9). The
+/// integral is exact along scan lines; across them, it uses the midpoint rule.
 double shadow_area(std::span<const mesh::Triangle> triangles, std::span<const Vec3> positions, const Vec3& up);
 
 }  // namespace weft::run_error

@@ -12,7 +12,7 @@
 namespace weft::run_error {
 namespace {
 
-constexpr int kFinestCut = 8;  // refinements are multiples of an eighth; exact in binary
+constexpr int kFinestCut = 8;  // refinements are multiples of 1/8, which are exact in binary
 
 Vec3 up_of(const scene::Scene& scene) {
   return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
@@ -124,7 +124,7 @@ Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
 
 Errors compare(const Functionals& run, const Functionals& reference) {
   Errors errors{};
-  // If nothing moves, the energies in play are only rounding errors; then errors of energy are absolute [J].
+  // If nothing moves, the energies in play are only rounding errors. Then do not divide errors of energy by them.
   constexpr double kRounding = 1e-12;  // [J]
   const double in_play = reference.energies_in_play > kRounding ? reference.energies_in_play : 1;
   for (std::size_t k = 0; k < run.energy.size(); ++k) {
@@ -217,7 +217,7 @@ std::vector<std::size_t> matching_particles_in_refined(const scene::Scene& scene
     const std::size_t fine_nu = 2 * nu - 1, fine_nv = 2 * nv - 1;
     for (std::size_t j = 0; j < nv; ++j)
       for (std::size_t i = 0; i < nu; ++i) same.push_back(first + 2 * i + fine_nu * 2 * j);
-    // Centres of crossed cells come after the grid points in the list; they lie on grid points of the finer mesh.
+    // Particles in the middle of crossed cells come after those of the grid. They lie on grid points of the finer mesh.
     const bool crossed = cloth.shape == scene::ClothShape::crossed_triangles;
     for (std::size_t j = 0; crossed && j + 1 < nv; ++j)
       for (std::size_t i = 0; i + 1 < nu; ++i) same.push_back(first + 2 * i + 1 + fine_nu * (2 * j + 1));

@@ -64,7 +64,7 @@ Travel travel_from(const Value& value) {
   return {std::get<std::string>(value) == "none" ? Travel::Kind::none : Travel::Kind::file, 0};
 }
 
-/// The keys that all skinned bodies share.
+/// Adds the keys of Acting.
 template <class Kind>
 void acting_rows(TableBuilder<Character>& rows) {
   rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),
@@ -95,7 +95,7 @@ void acting_rows(TableBuilder<Character>& rows) {
               "time at the end of each round that is blended into the next round; 0 for clips that end as they begin");
 }
 
-/// The keys of each source, in the order of CharacterSource.
+/// Adds the keys of each source, in the order of CharacterSource.
 void source_rows(TableBuilder<Character>& rows) {
   using Rows = TableBuilder<Character>;
   rows.variant(

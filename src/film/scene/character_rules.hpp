@@ -1,4 +1,4 @@
-// The rows of the rule table for [[character]].
+// The rules of [[character]].
 #pragma once
 
 #include "film/scene/rule.hpp"

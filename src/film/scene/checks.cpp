@@ -21,7 +21,7 @@ namespace weft::scene {
 
 namespace {
 
-constexpr long kMaxParticles = 4'000'000;  // of all rectangles; the solver's data then fit into a large workstation
+constexpr long kMaxParticles = 4'000'000;  // of all rectangles; their data fit into the memory of a workstation
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -61,7 +61,7 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-/// Reports changes of several angles at once by more than half a turn: these do not define an axis of rotation.
+/// Reports key frames that change several angles, one by more than half a turn: they do not define an axis of rotation.
 template <class Key>
 void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
@@ -75,7 +75,7 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
   }
 }
 
-/// Decodes the picture before any run, so that its defects are reported together with all other mistakes.
+/// Decodes a picture, so that its defects are reported together with all other mistakes before any run.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.has_mistake(key)) return;
   try {
@@ -116,8 +116,8 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // other shapes have no rows of particles
-  // A part between two rows of particles holds no particle, which is a mistake. If the part contains no row, the lambda
-  // returns the position of the nearest row as a fraction of the cloth's size, else nothing.
+  // Report a part between two rows of particles, which contains none. If no row of particles along an axis is in the
+  // part, the lambda returns the position of the nearest row, as a fraction of the size of the cloth.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -210,7 +210,7 @@ void check_attachments(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports each `over` that names no cloth, and the first one that closes a cycle.
+/// Reports each `over` that names no cloth, and the first that closes a cycle.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
@@ -273,7 +273,7 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
-// Checks an obstacle that forces move. If it has neither mass nor density, reports its keys that need one of them.
+// Checks the keys of an obstacle that forces move. Without mass and density, reports keys that need one of them.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :
@@ -317,7 +317,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     check_times(obstacle.motion.keys, path, findings);
     check_rotation_changes(obstacle.motion.keys, path, findings);
     check_dynamics(scene, obstacle, path, findings);
-    // Names are unique, since they name the object in pictures, statistics and mesh files.
+    // Names must be unique, since they identify objects in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
       findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or rope has",
                                                   in_quotes(obstacle.name)));
@@ -356,8 +356,8 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports keys that give the lens in another way than the camera itself (angle or focal length), since keys are
-/// interpolated, and settings without the key to which they belong.
+/// Reports key frames that give the lens by the other quantity (field of view, focal length) than the camera: the two
+/// cannot be interpolated. Also reports `sensor_width` and `follow_rotation` without the key that they refine.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

@@ -1,4 +1,4 @@
-// Checks of a scene beyond the rules of single keys.
+// Checks of a scene that the rules of single keys cannot express.
 #pragma once
 
 #include "film/scene/findings.hpp"
@@ -9,8 +9,8 @@ namespace weft::scene {
 /// Key path of a cloth, or of the rope that the cloth represents.
 const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings);
 
-/// Reports unknown and repeated names, key times out of order, unreadable pictures, and sizes and combinations that
-/// cannot be simulated.
+/// Reports names that do not exist or are used twice, key frames that are not in time order, unreadable pictures, and
+/// sizes and combinations that cannot be simulated.
 void check(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

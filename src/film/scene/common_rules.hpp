@@ -9,14 +9,14 @@
 
 namespace weft::scene {
 
-inline const Range kPlace = within(-1e5, 1e5);   // [m]
-inline const Range kExtent = above(0, 1e4);      // [m]
-inline const Range kMoment = within(-1e5, 1e5);  // [s]
+inline const Range kPlace = within(-1e5, 1e5);   // coordinates [m]
+inline const Range kExtent = above(0, 1e4);      // sizes [m]
+inline const Range kMoment = within(-1e5, 1e5);  // times [s]
 inline const std::vector<std::string> kXyz = {"x", "y", "z"};
 inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
-// Default colours [sRGB]: a floor that reflects 0.4 of the light, and objects that stand out from it.
+// Default colours (sRGB). The floor reflects 0.4 of the light; objects stand out from it.
 inline const Vec3 kClothColor(0.60, 0.27, 0.22), kObstacleColor(0.76, 0.72, 0.65), kFloorColor(0.66, 0.66, 0.65);
 inline Look look_of(const Vec3& color) {
   Look look;
@@ -33,7 +33,7 @@ inline Look rope_look() {
 /// Rotation about the fixed x, then y, then z axis by the given angles [degrees].
 Quat from_angles(const Vec3& degrees);
 
-/// Rows for the rotation of a pose. `otherwise`: text about the default.
+/// Adds the rows of the rotation of a pose. `otherwise`: documents the default.
 template <class S, class Member>
 void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
   const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
@@ -53,7 +53,7 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
       .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
 }
 
-/// Rows for position, and quaternion or rotation. `otherwise`: text about the default.
+/// Adds the rows of position and rotation of a pose. `position_of`: documents the position; `otherwise`: the default.
 template <class S, class Member>
 void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
   rows.vector(
@@ -62,7 +62,7 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
   rotation_rows(rows, pose, otherwise);
 }
 
-/// Rows of the looks of obstacles and of characters.
+/// Rules for the look of an obstacle and of a character.
 const Table& obstacle_look_rules();
 const Table& character_look_rules();
 

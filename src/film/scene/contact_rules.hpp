@@ -1,4 +1,4 @@
-// The rows of the rule table for [contact] and its inner tables.
+// The rules of [contact] and its inner tables.
 #pragma once
 
 #include "film/scene/rule.hpp"

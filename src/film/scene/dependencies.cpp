@@ -19,17 +19,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger files are skipped: no reader accepts them.
+/// Larger files are skipped: no reader of their formats accepts them.
 constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Longer texts do not count as file names. The limit leaves 255 bytes for the name itself, the rest for its folders.
+/// Longer texts do not count as file names: 255 bytes for the name itself, the rest for its folders.
 constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Whether a text ends like a file name: a dot, then 2 to 12 letters and digits, not digits alone.
+/// Whether a text ends like a file name: with a dot and 2 to 12 letters and digits, of which at least one is a letter.
 bool has_extension(std::string_view text) {
   const std::size_t dot = text.rfind('.');
   if (dot == std::string_view::npos || dot == 0 || text.size() > kMaxFileNameBytes) return false;
@@ -54,8 +54,8 @@ std::string decode_escapes(std::string_view text) {
   return plain;
 }
 
-/// Possible file names in text or binary content: texts between quotes or control characters, and texts that also
-/// brackets, commas and equals signs separate. Each text and its pieces between blanks count if they have an extension.
+/// Possible file names in text or binary content. Splits the content at quotes and control characters, then again at
+/// these, brackets, commas, equals signs and bars. Pieces, and words of pieces, count if they have an extension.
 std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {
@@ -95,12 +95,12 @@ class DependencyWalk {
     const std::optional<std::string> content = visit_alone(file, use);
     if (!content) return;
     for (const std::string& name : find_possible_names(*content)) visit(file.parent_path() / name, use);
-    // assimp finds the motion file of this format by the name of the mesh file.
+    // assimp also reads the motion file of this format, which has the name of the mesh file.
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
   }
 
-  /// Visits a file without the files that it names. Returns its content; nothing if the file was visited before, is
-  /// unreadable or too large.
+  /// Visits a file without the files that it names. Returns its content; nothing if visited before, unreadable or too
+  /// large.
   std::optional<std::string> visit_alone(const fs::path& file, FileUse use) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return {};
@@ -109,7 +109,7 @@ class DependencyWalk {
     try {
       content = read_bytes(file, kMaxDependencyBytes);
     } catch (const std::runtime_error&) {
-      return {};  // the reader of the file's format reports the reason
+      return {};  // the reader of its format reports the reason
     }
     each_(file, content, use);
     return content;

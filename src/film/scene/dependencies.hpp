@@ -1,4 +1,4 @@
-// The files from which a scene takes shapes, masks, motions, pictures and camera paths.
+// The files on which a scene depends: shapes, masks, motions, pictures and camera paths.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,18 @@
 
 namespace weft::scene {
 
-/// Results that a file affects. A file that affects both simulation and pictures counts as `simulation`.
+/// What a file affects: the simulation, and thus the pictures; or only the pictures.
 enum class FileUse { simulation, pictures };
 
 using DependencyVisitor = std::function<void(const std::filesystem::path& file, std::string_view content, FileUse use)>;
 
-/// Calls `each` once for each file on which the scene depends, with its path and content: first the files of obstacles,
-/// of cloths with the masks of their pins and weights, of masks of attachments, and of characters; then the pictures of
-/// looks and the files of cameras. Each file except masks and pictures is followed by the files that it names: drawings
-/// of a sewing pattern, buffers of a glTF file, skeletons, materials. The order depends only on the scene and the
-/// files. Skips unreadable files and files above kMaxDependencyBytes.
+/// Calls `each` once for each file on which the scene depends, with its path and content. The order depends only on the
+/// scene and the files:
+/// - first the files of obstacles, of cloths with the masks of their pins and weights, of masks of attachments, and of
+///   characters; then pictures of looks, and files of cameras;
+/// - after each file except masks and pictures, the files that it names: drawings of a sewing pattern, buffers of a
+///   glTF file, skeletons, materials.
+/// Skips unreadable files and files larger than kMaxDependencyBytes.
 void for_each_dependency(const Scene& scene, const DependencyVisitor& each);
 
 }  // namespace weft::scene

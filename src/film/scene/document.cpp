@@ -13,7 +13,7 @@ namespace weft::scene {
 
 namespace {
 
-/// The parser's message; a message about a repeated key is reworded.
+/// The message of the parser; rewords that about a repeated key.
 std::string explain(std::string_view description) {
   const std::string_view redefined = "cannot redefine existing ";
   const auto found = description.find(redefined);

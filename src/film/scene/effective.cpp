@@ -58,7 +58,7 @@ class Writer {
 
   std::string text;
 
-  /// Writes a table: first its own keys, then its inner tables. `path` is empty for the root.
+  /// Writes a table: first its own keys, then its inner tables. `path`: key path of the table, empty for the root.
   void write(const Table& table, void* target, const std::string& path) {
     for_rules(table, target, [&](const Rule& rule) { write_value(rule, target); });
     for_rules(table, target, [&](const Rule& rule) {
@@ -137,7 +137,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
-/// Removes the folders from file names: the hash depends on content and name of files, but not on their folder.
+/// Removes the folders from file names, since hashes must not depend on them.
 void keep_file_names(Scene& scene) {
   const auto keep_name = [](std::filesystem::path& path) { path = path.filename(); };
   const auto keep_name_if_any = [&](std::optional<std::filesystem::path>& path) {
@@ -188,8 +188,8 @@ void identify(Scene& scene) {
   keep_file_names(copy);
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
-  // The duration affects the motion of characters. Motions are sampled into key frames up to the end of the film, and
-  // the last key frames influence the interpolation before them.
+  // The duration affects the motion of characters: it is sampled into key frames up to the end of the film, and the
+  // last key frames influence the interpolation before them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
   scene.hash = shown.value();
   scene.simulation_hash = simulated.value();

@@ -1,4 +1,4 @@
-// The effective scene as text, and its hash.
+// Hashes that identify a scene.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,12 @@
 
 namespace weft::scene {
 
-/// Fills in `hash`, `simulation_hash` and `files`. The hash is 64-bit FNV-1a of the checked values of a scene, in which
-/// file names lose their folders, and of the bytes of the files that for_each_dependency() visits. Scenes that differ
-/// only in comments, order, spelling of numbers or explicit defaults have equal hashes. `simulation_hash` omits keys
-/// that the rules mark as not simulated, such as colours, and files of pictures and cameras; it includes the duration
-/// only if there are characters.
+/// Sets `hash`, `simulation_hash` and `files`.
+/// - `hash`: 64-bit FNV-1a of the checked values, in which file names lose their folders, and of the content of the
+///   files that for_each_dependency() visits. It does not depend on comments, order of keys, spelling of numbers, or
+///   whether defaults are written.
+/// - `simulation_hash`: the same without keys that the rules mark as not simulated, such as colours, and without files
+///   of pictures and cameras. It includes the duration only if there are characters.
 void identify(Scene& scene);
 
 }  // namespace weft::scene

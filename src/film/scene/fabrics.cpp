@@ -3,48 +3,50 @@
 #include <array>
 #include <cmath>
 
-// Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
+// Test methods and their units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
 //   bending     B: 1 gf·cm²/cm = 98.07 µN·m; 2HB: 1 gf·cm/cm = 9.807 mN
-//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; Material::shear is twice the shear modulus G
-//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; linearity LT is 2 / (n + 1) if force ~ strainⁿ
+//   shear       G: 1 gf/(cm·deg) = 56.2 N/m per radian; Material::shear is 2 G
+//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; the linearity LT is 2 / (n + 1) if the force is
+//               proportional to strainⁿ
 // FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
-//   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
+//   shear       G = 123 / EB5 N/m; EB5 is the bias extension in percent
 //   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
 //
-// Conversion of measurements to a Material, for all fabrics:
-//   stretch      secant up to 19.6 N/m, the load of worn and hanging cloth. In fabrics with threads, force ~ strain²,
-//                so that LT is 2/3 (measured: 0.50 to 0.60 for suitings, 0.66 to 0.78 for denims) and the secant is
-//                98.0 N/m / EMT. Without threads, force ~ strain, and the secant is 490.3 N/m / EMT.
-//   max_stretch  such that the force at the mean EMT of weft and warp is the measured 490 N/m: the sum of the force of
-//                `stretch` and that of forces/stretch_limit.hpp, which is 4 kN/m at the limit
+// How measurements become a Material, for all fabrics:
+//   stretch      the secant stiffness up to 19.6 N/m, the load of worn and hanging cloth. In fabrics with threads, the
+//                force is taken as proportional to strain²: then LT is 2/3 (measured: 0.50 to 0.60 for suitings, 0.66
+//                to 0.78 for denims), and the secant is 98.0 N/m / EMT. In fabrics without threads, the force is
+//                taken as proportional to strain, and the secant is 490.3 N/m / EMT.
+//   max_stretch  the limit of forces::Lock. It is chosen so that the sum of the forces of `stretch` and of the lock is
+//                490 N/m at the mean EMT of weft and warp.
 //   shear        2 G
-//   bend         √(weft · warp): bending is isotropic here
+//   bend         √(weft · warp), since a Material has one bending stiffness for all directions
 //   bend_friction   HB
 //   All values are rounded to two digits, since none is known more precisely.
 //
 // Quantities without a measurement are estimated from fibre, weave and weight:
-//   bend         130 µN·m (density / 1 kg/m²)^1.35: within 13 % of the medians of 251 fabrics in nine classes of
-//                weight from 30 to 490 g/m², by cantilever (data set of Feng et al., "Learning-Based Bending Stiffness
-//                Parameter Estimation by a Drape Tester", 2022). Softer or firmer fabrics take another quantile of
-//                their class (Hand). The median ratio of warp to weft is 1.4 there.
-//   hysteresis   HB / B: cotton 50, wool 25, filaments 18 m⁻¹; measured: 53 and 43 m⁻¹ of broadcloth and denim, 25 m⁻¹
-//                of a tropical (light worsted wool), 19 and 18 m⁻¹ of polyesters
-//   shear        cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves: 65, 24 to 26, 30.
-//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. Only for faille, G is fitted to
-//                the published drape: 7.5 N/m
-//   extension    weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, others 12 %
-//                and linear, since they have no crimp
-//   thickness    2.2 mm for 1 kg/m²; measured: 1.7 to 4
+//   bend         130 µN·m (density / 1 kg/m²)^1.35. This is within 13 % of the medians of 251 fabrics, measured by
+//                cantilever, in nine classes of weight from 30 to 490 g/m² (data set of Feng et al., "Learning-Based
+//                Bending Stiffness Parameter Estimation by a Drape Tester", 2022). Softer or firmer fabrics use
+//                another quantile of their class (Hand). The ratio of warp to weft is the median of the data, 1.4.
+//   hysteresis   HB / B: cotton 50, wool 25, filaments 18 m⁻¹; measured: 53 and 43 m⁻¹ for broadcloth and denim,
+//                25 m⁻¹ for a tropical (light worsted wool), 19 and 18 m⁻¹ for polyesters
+//   shear        G: cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves: 65, 24 to 26, 30.
+//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. For faille alone, G is fitted
+//                to the published drape: 7.5 N/m.
+//   extension    EMT: weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, fabrics
+//                without threads 12 %
+//   thickness    2.2 mm per kg/m²; measured: 1.7 to 4
 //
 // Chosen, not measured: friction (published for cloth on cloth: usually 0.2 to 0.6), contact thickness (several times
-// that of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear have
-// no viscosity: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
+// that of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear have no
+// viscosity, since implicit Euler already damps them as a viscosity of half a time step times the stiffness would.
 
 namespace weft::scene {
 
 namespace {
 
-// Bending viscosity / bending stiffness [s]: viscosity alone damps a fold within about this time.
+// Bending viscosity / bending stiffness [s]. Viscosity alone damps a fold within about this time.
 constexpr double kBendingDampingTime = 0.1;
 
 enum class Fibre { cotton, wool, filament };
@@ -55,7 +57,7 @@ enum class Hand { limp, soft, usual, firm, stiff };
 using Measured = std::optional<double>;
 using Pair = std::optional<std::pair<double, double>>;
 
-/// A fabric as published; missing values are estimated.
+/// Published values of a fabric; missing ones are estimated.
 struct Row {
   const char* name;
   const char* what;
@@ -67,8 +69,8 @@ struct Row {
   Measured thickness = {};     // [mm]
   Pair extension = {};         // EMT of weft and warp [%]
   Measured shear = {};         // G [N/m]
-  Pair bend = {};              // B of weft and warp [µN·m]; both equal if only their mean is published
-  Measured fitted_shear = {};  // G fitted to the published drape, if not measured [N/m]
+  Pair bend = {};              // B of weft and warp [µN·m]; equal if only their mean is published
+  Measured fitted_shear = {};  // G fitted to the published drape [N/m]; used without `shear`
   Measured hysteresis = {};    // HB / B [1/m]
   Pair drape = {};             // minimum and maximum of Cusick's coefficient [%]
   double contact = 2;          // contact thickness [mm]
@@ -247,8 +249,7 @@ constexpr Row kRows[] = {
      .finish = Finish{0.35, 0.5, 0.1, 0, Threads::none}},
 };
 
-// Cotton scatters light, wool is fuzzy, filaments shine. Fabrics that differ from this, for example in transparency,
-// have a finish in their row.
+// The finish of a row, else that of its fibre: cotton scatters light, wool is fuzzy, filaments are glossy.
 Finish finish_of(const Row& row) {
   if (row.finish) return *row.finish;
   return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}
@@ -258,8 +259,7 @@ Finish finish_of(const Row& row) {
 
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  // A quotient of two integers is correctly rounded, so that the result is the same double that a scene with the text
-  // "0.015" gives.
+  // A quotient of integers is rounded correctly; the result is then the same double as from the text "0.015".
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
@@ -273,7 +273,7 @@ constexpr std::pair<Measured, Measured> both(const Pair& pair) {
 }
 
 double estimated_bend(const Row& row) {
-  // 10, 25, 50, 75 and 90 % quantiles of a weight class / its median; means over the nine classes.
+  // 10, 25, 50, 75 and 90 % quantiles of a weight class, relative to its median; means over the nine classes.
   constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
   return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
 }
@@ -287,8 +287,7 @@ std::pair<double, double> estimated_extension(const Row& row) {
   return row.weave == Weave::woven ? std::pair{0.08, 0.05} : std::pair{0.60, 0.25};
 }
 
-// Secant stiffness up to kWornLoad [N/m]. Crimped threads stiffen as they are stretched; fabrics without threads are
-// linear.
+// Secant stiffness up to kWornLoad [N/m] for a strain `extension` at kExtensionLoad. See `stretch` above.
 double secant_stiffness(Weave weave, double extension) {
   return (weave == Weave::none ? kExtensionLoad : std::sqrt(kExtensionLoad * kWornLoad)) / extension;
 }
@@ -315,8 +314,8 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// Value of max_stretch for which the force at strain `extension` is kExtensionLoad: the lock carries the part of this
-// load that exceeds the force of the secant stiffness.
+// The max_stretch for which the force at the strain `extension` is kExtensionLoad: the lock adds the part of this load
+// that exceeds the force of the secant stiffness.
 double max_stretch_for(Weave weave, double extension) {
   constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
   const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;

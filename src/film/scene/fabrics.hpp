@@ -10,7 +10,7 @@
 
 namespace weft::scene {
 
-/// A value, and whether it was measured or estimated by the rules of fabrics.cpp.
+/// A value, and whether the rules of fabrics.cpp estimate it because no measurement is known.
 struct Figure {
   double value = 0;
   bool estimated = false;
@@ -20,27 +20,27 @@ struct Figure {
 struct Measurements {
   Figure density;                         ///< [kg/m²]
   Figure thickness;                       ///< of the cloth itself [m]
-  Figure extension_weft, extension_warp;  ///< EMT: strain at 490 N/m, the maximum load of KES [1]
-  Figure shear;                           ///< G, shear force per width over shear angle [N/m]
-  Figure bend_weft, bend_warp;            ///< B [N·m]
-  Figure hysteresis;  ///< HB / B, residual curvature after unloading [1/m]; HB: moment per width [N]
-  std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient: minimum and maximum published values [1]
+  Figure extension_weft, extension_warp;  ///< EMT: strain at kExtensionLoad [1]
+  Figure shear;                           ///< G: shear force per width / shear angle [N/m]
+  Figure bend_weft, bend_warp;            ///< B: bending stiffness per width [N·m]
+  Figure hysteresis;  ///< HB / B: residual curvature after unloading [1/m]; HB: moment per width [N]
+  std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient: smallest and largest published value [1]
 };
 
 struct Fabric {
-  Material material;  ///< from `measured`, except contact, friction and drag; `fabric` is the name
+  Material material;  ///< derived from `measured`, except contact thickness, friction, drag
   Measurements measured;
   Finish finish;       ///< chosen by fibre and weave, not measured
-  bool frays;          ///< cut edges fray, so they are hemmed
+  bool frays;          ///< cut edges fray, and are therefore drawn with hems
   std::string what;    ///< weave and kind
   std::string source;  ///< publication of the measurements
 };
 
-/// kExtensionLoad: load of the KES extension test (500 gf/cm) [N/m]. kWornLoad: load of worn cloth (20 gf/cm, as in
-/// FAST) [N/m]; Material's `stretch` is the secant stiffness up to this load.
+/// kExtensionLoad: maximum load of the extension test of KES (500 gf/cm) [N/m]. kWornLoad: load of worn cloth (20
+/// gf/cm, one of the loads of FAST) [N/m]; Material's `stretch` is the secant stiffness up to this load.
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
-/// All named fabrics; the first is the default and equals Material{}.
+/// All fabrics. The first is the default: its material equals Material{}.
 std::span<const Fabric> fabrics();
 const Fabric* find_fabric(std::string_view name);
 std::vector<std::string> fabric_names();

@@ -6,12 +6,12 @@
 
 namespace weft::scene {
 
-/// Whether an obstacle moves by prescribed motion: by two or more keys of its own or, if it follows a body directly or
-/// through others, by the motion of that body. A character counts as moving. Motion by forces does not count.
+/// Whether the scene prescribes motion of an obstacle: it has two or more key frames, or it follows, directly or
+/// through others, a character or an obstacle with two or more key frames. Motion by forces does not count.
 bool moves(const Scene& scene, const Obstacle& obstacle);
 
-/// Reports each `follow` key of an obstacle or camera that names no body, or a character but none of its parts ("man",
-/// not "man.head"). For obstacles, also reports the first cycle, and each `follow` that names a dynamic obstacle.
+/// Reports each `follow` of an obstacle or camera that names no body, or a character without a part ("man", not
+/// "man.head"). For obstacles, also reports each `follow` that names a dynamic obstacle, and the first cycle.
 void check_following(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

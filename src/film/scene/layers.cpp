@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-// Adds the names of all cloths that are worn below the cloth `name`.
+// Adds the names of all cloths that are below the cloth `name`.
 void add_below(const Scene& scene, const std::string& name, std::set<std::string>& below) {
   for (const Cloth& cloth : scene.cloths)
     if (cloth.name == name)
@@ -32,7 +32,7 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
 
 std::vector<std::size_t> layer_depths(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
-  // One pass per cloth is enough: a chain without a cycle contains each cloth once. check_layers() reports cycles.
+  // One pass per cloth is enough: a chain without a cycle has each cloth at most once. check_layers() reports cycles.
   for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
     for (std::size_t c = 0; c < scene.cloths.size(); ++c)
       for (std::size_t below = 0; below < scene.cloths.size(); ++below)

@@ -12,15 +12,15 @@ namespace weft::scene {
 /// Whether `outer` is worn over `inner`, directly or through other cloths. False if `outer` is not the name of a cloth.
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
-/// For each cloth, the number of layers below it: the length of the longest chain of cloths, each worn over the next. 0
-/// for cloth that is worn over no other.
+/// For each cloth, the number of layers below it: the length of the longest chain of cloths, each worn over the next; 0
+/// if it is worn over no other cloth.
 std::vector<std::size_t> layer_depths(const Scene& scene);
 
 using model::Layer;
 
 /// All layers from the skin outward, at least one. They are put on one after the other, each in an equal number of
-/// frames, from the start of the preroll until the first character with `dressing` moves or, if none moves earlier,
-/// until the end of the preroll.
+/// frames. This begins at the start of the preroll, and ends with the preroll or, if earlier, after the shortest
+/// nonzero `dressing` of a character.
 std::vector<Layer> list_layers(const Scene& scene);
 
 }  // namespace weft::scene

@@ -1,4 +1,4 @@
-// The rows of the rule table for the material of a cloth.
+// The rules for the material of a cloth.
 #pragma once
 
 #include "film/scene/rule.hpp"

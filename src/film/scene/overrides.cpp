@@ -32,12 +32,12 @@ bool is_plain_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), plain);
 }
 
-/// A table { value = ... } whose nodes carry `source` as their source path; nothing if the text is not a value.
+/// Parses a value. Returns { value = ... } whose nodes have `source` as source path; nothing if it is no TOML value.
 std::optional<toml::table> parse_value(std::string_view text, const std::string& source) {
   const auto parse = [&](const std::string& value) -> std::optional<toml::table> {
     try {
       toml::table table = parse_toml("value = " + value, source);
-      // A line break in the text could add further keys.
+      // Refuse further keys, which a line break in the text could add.
       if (table.size() != 1) return std::nullopt;
       return table;
     } catch (const toml::parse_error&) {
@@ -48,8 +48,8 @@ std::optional<toml::table> parse_value(std::string_view text, const std::string&
   return is_plain_word(text) ? parse(fmt::format("\"{}\"", text)) : std::nullopt;
 }
 
-/// The entry of a list with this name, else with this index; null if there is none. If no entry has the name, `names`
-/// receives the names of all entries that have one.
+/// The entry of a list with the name `part`, else with the index `part`; null if there is none. If no entry has the
+/// name, `names` receives the names of all entries.
 toml::node* find_entry(toml::array& list, const std::string& part, std::vector<std::string>& names) {
   for (toml::node& entry : list) {
     const auto* table = entry.as_table();
@@ -63,7 +63,7 @@ toml::node* find_entry(toml::array& list, const std::string& part, std::vector<s
   return is_index ? list.get(index) : nullptr;
 }
 
-/// Suggests the nearest name, or all names if none is near.
+/// Text that suggests the nearest name, or all names if none is similar.
 std::string suggest_names(const std::string& part, const std::vector<std::string>& names) {
   const std::string nearest = suggestion(part, names);
   return !nearest.empty() || names.empty() ? nearest : fmt::format("; there is {}", fmt::join(names, ", "));
@@ -72,7 +72,7 @@ std::string suggest_names(const std::string& part, const std::vector<std::string
 }  // namespace
 
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
-  // Messages show this text as the source; it also marks nodes that come from overrides.
+  // Messages show this text as the place of a mistake. It also marks nodes that come from overrides.
   std::string source = "--set " + override_text;
   std::replace_if(
       source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');

@@ -36,7 +36,7 @@ const Table& physics_key_rules() {
   return kTable;
 }
 
-/// Access to a member of the first key, which stores the values given in the table of the fan itself.
+/// Access to a member of the first key frame of a fan, which stores the values given directly in the table of the fan.
 template <class Field>
 auto own_of_fan(Field FanKey::*field) {
   return [field](Fan& fan) -> Field& { return fan.keys.front().*field; };

@@ -1,4 +1,4 @@
-// The rows of the rule table for gravity and air.
+// The rules for gravity and air.
 #pragma once
 
 #include "film/scene/rule.hpp"

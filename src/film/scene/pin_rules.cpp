@@ -6,7 +6,7 @@
 namespace weft::scene {
 namespace {
 
-/// Rows that select the particles of a part of a cloth, and how strongly the part acts on each (0 to 1; see ClothPart).
+/// Adds the keys of a ClothPart: they select particles of a cloth, and give the strength of the effect on each.
 template <class S>
 void part_rows(TableBuilder<S>& rows) {
   rows.plain(Type::text, "panel", &S::panel,
@@ -54,7 +54,7 @@ const Table& pin_key_rules() {
   return kTable;
 }
 
-/// Row "at" of a part of a rope.
+/// Adds the key `at` of a part of a rope.
 template <class S>
 void rope_part_rows(TableBuilder<S>& rows) {
   rows.vector("at", &S::at, {"from", "to"}, within(0, 1), "",

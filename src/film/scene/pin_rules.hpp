@@ -1,4 +1,4 @@
-// The rows of the rule table for parts of a cloth: pins, weights and attachments.
+// The rules for effects on parts of a cloth: pins, weights and attachments.
 #pragma once
 
 #include "film/scene/rule.hpp"

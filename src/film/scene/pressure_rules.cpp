@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-/// Key and documentation of one PressureControl.
+/// How the keys of one PressureControl are named and documented.
 struct Quantity {
   const char* key;
   Range range;
@@ -24,7 +24,7 @@ Table key_table(const Quantity& quantity) {
       .build();
 }
 
-/// The rows of the value and its keys.
+/// Adds the rows of the quantity, its interpolation and its key frames.
 void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const Table& keys) {
   rows.number(quantity.key, &Pressure::value, quantity.range, quantity.unit, quantity.documentation)
       .choice("interpolation", &Pressure::interpolation, kInterpolations,
@@ -37,7 +37,7 @@ void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const
 }  // namespace
 
 const Table& pressure_rules() {
-  // The ranges only keep sums finite: silk already bursts at some kPa, and 1e9 m³ are a cubic kilometre.
+  // The ranges only keep sums finite: silk bursts at some kPa, and 1e9 m³ are a cubic kilometre.
   static const Quantity kGauge = {"gauge", within(-1e6, 1e6), "Pa",
                                   "pressure inside minus pressure outside; negative: it draws the cloth in"};
   static const Quantity kAir = {

@@ -1,4 +1,4 @@
-// The rows of the rule table for air inside a cloth.
+// The rules for air enclosed by a cloth.
 #pragma once
 
 #include "film/scene/rule.hpp"

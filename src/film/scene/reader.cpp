@@ -17,7 +17,7 @@ std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Place of a key. toml++ stores it for keys of files; a key of an override has the place of its value.
+/// Place of a key. For a key of an override, toml++ stores none; the place of its value is used.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
@@ -27,7 +27,7 @@ bool is_override(const toml::node& node) {
   return !place_of(node.source()).override_text.empty();
 }
 
-/// Whether --set gives another key that excludes the rule's key of the file, and so replaces it.
+/// Whether the file gives the key of `rule`, and --set a key that excludes it and thus replaces it.
 bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
   const toml::node* node = table.get(rule.key);
   return node != nullptr && !is_override(*node) && std::ranges::any_of(rules, [&](const Rule& other) {
@@ -48,7 +48,7 @@ std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
   const bool cut = text.size() > kMaxShownCharacters;
   if (cut) {
-    // Moves the end back over continuation bytes, so that no UTF-8 character is cut.
+    // Move the end back over continuation bytes, so that no UTF-8 character is cut.
     std::size_t end = kMaxShownCharacters;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
     text = text.substr(0, end);
@@ -61,7 +61,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  // A longer name is hardly a misspelt key, and the search would take long.
+  // A longer name is hardly a misspelt key, and the search would be slow.
   if (name.size() > 64) return {};
   const std::string nearest = nearest_name(name, known);
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
@@ -90,7 +90,7 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
   };
   read_rules(rules.rules);
   const Variant* variant = rules.variant_of(target);
-  // If the selector has a mistake, keys of all variants are accepted, so that only the selector is reported.
+  // If the selector has a mistake, report only this: accept the keys of all variants.
   const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
   if (variant != nullptr && !undecided) read_rules(variant->rules);
   report_unknown(table, rules, undecided ? nullptr : variant, path);
@@ -109,7 +109,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   }
   findings_.set_place(key, place_of(node->source()));
 
-  // If only one of two exclusive keys comes from --set, it replaces the other one, which is in the file.
+  // Of two keys that exclude each other, one from --set replaces one from the file. Otherwise, both are a mistake.
   const toml::node* excluded = rule.excludes.empty() ? nullptr : table.get(rule.excludes);
   if (excluded != nullptr && is_override(*node) == is_override(*excluded)) {
     findings_.report(key, place_of(node->source()),
@@ -146,7 +146,7 @@ void Reader::read_entries(const toml::node& node, const Rule& rule, void* target
     const std::string by_index = join_path(path, std::to_string(i));
     if (table == nullptr) {
       refuse(element, by_index, "expected a table, got " + describe_node(element));
-      // A default entry takes its place, so that indices match the list.
+      // Append an entry with defaults instead, so that indices match the list.
       findings_.add_entry(path, by_index);
       rule.append(target, i);
       continue;
@@ -180,7 +180,7 @@ void Reader::report_unknown(const toml::table& table, const Table& rules, const 
     const std::string name(key.str());
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
 
-    // Suggests the likeliest cause: a key of another variant, else a key of an inner table, else a misspelling.
+    // Suggest the likeliest cause: a key of another variant, else a key of an inner table, else a misspelling.
     std::string text = "unknown key";
     std::vector<std::string> owners;
     for (const Variant& each : rules.variants) {

@@ -12,8 +12,7 @@ namespace {
 
 constexpr long kMaxRopeParticles = 1'000'000;  // total of all ropes
 
-// Reports mistakes in the start path of a rope. Returns whether its pieces can be checked: from and to define the path
-// also if `closed` is a mistake.
+// Reports mistakes in the start path of a rope. Returns whether the path is defined, so that the pieces can be checked.
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
   if (rope.points.empty()) {
     for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})

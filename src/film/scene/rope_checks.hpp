@@ -1,4 +1,4 @@
-// Checks of ropes beyond the rules of single keys.
+// Checks of ropes that the rules of single keys cannot express.
 #pragma once
 
 #include "film/scene/findings.hpp"
@@ -6,8 +6,8 @@
 
 namespace weft::scene {
 
-/// Reports ropes whose start shape is not defined, ropes with pieces that are too short for contact or with the name of
-/// a cloth, and too many particles.
+/// Reports ropes without a start path, with pieces too short for contact or the name of a cloth, and too many
+/// particles.
 void check_ropes(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

@@ -9,12 +9,12 @@
 namespace weft::scene {
 namespace {
 
-constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths refer to it
+constexpr double kStandardGravity = 9.81;  // [m/s²]; the weight in RopeMaterial::bending_length refers to it
 constexpr int kMinRopePieces = 4;
 constexpr int kSplinePieces = 16;  // pieces of a spline between two points
 constexpr int kCatenaryPieces = 512;
 
-// The polyline through the points of a rope; closed ropes return to the first point.
+// The polyline through the points of a rope. For a closed rope, it returns to the first point.
 std::vector<Vec3> path_through(const Rope& rope) {
   const std::vector<Vec3>& points = rope.points;
   const auto count = static_cast<int>(points.size()), spans = rope.closed ? count : count - 1;
@@ -26,13 +26,14 @@ std::vector<Vec3> path_through(const Rope& rope) {
   return path;
 }
 
-// A catenary between two ends. `length`: length of the curve [m]. `up`: unit vector.
+// A catenary between two ends. `length`: its length [m]; `up`: unit vector.
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, const Vec3& up) {
   const Vec3 chord = to - from;
   const double rise = up.dot(chord);
   const Vec3 along = chord - rise * up;
   const double span = along.norm();
-  // Solves sinh(u) / u = ratio by bisection. a = span / (2 u) is horizontal tension / weight per length [m].
+  // Solve sinh(u) / u = ratio by bisection. Catenary parameter a = span / (2 u): horizontal tension / weight per length
+  // [m].
   const double ratio = std::sqrt(length * length - rise * rise) / span;
   if (ratio <= 1) return {from, to};  // the length exceeds the chord by rounding errors alone
   double low = 0, high = 1;
@@ -53,7 +54,7 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, cons
   return path;
 }
 
-// Points at equal distances along a polyline, including both ends.
+// Points that divide a polyline into `pieces` of equal length, with both ends.
 std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
   std::vector<double> arc_lengths{0};
   for (std::size_t k = 1; k < path.size(); ++k)
@@ -73,10 +74,10 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
 
 }  // namespace
 
-// Nylon, polyester, polypropylene and steel (wire with a fibre core): mass and stiffness are from formulas for mooring
-// ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). For comparison, data sheets of Robline for 10
-// mm give masses of 680 kg/m per m² (polyester) and 430 (polypropylene). The values of cotton and all bending lengths
-// are estimates, from a limp line of 6 mm with a bending length of 9 cm.
+// For nylon, polyester, polypropylene and steel (wire with a fibre core), mass and stiffness are from formulas for
+// mooring ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). For comparison, data sheets of
+// Robline for 10 mm give masses of 680 kg/m per m² (polyester) and 430 (polypropylene). The values of cotton and all
+// bending lengths are estimates, based on a limp line of 6 mm with a bending length of 9 cm.
 const std::vector<RopeMaterial>& rope_materials() {
   static const std::vector<RopeMaterial> kMaterials = {
       {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},

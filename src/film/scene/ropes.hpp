@@ -1,5 +1,4 @@
-// Conversion of ropes for the rest of the program: material constants, start shape, and the cloth that represents a
-// rope.
+// Material constants and start shapes of ropes, and the one-dimensional cloth that is simulated for a rope.
 #pragma once
 
 #include <optional>
@@ -10,7 +9,7 @@
 
 namespace weft::scene {
 
-/// Constants of a kind of rope. Mass and stretch stiffness are divided by the square of the nominal diameter [m²].
+/// Constants of a kind of rope. Mass and stretch stiffness are divided by the square of the rope's diameter [m²].
 struct RopeMaterial {
   std::string name;
   double mass;            ///< [kg/m per m²]
@@ -19,7 +18,7 @@ struct RopeMaterial {
 };
 const std::vector<RopeMaterial>& rope_materials();
 
-/// Mass and stiffness of one rope. Values that the scene does not give follow from the material.
+/// Mass and stiffness of one rope. Values that the scene omits follow from the material.
 struct RopeNumbers {
   double mass;     ///< [kg/m]
   double stretch;  ///< stiffness EA: force per strain [N]
@@ -27,31 +26,30 @@ struct RopeNumbers {
 };
 RopeNumbers numbers_of(const Rope& rope);
 
-/// Start positions of the particles of a rope [m], and rest lengths of its pieces between particles [m]. A closed rope
-/// has as many pieces as particles, an open one has one piece less.
+/// Start positions of the particles of a rope [m], and rest lengths of the pieces between them [m]. A closed rope has
+/// as many pieces as particles, an open one has one piece less.
 struct RopeShape {
   std::vector<Vec3> places;
   std::vector<double> lengths;
 };
-/// Start shape of a rope. A slack rope that is given only by its ends hangs as a catenary. `up`: up axis of the scene.
+/// The start shape of a rope. If hangs_slack(), the rope hangs as a catenary. `up`: up axis of the scene.
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
 /// Default length of a piece [diameters].
 inline constexpr double kRopePiece = 3;
 using model::kMinRopePiece;
-/// Minimum horizontal distance between the ends of a slack rope that is given only by its ends [diameters].
+/// Minimum horizontal distance between the ends of a rope for which hangs_slack() [diameters].
 inline constexpr double kMinRopeSpan = 4;
-/// Whether a rope is given only by its ends and is longer than the distance between them.
+/// Whether the scene gives only the ends of a rope, and the rope is longer than their distance.
 bool hangs_slack(const Rope& rope);
 
-/// Rest length at the start [m]; empty: length of the path through its points or between its ends.
+/// Rest length at the start [m]; empty: length of the path through the points or between the ends.
 std::optional<double> start_length(const Rope& rope);
 
 /// The one-dimensional cloth that is simulated for a rope.
 Cloth as_cloth(const Rope& rope);
 /// Appends the cloths of all ropes to those of the scene.
 void add_rope_cloths(Scene& scene);
-/// Removes the cloths of ropes.
 void remove_rope_cloths(Scene& scene);
 
 }  // namespace weft::scene

@@ -1,5 +1,6 @@
-// The scene format as data: the rules of each key. Reading, checking, the JSON schema and the effective scene all use
-// these rules and contain no key, range or default of their own. Defaults are the initialisers of the structs.
+// The scene format as data: a table of rules, one for each TOML key. Reading, checking, the JSON schema and the
+// effective scene all use these rules and contain no key, range or default of their own. Defaults are the initialisers
+// of the structs that rules fill.
 #pragma once
 
 #include <functional>
@@ -10,8 +11,7 @@
 
 namespace weft::scene {
 
-/// A value that is read from or written to TOML: absent, flag, text, numbers (one, or one per component of the rule),
-/// or texts.
+/// A value as read from TOML or written to it: absent, flag, text, numbers (one, or one per component), or texts.
 using Value = std::variant<std::monostate, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
 enum class Type {
@@ -26,10 +26,10 @@ enum class Type {
   color,   ///< [r, g, b] from 0 to 1, or "#rrggbb"; sRGB
   table,
   list,  ///< list of tables, [[key]]
-  keys,  ///< list of keyframes: tables in time order, usually written as keys = [{...}, ...]
+  keys,  ///< list of key frames: tables in time order, usually written as keys = [{...}, ...]
 };
 
-/// Bounds of each number of a value. Both always exist, so that no scene can cause an overflow.
+/// Bounds of each number of a value. All numbers have both bounds, so that no scene can cause an overflow.
 struct Range {
   double low = 0, high = 0;
   bool low_open = false;  ///< the lower bound itself is not allowed
@@ -44,19 +44,19 @@ inline Range above(double low, double high) {
 enum class Need {
   optional,
   required,
-  here_or_in_first_key,  ///< required in the table itself or, if it has `keys` (keyframes), in the first of them
+  here_or_in_first_key,  ///< required in the table itself or in the first of its key frames
 };
 
 struct Table;
 
-/// One key of one table. The functions receive the struct that the table describes.
+/// The rule of one key of one table. The functions receive a pointer to the struct that the table describes.
 struct Rule {
   std::string key;
   Type type = Type::number;
   std::string documentation;
 
   std::string unit;                     ///< unit of its numbers; empty: none
-  Range range;                          ///< bounds of its numbers; list, keys: bounds of the number of entries
+  Range range;                          ///< bounds of its numbers; list, keys: of the number of entries
   bool whole = false;                   ///< integers only
   std::vector<std::string> components;  ///< names of the numbers of an array; empty: a single number
   bool single_fills_all = false;        ///< one number may replace the whole array
@@ -64,48 +64,48 @@ struct Rule {
   std::vector<std::string> choices;
 
   Need need = Need::optional;
-  std::string default_note;  ///< describes a default that the struct's initialiser does not show
+  std::string default_note;  ///< documents the default if the initialiser of the struct does not show it
   std::string excludes;      ///< key that must not be given together with this one
-  bool simulated = true;     ///< affects the simulation; if false, changes leave the simulation hash as it is
+  bool simulated = true;     ///< whether the key affects the simulation and its hash
 
-  std::function<Value(void*)> get;  ///< returns monostate if there is nothing to write
+  std::function<Value(void*)> get;  ///< returns monostate if the key is not to be written
   std::function<void(void*, const Value&)> set;
 
   const Table* table = nullptr;                     ///< table, list, keys: the rules of an entry
-  std::function<void*(void*)> inner;                ///< table: returns its struct
-  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0 if not written
+  std::function<void*(void*)> inner;                ///< table: the struct of the inner table
+  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0: not written
   std::function<void*(void*, std::size_t)> entry;   ///< list, keys: entry i
   std::function<void*(void*, std::size_t)> append;  ///< list, keys: creates entry i with its defaults
 };
 
-/// Rules that apply only to one value of the table's selector, such as the keys of one shape.
+/// Rules that apply only if the selector of the table has the value `name`, such as the keys of one shape.
 struct Variant {
   std::string name;
   std::vector<Rule> rules;
 };
 
-/// All keys of one TOML table, in the order of reading and writing.
+/// The rules of one TOML table, in the order of reading and writing.
 struct Table {
   std::string documentation;
   std::vector<Rule> rules;
-  std::string selector;  ///< key whose text selects the variant; empty: no variants
+  std::string selector;  ///< key whose value selects the variant; empty: no variants
   std::vector<Variant> variants;
   std::function<std::shared_ptr<void>()> make;  ///< makes the struct with its defaults
 
   const Rule* find(std::string_view key) const;
   const Variant* find_variant(std::string_view name) const;
-  /// The current variant of the struct; null if the table has none.
+  /// The variant that the selector of `target` has; null if the table has no variants.
   const Variant* variant_of(void* target) const;
 };
 
-/// The rules of all keys of a scene.
+/// The rules of a scene.
 const Table& scene_rules();
 
-/// Text of the values that a rule accepts: "a number > 0 m", "[x, y, z] in m, each from -1 to 1", "linear or cubic".
+/// Text of the accepted values, such as "a number > 0 m", "[x, y, z] in m, each from -1 to 1", "linear or cubic".
 std::string expectation(const Rule& rule);
-/// Text of the bound that `value` violates: "> 0 m", "<= 100 m"; the whole range if `value` is not finite.
+/// Text of the bound that `value` violates, such as "> 0 m" or "<= 100 m"; the whole range if `value` is not finite.
 std::string violated_bound(const Rule& rule, double value);
-/// "a, b or c"
+/// Text such as "a, b or c".
 std::string join_or(const std::vector<std::string>& words);
 
 }  // namespace weft::scene

@@ -1,5 +1,5 @@
-// The rule table of the scene format: every key with its unit, range and documentation. Defaults are the initialisers
-// in scene.hpp. Upper bounds ensure that no single value exhausts memory or time.
+// The rules of the scene format: every key with its unit, range and documentation. Defaults are the initialisers in
+// scene.hpp. Upper bounds ensure that no single value exhausts memory or time.
 #include <array>
 #include <cmath>
 
@@ -19,7 +19,7 @@ namespace weft::scene {
 
 namespace {
 
-/// Converts a vector given for z up to the scene's up axis.
+/// Rotates a vector given for z up to the up axis of the scene.
 Vec3 rotate_to_up_axis(UpAxis up, const Vec3& z_up) {
   return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
 }
@@ -69,7 +69,7 @@ const Table& solver_rules() {
   return kTable;
 }
 
-/// Keys that both the look of a cloth and each of its panels can have.
+/// Rows of keys that the look of a cloth and that of a panel share.
 template <class Painted>
 void paint_rows(TableBuilder<Painted>& rows) {
   rows.color("color", &Painted::color, "color of the front, the side to which weft x warp points")
@@ -135,7 +135,7 @@ const Table& pose_key_rules() {
   return kTable;
 }
 
-/// Rows `interpolation` and `keys` of the PoseTrack that `track` selects. `start` gives the defaults of the first key.
+/// Adds the rows `interpolation` and `keys` of a PoseTrack. `start` returns the defaults of the first key frame.
 template <class S, class Member, class Start>
 void track_rows(TableBuilder<S>& rows, Member track, Start start) {
   const auto keys = [track](S& s) -> std::vector<PoseKey>& { return std::invoke(track, s).keys; };
@@ -147,7 +147,7 @@ void track_rows(TableBuilder<S>& rows, Member track, Start start) {
   });
 }
 
-/// The keys of each shape of cloth, in the order of ClothShape.
+/// Adds the keys of each shape of cloth, in the order of ClothShape.
 void cloth_shape_rows(TableBuilder<Cloth>& rows) {
   using Rows = TableBuilder<Cloth>;
   for (const char* name : {"quads", "aligned_triangles", "crossed_triangles"})
@@ -260,7 +260,7 @@ auto of_shape(Field Kind::*field) {
   return [field](Obstacle& o) -> Field& { return std::get<Kind>(o.shape).*field; };
 }
 
-/// The keys of each shape of an obstacle, in the order of scene::Shape.
+/// Adds the keys of each shape of an obstacle, in the order of scene::Shape.
 void shape_rows(TableBuilder<Obstacle>& rows) {
   using Rows = TableBuilder<Obstacle>;
   const auto segments = [](Rows& r) {
@@ -389,7 +389,7 @@ void append_camera(Scene& s, std::size_t) {
 }  // namespace
 
 const Table& scene_rules() {
-  // The up axis comes first: defaults of later keys depend on it.
+  // The up axis comes first, since defaults of later keys depend on it.
   static const Table kTable =
       TableBuilder<Scene>("A scene of Weft: SI units, angles in degrees, colors in sRGB.")
           .choice_by(

@@ -1,4 +1,5 @@
-// A checked scene: plain values in SI units, with every default filled in and every reference to a name checked.
+// A checked scene: plain values in SI units, with every default filled in and every name checked. A "key frame" is a
+// value at one time; a "key" alone is a key of the TOML text.
 #pragma once
 
 #include <cmath>
@@ -26,7 +27,7 @@
 
 namespace weft::scene {
 
-// Types of the physics that a scene contains unchanged.
+// Types of the physics that a scene uses unchanged.
 using Integrator = integrator::Method;
 using model::Bounds;
 using model::Contact;
@@ -62,22 +63,20 @@ struct Time {
   double fps = 25;      ///< frames per second
   double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
   double step = 0.01;   ///< maximum time step [s]; each frame is divided into equal steps no longer than this
-  std::optional<double> tolerance =
-      std::nullopt;  ///< replaces `step`: allowed local error of a cloth's positions in one step [m]
+  std::optional<double> tolerance = std::nullopt;  ///< replaces `step`: allowed local error of positions per step [m]
   Integrator integrator = Integrator::implicit_euler;
 };
 
-/// Colours of an object or of one panel of a cloth, and a picture on it. On cloth, the picture is aligned with the
-/// grain.
+/// Colours of an object or of a panel of a cloth, and a picture, which is aligned with weft and warp on cloth.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
-  std::optional<Vec3> back_color;              ///< sRGB, other side of cloth; absent: paler than the front
-  std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute after checking
-  double image_width = 0.2;                    ///< width of one tile along weft [m]; the picture determines its height
+  std::optional<Vec3> back_color;              ///< sRGB, back of cloth; absent: that of the front, paler
+  std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute path
+  double image_width = 0.2;                    ///< width of one tile along weft [m]; the height keeps the proportions
   Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
-  double image_rotation = 0;                   ///< about that corner, counter-clockwise [degrees]
+  double image_rotation = 0;                   ///< of a tile about that corner, counter-clockwise [degrees]
   bool image_repeat = true;                    ///< false: one tile, with `color` around it
-  bool cutout = false;                         ///< transparent parts are holes; else `color` shows there
+  bool cutout = false;                         ///< true: transparent parts are holes; false: they show `color`
 };
 
 /// A panel of a pattern with its own colours.
@@ -93,26 +92,26 @@ struct Finish {
 
 struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< colours of the panels of a pattern
-  bool as_file = true;             ///< characters: use colours and pictures of the file, if any
+  bool as_file = true;             ///< characters: use the colours and pictures of their file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;        ///< cloth: gloss of threads (absent: of the fabric); obstacles: clear coat
-  std::optional<double> fuzz, sheer;  ///< cloth only; absent: those of the fabric
-  double metal = 0;                   ///< obstacles only; 1 reflects all light, in the object's colour
-  std::optional<double> tile_width;   ///< obstacles only: width of the picture [m]; absent: once over the shape
-  double warp_fraction = 0.5;         ///< fraction of warp among the threads on top; from the fabric
-  Threads threads = Threads::plain;   ///< of the fabric
-  double cloth_thickness = 0;         ///< thickness of the fabric itself, or of a rope [m]
+  std::optional<double> gloss;        ///< cloth: of threads, absent: by fabric; obstacles: of a clear coat
+  std::optional<double> fuzz, sheer;  ///< cloth only, see Finish; absent: by fabric
+  double metal = 0;                   ///< obstacles only: 0 no metal, 1 metal, which reflects in its own colour
+  std::optional<double> tile_width;   ///< obstacles only: width of one tile [m]; absent: once over the shape
+  double warp_fraction = 0.5;         ///< by fabric: fraction of warp among the threads on top
+  Threads threads = Threads::plain;   ///< by fabric: pattern of the drawn threads
+  double cloth_thickness = 0;         ///< of the fabric itself, not its contact thickness; or of a rope [m]
   double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: draws no threads
-  std::optional<double> hem;          ///< cloth only: width of hems [m]; 0: cut edges; absent: by fabric and shape
-  bool checker = false;               ///< floors only
+  std::optional<double> hem;          ///< cloth only: width of drawn hems [m]; 0: none; absent: by fabric and shape
+  bool checker = false;               ///< infinite planes only: faint grid of 0.5 m tiles
   bool strands = true;                ///< ropes only: drawn with twisted strands
   bool visible = true;
 };
 
-/// Pose in which a pin holds its particles at one time. The particles rotate about their centroid.
+/// Key frame of a pin: the pose in which it holds its particles at one time. The particles rotate about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;        ///< position: of the centroid, relative to its start; if `in_world`, in the world
+  Pose pose;        ///< position: displacement of the centroid; if `in_world`, its position in the world
   bool in_world = false;
 };
 
@@ -123,36 +122,37 @@ struct PinTrack {
 
 enum class VertexColor { none, red, green, blue, brightness };
 
-/// Particles of a cloth inside [low, high], in fractions of its rest size along weft and warp. `mask`, `vertex_color`
-/// and `vertex_group` give each particle a fraction from 0 to 1, its part in the effect; if several are given, their
-/// fractions are multiplied.
+/// A part of a cloth: the particles inside [low, high], in fractions of the cloth's rest size along weft and warp.
+/// `mask`, `vertex_color` and `vertex_group` each give a particle a fraction from 0 to 1, the strength of the effect on
+/// it; if several are given, their fractions are multiplied.
 struct ClothPart {
-  std::string panel;  ///< of a pattern: only this panel, with fractions of its size; empty: all
+  std::string panel;  ///< pattern: only this panel; low, high and mask refer to it; empty: all
   Vec2 low{0, 0}, high{1, 1};
-  std::optional<Vec2> at = {};                ///< of a rope, replaces low, high: first and last fraction of its length
-  std::string edge;                           ///< of a pattern, as "panel.edge": only this edge; empty: all
-  std::optional<std::filesystem::path> mask;  ///< picture whose grey values are fractions; absolute after checking
-  VertexColor vertex_color = VertexColor::none;  ///< of a mesh file: colour channel that gives fractions
-  std::string vertex_group;  ///< of a mesh file: vertex group or bone that gives fractions; empty: all
+  std::optional<Vec2> at = {};                   ///< rope: first and last fraction of its length; replaces low, high
+  std::string edge;                              ///< pattern: only this edge, as "panel.edge"; empty: all
+  std::optional<std::filesystem::path> mask;     ///< picture whose grey values are fractions; absolute path
+  VertexColor vertex_color = VertexColor::none;  ///< mesh: colour channel that gives fractions
+  std::string vertex_group;  ///< mesh: vertex group or bone whose weights are fractions; empty: none
 
-  /// Whether the particle at fractions (u, v) of the rest size is inside. The tolerance kSlack admits a particle at a
-  /// bound that the scene gives with nine digits, such as 0.333333333.
+  /// Whether a particle at the fractions (u, v) of the rest size is inside. The tolerance kSlack includes particles at
+  /// a bound that the scene gives with nine digits, such as 0.333333333.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
     return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
   }
 };
 
-/// Particles that are held in place, or moved.
+/// A pin: particles that are held in place, or moved.
 struct Pin : ClothPart {
-  std::string follow;              ///< body or "<character>.<part>" whose motion the particles share; empty: none
-  PinTrack motion;                 ///< motion of the particles, if they follow nothing
+  std::string follow;              ///< body or "<character>.<part>" with which the particles move; empty: none
+  PinTrack motion;                 ///< motion of the particles, if `follow` is empty
   double release = -1;             ///< time of release [s]; negative: never
   std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
-  double fade = 0;  ///< distance along the cloth over which the pull on other particles fades [m]; needs a strength
+  double fade =
+      0;  ///< distance along the cloth over which its pull on other particles fades to 0 [m]; needs `strength`
 };
 
-/// The body that a `follow` names and, for a character, the part (else empty).
+/// A `follow` divided into the name of the body and, for a part of a character, that of the part (else empty).
 struct Followed {
   std::string body, part;
 };
@@ -161,18 +161,18 @@ inline Followed followed(const std::string& follow) {
   return {follow.substr(0, dot), dot == std::string::npos ? "" : follow.substr(dot + 1)};
 }
 
-/// Additional mass, distributed over particles in proportion to their fractions (see ClothPart).
+/// Additional mass, distributed over the particles of a part in proportion to their fractions.
 struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
-/// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
+/// Springs from particles of a cloth to the nearest points of another cloth or body, such as buttons, pegs and tacks.
 struct Attachment : ClothPart {
-  std::string name, cloth, to;
-  double stiffness = 10000;             ///< stiffness of the spring of a particle with fraction 1 [N/m]
+  std::string name, cloth, to;          ///< `to`: the other cloth, rope or body
+  double stiffness = 10000;             ///< of the spring of a particle with fraction 1 [N/m]
   std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance at `begin`
-  double begin = -1e5, release = -1;    ///< times between which it acts [s]; negative release: for ever
-  std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
+  double begin = -1e5, release = -1;    ///< times between which the springs act [s]; negative release: for ever
+  std::optional<double> breaking_load;  ///< total force above which all springs break [N]; absent: never
 };
 
 enum class ClothStart { as_given, untangle };
@@ -184,37 +184,37 @@ struct Rope;
 struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
-  Vec2 size{1, 1};                               ///< weft, warp [m]; for rectangles
-  int particles_weft = 41, particles_warp = 41;  ///< for rectangles; crossed triangles add one per cell
-  Vec2 grading{1, 1};                            ///< for rectangles: last spacing of particles / first spacing
-  std::filesystem::path file;                    ///< mesh or sewing pattern; absolute after checking
-  double scale = 1;                              ///< mesh: metres per unit of the file; pattern: factor on its lengths
+  Vec2 size{1, 1};                               ///< rectangles: size along weft and warp [m]
+  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed triangles add one per cell
+  Vec2 grading{1, 1};                            ///< rectangles: last spacing of particles / first spacing
+  std::filesystem::path file;                    ///< mesh or sewing pattern; absolute path
+  double scale = 1;                              ///< mesh, pattern: factor on all lengths of the file
   FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
   std::string object;                            ///< mesh: name of the object in the file; empty: all objects
   ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
-  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: measured against the mesh
-  double edge_length = 0.02;                     ///< edge length of the mesh of a pattern [m]
-  std::string wearer;                            ///< character that wears a pattern; empty: the only one
-  bool fit = false;                              ///< scale a pattern to the wearer's measures
-  double sewing = 1;         ///< time in which the rest shape changes from the sewn start to flat panels [s]
+  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: fitted to the mesh
+  double edge_length = 0.02;                     ///< pattern: edge length of its mesh [m]
+  std::string wearer;                            ///< pattern: character that wears it; empty: the only one
+  bool fit = false;                              ///< pattern: scale it to the wearer's measures
+  double sewing = 1;         ///< time in which the rest shape changes from the start shape to the flat panels [s]
   int line = 0, column = 0;  ///< place in the scene file, for error messages
-  Pose pose;                 ///< pose of the middle of a sheet (weft along x, warp along y), or of a file's origin
+  Pose pose;                 ///< of the middle of a sheet (weft along x, warp along y) or of a file's origin
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
-  Vec3 spin{0, 0, 0};        ///< at the start, about the centre of mass: vector along the axis [degrees/s]
+  Vec3 spin{0, 0, 0};        ///< angular velocity at the start, about the centre of mass [degrees/s]
   Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
-  std::optional<ClothStart> start;  ///< reaction to surfaces that touch or cross at the start; absent: by shape
-  std::vector<std::string> over;    ///< cloths that are put on before this one and stay inside
+  std::optional<ClothStart> start;  ///< if surfaces touch or cross at the start; absent: by shape
+  std::vector<std::string> over;    ///< cloths over which this one is worn
   double start_noise = 0;           ///< maximum random offset of a particle at the start, along each axis [m]
   Material material;
   Pressure pressure;
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
-  std::shared_ptr<const Rope> rope;  ///< the rope that this cloth represents; null: a sheet
+  std::shared_ptr<const Rope> rope;  ///< the rope for which this cloth is simulated; null: a sheet
 };
 
-/// Whether cloth that touches or crosses something at the start may be moved off it, if it is worn `over` nothing. Weft
-/// itself, not the scene, places the panels of a pattern around the wearer.
+/// Whether the start moves this cloth off surfaces that it touches or crosses. (It always does for cloth that is worn
+/// `over` other cloth.) The default is true for patterns, since the program, not the scene, places their panels.
 inline bool starts_untangled(const Cloth& cloth) {
   return cloth.start ? *cloth.start == ClothStart::untangle : cloth.shape == ClothShape::pattern;
 }
@@ -229,20 +229,20 @@ inline long rectangle_particles(const Cloth& cloth) {
 /// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth().
 struct Rope {
   std::string name;
-  std::vector<Vec3> points;                            ///< points that it passes through at the start [m]
-  std::optional<Vec3> from, to;                        ///< its ends, if it has no points [m]
-  bool smooth = false;                                 ///< curved through its points; else straight between them
-  bool closed = false;                                 ///< its end joins its beginning
-  std::optional<double> length;                        ///< rest length [m]; absent: of the first key, else at the start
-  Interpolation interpolation = Interpolation::cubic;  ///< between its keys
-  std::vector<RopeKey> keys;                           ///< keys of its length; empty: constant length
-  std::optional<int> segments;                         ///< pieces between particles; absent: by length and diameter
+  std::vector<Vec3> points;      ///< points that it passes through at the start [m]
+  std::optional<Vec3> from, to;  ///< its ends, if it has no points [m]
+  bool smooth = false;           ///< true: curved through its points; false: straight between them
+  bool closed = false;           ///< true: the last point is joined to the first
+  std::optional<double> length;  ///< rest length [m]; absent: first of `keys`, else start length
+  Interpolation interpolation = Interpolation::cubic;  ///< between `keys`
+  std::vector<RopeKey> keys;                           ///< key frames of its length; empty: constant length
+  std::optional<int> segments;                         ///< number of pieces; absent: by length and diameter
   double diameter = 0.008;                             ///< contact diameter [m]
   int material = 0;                                    ///< index into rope_materials()
   std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: by material
   double damping = 0.01;                      ///< viscosity of stretch and bending / their stiffness [s]
   double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both objects
-  double drag = 1.1;       ///< air resistance coefficient of a cylinder, for motion across the rope
+  double drag = 1.1;       ///< drag coefficient of a cylinder, for motion across the rope
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
   Look look;
   std::vector<Pin> pins;
@@ -254,13 +254,14 @@ struct Obstacle {
   Shape shape;
   int segments = 48;  ///< round shapes: number of faces around the axis
   Pose pose;
-  PoseTrack motion;               ///< absolute poses; empty: rests at `pose`
+  PoseTrack motion;               ///< key frames, not relative to `pose`; empty: rests at `pose`
   double mass = 0;                ///< [kg]; 0: from the density
-  double density = 0;             ///< [kg/m³]; if mass and density are 0, forces do not move the obstacle
-  Vec3 velocity{0, 0, 0};         ///< at the start, if forces but no keys move it [m/s]
-  Vec3 spin{0, 0, 0};             ///< likewise, angular velocity about the centre of mass [degrees/s]
-  std::optional<double> release;  ///< time from which forces move it [s]; until then, its keys do; absent: always
-  /// Obstacle, or "<character>.<part>", whose rigid motion since the start of the run is added to its own; empty: none.
+  double density = 0;             ///< [kg/m³]; 0: from the mass; if both are 0, forces do not move it
+  Vec3 velocity{0, 0, 0};         ///< at the start, if forces and no key frames move it [m/s]
+  Vec3 spin{0, 0, 0};             ///< likewise: angular velocity about the centre of mass [degrees/s]
+  std::optional<double> release;  ///< forces move it from this time, key frames before [s]; absent: always
+  /// Obstacle or "<character>.<part>" with which the obstacle moves: the rigid motion of that body since the start of
+  /// the run is applied in addition to its own motion. Empty: none.
   std::string follow = {};
   double friction = 0.3;
   bool collide = true;
@@ -275,11 +276,11 @@ inline bool is_dynamic(const Obstacle& obstacle) {
 
 enum class Stance { first, rest };
 
-/// Names of one joint in two files, for files that do not use the common names.
+/// Names of one joint in two files; needed for files without the usual names.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
-  std::optional<std::string> body;    ///< in the character's file
-  std::optional<std::string> motion;  ///< in the file of the motion
+  std::optional<std::string> body;    ///< its name in the file of the character
+  std::optional<std::string> motion;  ///< its name in the file of the motion
 };
 
 /// Horizontal travel of a clip: as in its file, in place, or at a speed.
@@ -289,39 +290,39 @@ struct Travel {
   double speed = 0;  ///< for Kind::speed: horizontal speed in the scene [m/s]
 };
 
-/// How a skinned body moves.
+/// The motion of a body with a skeleton.
 struct Acting {
-  std::optional<std::string> clip;  ///< name of a clip in `motion` or, without it, in the body; absent: the first
-  std::optional<std::filesystem::path> motion;  ///< file with the motion to transfer; absolute after checking
+  std::optional<std::string> clip;  ///< name of the clip in `motion`, else in the file of the body; absent: the first
+  std::optional<std::filesystem::path> motion;  ///< file with the motion of another skeleton; absolute path
   FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
   std::vector<JointNames> joints;
   Travel travel;
-  Stance stance = Stance::first;      ///< pose while dressing
-  std::optional<double> stance_arms;  ///< angle between straight arms and the vertical [degrees]; absent: unchanged
+  Stance stance = Stance::first;      ///< pose during `dressing`: that of the clip at `start`, or the rest pose
+  std::optional<double> stance_arms;  ///< angle of straight arms from hanging down [degrees]; absent: as in the pose
   bool loop = false;                  ///< repeats the clip; each round starts where the previous one ended
-  double crossfade = 0;               ///< clip time at the end of each round that is blended into the next round [s]
+  double crossfade = 0;               ///< time at the end of each round that is blended into the next round [s]
 };
 
-/// A skinned and animated character from a file.
+/// A character from a file, with skeleton and animations.
 struct CharacterFile : Acting {
-  std::filesystem::path path;        ///< absolute after checking
-  std::vector<std::string> meshes;   ///< meshes to use, by names of meshes or their nodes; empty: all
+  std::filesystem::path path;        ///< absolute
+  std::vector<std::string> meshes;   ///< meshes to use, by the names of meshes or of their nodes; empty: all
   std::vector<std::string> without;  ///< meshes to leave out, named likewise
 };
 
 /// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
 struct Mannequin : Acting {
   double height = 1.75;       ///< [m]
-  double girth = 1;           ///< factor on the widths of the slender default
-  double masculinity = 0;     ///< shape from 0, a woman, to 1, a man
+  double girth = 1;           ///< factor on widths and depths of the slender default
+  double masculinity = 0;     ///< 0: shape of a woman, 1: of a man
   double edge_length = 0.02;  ///< edge length of its triangles [m]
   double walk = 0;            ///< walked distance [m]; 0: it stands
   double pace = 1.2;          ///< steady walking speed [m/s]
-  bool turn_back = false;     ///< at the end of the walk it turns and walks back
+  bool turn_back = false;     ///< true: turns around at the end of the walk and walks back
   double arms_out = 13;       ///< angle of the upper arms from the vertical while walking [degrees]
 };
 
-/// Key frames of a body, given by a sequence of mesh files.
+/// A body whose key frames are a sequence of mesh files.
 struct MeshSequence {
   std::string files;  ///< a folder, or a file name with one *; relative paths start at the scene's folder
   double fps = 25;    ///< files per second
@@ -329,30 +330,30 @@ struct MeshSequence {
 
 using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 
-/// A part of a character with its own contact settings: a bone, a material, or a part by its name.
+/// A part of a character with its own contact settings: by `bone` or `material`, else by `name`, such as "head".
 struct BodyPart {
   std::string name;
-  std::optional<std::string> bone;      ///< node of the character's file, with all nodes below it
+  std::optional<std::string> bone;      ///< node of the character's file; includes all nodes below it
   std::optional<std::string> material;  ///< of the character's file
   bool collide = true;
   std::optional<double> friction;  ///< absent: that of the character
-  double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact distance
+  double thickness = 0;            ///< thickness of padding [m]; cloth keeps half of it as additional distance
 };
 
-/// A body with prescribed motion, stored as key frames of its vertices.
+/// A body with prescribed motion, which is converted to key frames of its vertices.
 struct Character {
   std::string name;
   CharacterSource source;
   std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
   FileUp up = FileUp::as_file;
-  Pose pose;                   ///< pose of the file's origin, or of the point on the floor below the mannequin
-  double dressing = 0;         ///< time from the start of the preroll during which it stands still [s]
-  double blend = 0;            ///< time after `dressing` in which its motion starts smoothly [s]
-  double grow = 0;             ///< first part of `dressing`: it grows from its bones to its size [s]
+  Pose pose;                   ///< of the file's origin, or of the floor below the mannequin
+  double dressing = 0;         ///< time for which it stands still, from the start of the preroll [s]
+  double blend = 0;            ///< time after `dressing` in which its motion fades in [s]
+  double grow = 0;             ///< time at the start of `dressing` in which it grows from its bones to its size [s]
   double start = 0;            ///< time of the clip at which the motion begins [s]
   double speed = 1;            ///< factor on the speed of the clip
   std::optional<double> room;  ///< clearance between limbs [m]; absent: see clearance_between_limbs()
-  std::optional<double> keys_per_second;  ///< key frames per second [Hz]; absent: from the rate of the clip
+  std::optional<double> keys_per_second;  ///< computed key frames per second [Hz]; absent: by the clip
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
@@ -361,7 +362,7 @@ struct Character {
   int line = 0, column = 0;  ///< place in the scene file, for error messages
 };
 
-/// The acting of a character that has joints; nullptr for others.
+/// The Acting of a character with a skeleton; nullptr for mesh sequences.
 inline const Acting* acting_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
@@ -381,8 +382,8 @@ struct Light {
   bool spot = false;
   double cone_angle = 45;  ///< full opening angle [degrees]
   Vec3 color{1, 1, 1};
-  double softness = 2;         ///< angular width of the source [degrees]
-  std::vector<LightKey> keys;  ///< at least one; with one, the light stands still
+  double softness = 2;         ///< angular width of the source as seen from the scene [degrees]
+  std::vector<LightKey> keys;  ///< key frames, at least one; one: the light does not change
   Interpolation interpolation = Interpolation::cubic;
 };
 
@@ -394,18 +395,18 @@ struct Render {
   StageLook look = StageLook::studio;
   std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
   std::optional<double> sky_intensity;
-  double exposure = 0;     ///< stops
-  double motion_blur = 0;  ///< shutter angle [degrees]
-  HeatQuantity heat = HeatQuantity::none;
-  double heat_max = 0;  ///< strain, or speed [m/s]; 0: the largest value of each frame
+  double exposure = 0;                     ///< stops
+  double motion_blur = 0;                  ///< shutter angle [degrees]
+  HeatQuantity heat = HeatQuantity::none;  ///< quantity that the colours of cloth show
+  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: largest value of each frame
 };
 
 struct Scene {
   std::filesystem::path file;
   std::string name;  ///< file name without extension; names the output
   std::string title;
-  std::uint64_t hash = 0;                    ///< hash of values and files, independent of comments and order
-  std::uint64_t simulation_hash = 0;         ///< hash of only the values and files that affect the simulation
+  std::uint64_t hash = 0;                    ///< see identify()
+  std::uint64_t simulation_hash = 0;         ///< likewise, for the simulation alone
   std::vector<std::filesystem::path> files;  ///< files that for_each_dependency() visits
   UpAxis up = UpAxis::z;
   Time time;
@@ -414,7 +415,7 @@ struct Scene {
   Solver solver;
   Contact contact;
   std::vector<Cloth> cloths;  ///< cloths of ropes come last
-  std::vector<Rope> ropes;    ///< as the scene gives them
+  std::vector<Rope> ropes;    ///< for each, `cloths` also has a cloth
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;

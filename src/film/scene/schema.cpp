@@ -1,5 +1,4 @@
-// The JSON schema of the scene format, Draft 2020-12. It uses only features that have the same meaning in draft 7, to
-// which some editors are limited.
+// The JSON schema of a format (Draft 2020-12). It uses only features of draft 7, to which some editors are limited.
 #include <fmt/format.h>
 
 #include "core/json.hpp"
@@ -61,7 +60,7 @@ Json type_schema(const Rule& rule) {
   return {};
 }
 
-/// Description of a key: documentation and unit ("length of the film [s]"), components, default and exclusions.
+/// The description of a key: documentation and unit ("length of the film [s]"), components, default, excluded key.
 std::string description(const Rule& rule) {
   std::string text = rule.documentation;
   if ((rule.type == Type::number || rule.type == Type::points) && !rule.components.empty())
@@ -82,7 +81,7 @@ Json default_of(const Rule& rule, void* defaults) {
   return nullptr;
 }
 
-/// Adds one rule to the properties and required keys of a table.
+/// Adds the key of one rule to the properties and, if it must be given, to the required keys of a table.
 void add_rule(Json& schema, const Rule& rule, void* defaults) {
   Json property = type_schema(rule);
   property["description"] = description(rule);
@@ -94,7 +93,7 @@ void add_rule(Json& schema, const Rule& rule, void* defaults) {
   if (rule.need == Need::required) schema["required"].push_back(rule.key);
 }
 
-/// The schema of a table with the rules of one variant, or without variants.
+/// The schema of a table with the rules of one variant, or (null) without variants.
 Json variant_schema(const Table& table, const Variant* variant) {
   Json schema = {{"type", "object"}, {"description", table.documentation}, {"properties", Json::object()}};
   const auto defaults = table.make();
@@ -125,8 +124,8 @@ Json condition(const Table& table, const Variant& variant) {
   return when;
 }
 
-// Lists the properties of all variants, so that editors can complete them. For each variant, a condition gives the
-// allowed keys: editors then name the wrong key (with oneOf, they only state that no alternative fits).
+// The schema of a table. Its properties are those of all variants, so that editors can complete them. For each variant,
+// a condition gives the allowed keys, so that editors name the wrong key; with oneOf, they do not.
 Json table_schema(const Table& table) {
   Json schema = variant_schema(table, nullptr);
   if (table.variants.empty()) return schema;
@@ -143,7 +142,7 @@ Json table_schema(const Table& table) {
   Json conditions = Json::array();
   for (std::size_t i = 0; i < variants.size(); ++i) {
     for (const char* unused : {"type", "description"}) variants[i].erase(unused);
-    // Properties equal to those in the common list need not be repeated.
+    // Do not repeat properties that are equal to those in the common list.
     for (auto& [key, property] : variants[i]["properties"].items())
       if (property == properties[key]) property = true;
     conditions.push_back({{"if", condition(table, table.variants[i])}, {"then", std::move(variants[i])}});

@@ -10,8 +10,7 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Inserts before each number the count of its digits (without leading zeros), so that sorting the texts sorts by
-/// number.
+/// A sort key that orders names by their numbers: inserts the digit count before each number (without leading zeros).
 std::string sort_key(const std::string& name) {
   std::string key;
   for (std::size_t i = 0; i < name.size();) {

@@ -1,4 +1,4 @@
-// Shapes of obstacles. All lengths are in [m].
+// Shapes of obstacles. All lengths are in metres.
 #pragma once
 
 #include <filesystem>
@@ -17,27 +17,29 @@ struct BoxShape {
   Vec3 size{1, 1, 1};
   double bevel = 0;
 };
+/// Its axis is the up axis; its base is at −height / 2.
 struct Cone {
   double radius = 0.5, height = 1;
-};  ///< base at -height/2, axis along the up axis
+};
 struct Torus {
   double radius = 0.5, tube_radius = 0.15;
 };
 struct Cylinder {
   double radius = 0.5, height = 1;
 };
+/// Half of a tube, open upward, with its length along x. `radius`: of the inner side.
 struct HalfPipe {
   double radius = 1, length = 2, thickness = 0.05;
-};  ///< open upward; length: along x
+};
 struct Plane {
-  Vec2 size{20, 20};
-  bool infinite = true;
-};  ///< drawn to the horizon if infinite
+  Vec2 size{20, 20};     ///< the plane collides only within its size
+  bool infinite = true;  ///< whether it is drawn up to the horizon
+};
 struct MeshFile {
-  std::filesystem::path path;
-  double scale = 1;
-  FileUp up = FileUp::as_file;
-};  ///< path is absolute after checking
+  std::filesystem::path path;   ///< absolute
+  double scale = 1;             ///< factor on all lengths of the file
+  FileUp up = FileUp::as_file;  ///< up axis of the file
+};
 
 using Shape = std::variant<Sphere, BoxShape, Cone, Torus, Cylinder, HalfPipe, Plane, MeshFile>;
 

@@ -12,7 +12,7 @@ const std::vector<double>& numbers_of(const Value& value) {
 
 }  // namespace
 
-// Adding 0.0 turns -0 into 0: a written -0 would be read back as another value.
+// Adding 0.0 turns −0 into 0. Otherwise −0 would be written as a text that is read back as another value.
 Value to_value(double number) {
   return std::vector<double>{number + 0.0};
 }
@@ -75,7 +75,7 @@ void assign(Vec3& target, const Value& value) {
 void assign(Quat& target, const Value& value) {
   const std::vector<double>& wxyz = numbers_of(value);
   target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  // A quaternion with length 1 up to rounding stays unchanged, so that writing and reading it again changes no bit.
+  // Keep a quaternion of length 1 up to rounding unchanged, so that writing and reading it again changes no bit.
   if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
 }
 

@@ -1,5 +1,5 @@
-// Builds rows of the rule table: each binds a key to the struct member that it fills. Code that does not depend on the
-// struct is in table_builder.cpp, so that it is compiled once, not for each of hundreds of rows.
+// Builds tables of rules. Each rule (row) binds a key to the struct member that it fills. Code that does not depend on
+// the type of the struct is in table_builder.cpp, so that it is compiled once, not for each of hundreds of rows.
 #pragma once
 
 #include <functional>
@@ -55,7 +55,7 @@ struct Words {
   std::vector<std::string> list;
 };
 
-/// Rows of a table, independent of the struct that they fill.
+/// The part of TableBuilder that does not depend on the struct.
 class RowBuilder {
  public:
   RowBuilder(const RowBuilder&) = delete;
@@ -73,10 +73,10 @@ class RowBuilder {
   void add_table(std::string_view key, Type type, const Table& inner);
   void set_components(const Words& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
-  /// One array of two numbers for two members. The functions read and write the member that `second` selects.
+  /// Binds one array of two numbers to two members: to the second if `second`, else to the first.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
-  /// The functions read and write the index of the choice.
+  /// Binds a choice. The functions read and write its index in `choices`.
   void bind_choice(const Words& choices, std::function<std::size_t(void*)> get,
                    std::function<void(void*, std::size_t)> set);
   void add_variant(std::string_view name, const RowBuilder& rows);
@@ -86,7 +86,7 @@ class RowBuilder {
   Table table_;
 };
 
-/// Rows of the table that describes struct S. Arguments `member`: a member pointer, or a lambda S& -> member&.
+/// Builds the table that describes struct S. An argument `member` is a member pointer, or a lambda S& -> member&.
 template <class S>
 class TableBuilder : public RowBuilder {
  public:
@@ -131,7 +131,7 @@ class TableBuilder : public RowBuilder {
     add(key, type, documentation);
     return bind_member(member);
   }
-  /// An enumeration, or a bool. `choices`: in the order of the enumeration, or for false and true.
+  /// A choice, stored as an enumeration or a bool. `choices`: in the order of the enumeration, or for false and true.
   template <class Member>
   TableBuilder& choice(std::string_view key, Member member, const Words& choices, std::string_view documentation) {
     using Field = std::remove_reference_t<std::invoke_result_t<Member, S&>>;
@@ -139,7 +139,7 @@ class TableBuilder : public RowBuilder {
         key, choices, documentation, [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
         [member](S& s, std::size_t index) { std::invoke(member, s) = static_cast<Field>(index); });
   }
-  /// A choice that is no member of S: the functions read (S&) and write (S&, std::size_t) its index.
+  /// A choice that no single member stores: the functions read (S&) and write (S&, std::size_t) its index.
   template <class Get, class Set>
   TableBuilder& choice_by(std::string_view key, const Words& choices, std::string_view documentation, Get get,
                           Set set) {
@@ -159,7 +159,7 @@ class TableBuilder : public RowBuilder {
          [set](void* s, const Value& value) { set(*static_cast<S*>(s), value); });
     return *this;
   }
-  /// One array for two members; a single number sets both.
+  /// One array [weft, warp] for two members; a single number sets both.
   template <class First, class Second>
   TableBuilder& pair(std::string_view key, First first, Second second, Range range, std::string_view unit,
                      std::string_view documentation) {
@@ -234,7 +234,7 @@ class TableBuilder : public RowBuilder {
     last().excludes = key;
     return *this;
   }
-  /// `then` (S&): additional action if the key is given.
+  /// `then` (S&): additional action if the scene gives the key.
   template <class Then>
   TableBuilder& when_given(Then then) {
     do_when_given([then](void* s) { then(*static_cast<S*>(s)); });
@@ -248,19 +248,19 @@ class TableBuilder : public RowBuilder {
     table_.selector = last().key;
     return *this;
   }
-  /// `when` (S&): whether the row is written.
+  /// `when` (S&): whether the effective scene contains the key.
   template <class When>
   TableBuilder& written_if(When when) {
     write_if([when](void* s) { return when(*static_cast<S*>(s)); });
     return *this;
   }
 
-  /// `start`: the struct with the defaults, if these differ from S{}.
+  /// `start`: the struct with its defaults, if they differ from S{}.
   TableBuilder& starting_from(S start) {
     table_.make = [start] { return std::make_shared<S>(start); };
     return *this;
   }
-  /// Calls `rows` (TableBuilder&), which adds rows that several tables share.
+  /// Calls `rows` (TableBuilder&), a function that adds rows.
   template <class Rows>
   TableBuilder& with(const Rows& rows) {
     rows(*this);

@@ -6,8 +6,8 @@
 namespace weft::scene {
 namespace {
 
-// The values directly under a camera or light are stored as its first key frame. If it has `keys`, they are the
-// defaults of the first entry; each later entry takes its defaults from the entry before.
+// The first key frame stores the values given directly in the table of a camera or light. If the table has `keys`, they
+// are the defaults of its first entry; each later entry takes its defaults from the entry before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -22,7 +22,7 @@ template <class S>
 bool stands_still(S& owner) {
   return owner.keys.size() == 1;
 }
-/// Access to a member of the first key, which stores the values in the table of a camera or light itself.
+/// Access to a member of the first key frame.
 template <class Key, class Field>
 auto own(Field Key::*field) {
   return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
@@ -32,8 +32,8 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// Row of the focal length, after the row of the field of view. `stands(s)`: whether the scene's text has the row for
-/// `s`; `otherwise`: the text of its default.
+/// Adds the row of the focal length, after that of the field of view. `stands(s)`: whether the effective scene may
+/// contain it in the table of `s`; `otherwise`: documents its default.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm",
@@ -43,7 +43,7 @@ void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& o
       .written_if([member, stands](S& s) { return stands(s) && std::invoke(member, s) > 0; });
 }
 
-/// Rows of the focal length and the sensor width of a camera.
+/// Adds the rows of the focal length and the sensor width of a camera.
 template <class Stands>
 void focal_rows(TableBuilder<Camera>& rows, Stands stands) {
   focal_length_row(rows, own(&CameraKey::focal_length), "none", stands);
@@ -76,7 +76,7 @@ const Table& camera_key_rules() {
   return kTable;
 }
 
-/// TOML keys of a placed camera, still or key-framed.
+/// Adds the keys of a placed camera, still or with key frames.
 void placed_camera_rows(TableBuilder<Camera>& rows) {
   rows.vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "position of the camera")
       .need(Need::here_or_in_first_key)
@@ -110,7 +110,7 @@ void lens_rows(TableBuilder<Camera>& rows) {
       .by_default("the distance of the target; with kind = \"file\", aperture needs it");
 }
 
-/// TOML keys `subject` and `margin` of cameras that are placed by what they show (whole, follow, close, track).
+/// Adds the keys `subject` and `margin` of computed cameras.
 void subject_rows(TableBuilder<Camera>& rows) {
   rows.plain(Type::texts, "subject", &Camera::subjects,
              "names of the cloths, ropes, obstacles and characters that it shows")
@@ -123,7 +123,7 @@ void smoothing_row(TableBuilder<Camera>& rows) {
               "time over which the motion of the camera is smoothed; 0: no smoothing");
 }
 
-/// Keys of cameras that view the subject from a direction.
+/// Adds the keys of computed cameras that see the subject from a given direction.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
               "direction of the camera as seen from the subject, around the up axis from the front to the right: with "
@@ -151,7 +151,7 @@ void file_rows(TableBuilder<Camera>& rows) {
               "factor on the lengths of the file, which glTF gives in metres");
 }
 
-/// Rules for a key frame of a light; `rows` adds the TOML keys that only suns or only spots have.
+/// Rules of a key frame of a light. `rows` adds the keys that only suns or only spots have.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
       .number("time", &LightKey::time, kMoment, "s", "time of the scene; later than that of the key before")

@@ -1,4 +1,4 @@
-// The rows of the rule table for cameras, lights and the picture.
+// The rules for cameras, lights and the picture.
 #pragma once
 
 #include "film/scene/rule.hpp"

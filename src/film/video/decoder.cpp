@@ -70,7 +70,7 @@ struct Decoder::Impl {
     } catch (const std::runtime_error& error) {
       fail_to_read(file, error.what());
     }
-    // Playlists, which libav detects by content, could open other files.
+    // Allows no playlists: libav detects them by their content, and they could open other files.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
     // The path is absolute, since libav reads the text before a colon as a protocol.
@@ -135,7 +135,7 @@ bool Decoder::lossy() const {
   const AVCodecDescriptor* codec = avcodec_descriptor_get(impl_->codec->codec_id);
   const bool lossless = codec && codec->props & AV_CODEC_PROP_LOSSLESS;
   if (!lossless || !(codec->props & AV_CODEC_PROP_LOSSY)) return !lossless;
-  // H.264 can be lossy or lossless; Weft writes RGB only for lossless video.
+  // H.264 can be lossy or lossless. Weft writes RGB in H.264 only if the video is lossless.
   const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(impl_->codec->pix_fmt);
   return !(format && format->flags & AV_PIX_FMT_FLAG_RGB);
 }

@@ -10,24 +10,26 @@
 
 namespace weft::video {
 
-/// h264: 8 bits, 4:2:0, in .mp4, .mov or .mkv, for players. The others are for editing: h264_lossless (.mkv, .mp4,
+/// h264 is for players: 8 bits, 4:2:0, in .mp4, .mov or .mkv. The others are for editing. h264_lossless (.mkv, .mp4,
 /// .mov) and ffv1 (.mkv) keep the bytes of the pictures; prores is ProRes 422 HQ with 10 bits (.mov, .mkv). automatic:
-/// h264, ffv1 or prores, chosen by the extension.
+/// ffv1 for .mkv, prores for .mov, else h264.
 enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
 
 struct Settings {
   int width = 1280, height = 720;  ///< [pixels]; odd sizes are padded by one column or row unless the codec keeps RGB
-  double fps = 25;                 ///< [1/s] (23.976: 24000/1001); frame k is shown at k / fps (Matroska: to 1 ms)
+  /// [1/s]; 23.976 means 24000/1001. Frame k is shown at k / fps (in Matroska, rounded to 1 ms).
+  double fps = 25;
   Codec codec = Codec::automatic;
   int crf = 18;                     ///< for h264: x264 constant quality, 1 to 51; smaller is better
   std::string preset = "veryfast";  ///< x264 preset
-  int threads = 1;  ///< of the encoder; the same on all machines, as the output of x264 depends on this number
+  /// Number of encoder threads. The output of x264 depends on it, so use the same number on all machines.
+  int threads = 1;
   std::map<std::string, std::string> metadata;
 };
 
-/// Writes one video: by default MP4 with H.264, yuv420p, BT.709, fast start. The file gets its final name only in
-/// finish(). Until then, a hidden temporary file beside it holds the frames in fragments, which can be played even if
-/// the process is killed.
+/// Writes one video: by default MP4 with H.264, yuv420p, BT.709, and the index before the frames. The file gets its
+/// final name only in finish(). Until then, a hidden temporary file beside it holds the frames in fragments, which can
+/// be played even if the process is killed.
 class Encoder {
  public:
   /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written,
@@ -41,9 +43,9 @@ class Encoder {
   /// libav's message, for example if the disk is full.
   void add(const image::Image& image);
 
-  /// Flushes the encoder, moves the index to the front, verifies by reading that each frame has its time, and renames
-  /// the file to its final name. At least one frame must have been added. Throws Error(output_failed). If all frames
-  /// are encoded but the finished file cannot be made, partial_name(file) keeps them, and the error names that file.
+  /// Flushes the encoder, moves the index to the front, reads the file to verify the time of each frame, and renames it
+  /// to its final name. At least one frame must have been added. Throws Error(output_failed). If all frames are encoded
+  /// but the finished file cannot be made, partial_name(file) keeps the frames, and the error names that file.
   void finish();
 
   int frames() const;
@@ -59,10 +61,11 @@ bool is_written(const std::string& ending);
 /// The codec for a file of this name. Throws Error(usage) if such files cannot contain `codec`.
 Codec codec_of(const std::filesystem::path& file, Codec codec);
 
-/// `<name>.partial` with the extension of `file`: the file of all frames if the finished file cannot be made.
+/// Name of the file that keeps all frames if the finished file cannot be made: that of `file` with ".partial" inserted
+/// before the extension.
 std::filesystem::path partial_name(const std::filesystem::path& file);
 
-/// Name and version of the encoder that would be used, for `weft doctor`.
+/// Name and version of the H.264 encoder, for `weft doctor`.
 std::string encoder_description();
 
 }  // namespace weft::video

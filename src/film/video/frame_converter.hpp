@@ -8,7 +8,8 @@
 
 namespace weft::video {
 
-/// Converts RGB to BT.709 in limited range, with the chroma siting (left) that H.264 assumes by default, or keeps RGB.
+/// Converts RGB to BT.709 in limited range, with the chroma siting (left) that H.264 assumes by default. If the format
+/// of the video is RGB, keeps RGB.
 class FrameConverter {
  public:
   /// `file` names the video in errors. Sizes are in pixels; odd sizes are padded by one unless the format is RGB.
@@ -17,7 +18,7 @@ class FrameConverter {
   int padded_width() const { return rgb_ ? width_ : width_ + width_ % 2; }
   int padded_height() const { return rgb_ ? height_ : height_ + height_ % 2; }
 
-  /// Returns a frame of the padded size with declared colours and unset pixels. Throws Error(output_failed).
+  /// Returns a frame of the padded size. Its colour space is set, its pixels are not. Throws Error(output_failed).
   FramePtr make_frame() const;
 
   /// Writes the picture into `frame`; repeats the last column or row if the size is odd. Throws Error(output_failed).

@@ -11,7 +11,7 @@
 namespace weft::video {
 namespace {
 
-// Number of log lines before a failure that are reported with it.
+// Number of log lines before an error that its message repeats.
 constexpr std::size_t kRememberedLines = 4;
 
 std::mutex g_log_mutex;  // encoder threads log too

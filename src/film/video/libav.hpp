@@ -1,4 +1,4 @@
-// Shared by all uses of libav: ownership, checks of return codes, log.
+// Helpers for libav: owning pointers, checks of return codes, log.
 #pragma once
 
 extern "C" {

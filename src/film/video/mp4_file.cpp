@@ -11,7 +11,7 @@
 namespace weft::video {
 namespace {
 
-// Without use_metadata_tags, libav writes only the keys of iTunes.
+// Without use_metadata_tags, libav drops all metadata keys except those of iTunes.
 constexpr const char* kFragmentedFlags = "+frag_every_frame+empty_moov+default_base_moof+use_metadata_tags";
 constexpr const char* kFastStartFlags = "+faststart+use_metadata_tags";
 
@@ -24,7 +24,7 @@ bool is_matroska(const std::filesystem::path& file) {
   return file.extension() == ".mkv";
 }
 
-// A dictionary that libav may replace while reading it.
+// An owned dictionary; libav may replace it while reading it.
 struct Dictionary {
   AVDictionary* entries = nullptr;
   Dictionary() = default;
@@ -44,7 +44,7 @@ InputPtr open_video(const std::filesystem::path& file, const std::filesystem::pa
   return input;
 }
 
-// Returns false at the end of the file.
+// Reads the next packet. Returns false at the end of the file.
 bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem::path& reported_file) {
   const int code = av_read_frame(&input, &packet);
   if (code == AVERROR_EOF) return false;
@@ -60,8 +60,8 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame [frames]. As Matroska stores no decoding times, its delay is the
-// smallest with which no frame is shown before it is decoded. 0 if there is no frame or a time is missing.
+// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times: its delay is the
+// smallest one with which no frame is shown before it is decoded. 0 if there is no frame or a time is missing.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const AVRational unit = input->streams[0]->time_base;
@@ -134,8 +134,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
   VideoFileWriter writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
 
-  // Packet k is decoded `delay` frames before time k, since B-frames need later frames. Files may differ in this delay
-  // (with one frame it is 0), so the largest one is used.
+  // Packet k is decoded `delay` frames before time k, because B-frames need later frames. Files may differ in this
+  // delay (it is 0 for a file of one frame), so the largest delay is used.
   std::int64_t delay = 0;
   for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
 
@@ -145,8 +145,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
     const AVStream& stream = *input->streams[0];
     if (!same_codec(codec, *stream.codecpar))
       fail(reported_file, fmt::format("join {}", file.string()), "it is not encoded as the first one is");
-    // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. The first packet is
-    // frame 0, as the stream starts with a key frame.
+    // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. Subtracts the time
+    // of the first packet, which is frame 0 of its file, because each stream starts with a key frame.
     const std::int64_t before = written;
     std::optional<std::int64_t> first_time;
     for (; read_packet(*input, *packet, reported_file); ++written) {

@@ -1,5 +1,5 @@
-// MP4, MOV and Matroska files with one video stream. While frames arrive, a file is written in fragments; it is then
-// copied to a file that can be played while it loads. Matroska has the same layout in both cases.
+// MP4, MOV and Matroska files with one video stream. The encoder first writes a file in fragments, then copies it to a
+// file that can be played while it loads. In Matroska, both files have the same layout.
 #pragma once
 
 #include <filesystem>
@@ -37,14 +37,14 @@ class VideoFileWriter {
   OutputPtr output_;
 };
 
-/// Copies the packets of the files `from`, one after the other, into a new fast-start file `to`, with the first frame
-/// at time zero. Throws Error(output_failed), also if the files are not encoded alike.
+/// Copies the packets of the files `from`, one after the other, into a new fast-start file `to`. The first frame is at
+/// time zero. Throws Error(output_failed), also if the codec parameters of the files differ.
 void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
                         const std::filesystem::path& reported_file, AVRational rate,
                         const std::map<std::string, std::string>& metadata);
 
-/// Reads `file`. Throws Error(output_failed) unless it has each of `frames` frames once, frame k at k / `rate`. In
-/// Matroska, times are rounded to milliseconds.
+/// Reads `file`. Throws Error(output_failed) unless it contains each of `frames` frames once, frame k at time k /
+/// `rate`. In Matroska, only the nearest frame number is checked, because times are rounded to milliseconds.
 void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
                    int frames);
 

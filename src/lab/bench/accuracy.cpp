@@ -20,46 +20,44 @@ using scene::Integrator;
 // Fixed steps, relative to the scene's.
 constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 // Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference then has
-// 1/64 of the error of that shortest step. With contact, so short a step is useless, since chaotic divergence exceeds
+// 1/64 of the error of that shortest step. With contact, so short a step would be useless: chaotic divergence exceeds
 // its error.
 constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
-// Values of time.tolerance [m] fall from kLargestTolerance by half a decade each. They end after kTolerances values, or
+// Values of time.tolerance fall from kLargestTolerance [m] by half a decade each. They end after kTolerances values, or
 // earlier if a run fails or takes more steps than the run with the shortest fixed step.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
 // newton_tolerance falls by decades from the scene's value down to this minimum.
 constexpr double kMinNewtonTolerance = 1e-8, kDecade = 0.1;
-// newton_tolerance of the runs with other meshes, relative to the scene's.
+// newton_tolerance of the runs of Axis::mesh, relative to the scene's.
 constexpr double kMeshNewtonRatio = 1e-2;
-// The step decides if a tenfold smaller newton_tolerance changes the result by at most this fraction of the error.
+// See Run::step_decides.
 constexpr double kMaxSolverChangeRatio = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
-// With contact, each start is moved by this much more than the one before [m].
+// Additional start_noise of each start, compared with the start before [m].
 constexpr double kStartShift = 1e-6;
-// Runs shorter than this [s] are timed twice.
+// A single run of less CPU time than this is repeated, and the smaller time counts [s].
 constexpr double kShortRun = 0.3;
-// A run with fixed steps is stopped after this multiple of its expected number of steps, or of the number of steps of
-// the run with the shortest step, whichever is larger. A run with time.tolerance is stopped after this multiple of the
-// number of steps of the run with the shortest step, or after the number of steps of the reference, whichever is
-// smaller.
+// A run fails if it takes too many steps. With fixed steps, the limit is kMaxStepRatio max(n, expected number), where n
+// is the number of steps with the shortest fixed step. With time.tolerance, it is min(kMaxStepRatio n, number of steps
+// of the reference).
 constexpr int kMaxStepRatio = 3;
 
-// Runs of one setting from one or several starts. With contact, medians of functionals are compared; otherwise the
-// trajectories of the first start.
+// Runs of one setting from all starts; see Run.
 struct Sample {
   bool contact = false;
   std::vector<Trajectory> starts;
-  Functionals middle;
-  Errors spread{};
-  Work work;
+  Functionals middle;  // median over the starts
+  Errors spread{};     // see Run::spread
+  Work work;           // see Run::work
 };
 
 Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_t>& same = {}) {
   return a.contact ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
 }
 
-// Largest difference of any start: with contact to the median, otherwise to the first start.
+// See Run::spread.
 Errors spread_of(const Sample& sample) {
   Errors spread{};
   for (const Trajectory& start : sample.starts) {
@@ -70,7 +68,7 @@ Errors spread_of(const Sample& sample) {
   return spread;
 }
 
-// State of one call of `measure_accuracy`.
+// One call of measure_accuracy().
 class Campaign {
  public:
   Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan);
@@ -83,15 +81,15 @@ class Campaign {
   Setting as_in_scene(Integrator integrator, double step) const {
     return {integrator, step, {}, scene_.solver.newton_tolerance, scene_.solver.linear_tolerance};
   }
-  // The longest step not above `step` that divides a frame evenly, as the simulation chooses it.
+  // The longest step that divides a frame evenly and is at most `step`, as the simulation chooses it [s].
   double even_step(double step) const {
     return 1 / (scene_.time.fps * std::max(1.0, std::ceil(1 / (scene_.time.fps * step) - 1e-9)));
   }
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
-  // Assumed factor by which the error falls if the step is divided by `shorter`. It uses half of the order, as waves
-  // and contact lower the order; the full order would understate the uncertainty.
+  // Assumed factor by which the error falls if the step is divided by `shorter`. Uses half of the order, because waves
+  // and contact lower the observed order; the full order would understate the uncertainty.
   double error_ratio(Integrator integrator, double shorter) const {
     const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
     return std::pow(shorter, 0.5 * order);
@@ -121,10 +119,10 @@ class Campaign {
   Accuracy result_;
   std::vector<double> steps_;  // measured fixed steps, descending [s]
   std::vector<Integrator> integrators_;
-  double finest_ = 0, scene_step_ = 0;  // shortest measured step, even_step() of the scene's step [s]
+  double finest_ = 0, scene_step_ = 0;  // shortest measured step; even_step() of the scene's step [s]
   Integrator best_, other_;             // integrators of the two references
   SamplePtr reference_;
-  double work_ = 0, work_done_ = 0;  // expected and finished; see work_of()
+  double work_ = 0, work_done_ = 0;  // expected and finished work; see work_of()
 };
 
 Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
@@ -144,7 +142,7 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const Accurac
   best_ = result_.contact ? Integrator::bdf2 : Integrator::implicit_midpoint;
   other_ = result_.contact ? Integrator::implicit_euler : Integrator::bdf2;
   integrators_ = plan.integrators.value_or(std::vector<Integrator>(std::begin(kIntegrators), std::end(kIntegrators)));
-  // Steps that divide a frame evenly are the steps that the simulation takes.
+  // The simulation takes only steps that divide a frame evenly.
   scene_step_ = even_step(scene.time.step);
   std::set<double, std::greater<>> steps;
   for (const double factor : plan.steps.value_or(std::vector<double>(std::begin(kSteps), std::end(kSteps))))
@@ -166,8 +164,9 @@ scene::Scene Campaign::scene_with(const Setting& setting) const {
   return scene;
 }
 
-// Expected number of steps, times the particles relative to the scene's. With a tolerance t, the step length is assumed
-// to scale as t^(1/2) for Euler and t^(1/3) for the others, and t = kLargestTolerance to give the longest fixed step.
+// Expected number of steps, times the number of particles relative to the scene. If the setting has a tolerance t, the
+// step is assumed to be kSteps[0] times the scene's at t = kLargestTolerance, and to scale as t^(1/2) for Euler and
+// t^(1/3) for the others.
 double Campaign::work_of(const Setting& setting) const {
   const double root = setting.integrator == Integrator::implicit_euler ? 2 : 3;
   const double step = setting.tolerance
@@ -199,8 +198,8 @@ Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   return sample;
 }
 
-// Runs the setting of `run`, and stores cost and errors against `against` in `run`. If it fails, returns nullptr and
-// stores the reason in `run`.
+// Runs the setting of `run`, and stores its cost and its errors against `against` in `run`. If the run fails, stores
+// the reason in `run` and returns nullptr.
 Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same) {
   SamplePtr made;
   try {
@@ -221,7 +220,7 @@ Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std:
   return made;
 }
 
-// Runs a setting of a reference; throws if it fails.
+// Runs a setting of a reference. Throws if the run fails.
 Campaign::SamplePtr Campaign::made(const Setting& setting) {
   Run tried{.setting = setting};
   SamplePtr sample = run(tried, nullptr);
@@ -229,10 +228,10 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
   return sample;
 }
 
-// Repeatedly divides by ten the newton_tolerance of `twice`, the setting of a reference with twice its step. Stops at
-// kMinNewtonTolerance, if a run fails, or if a division changes the result by less than the starts differ or by less
-// than a tenth of what halving the step is expected to change. `coarse` becomes the last successful run. Returns the
-// last change. Throws if the first of these runs fails, or a run with twice the step of `twice`.
+// Divides the newton_tolerance of `twice`, the setting of a reference with twice its step, by ten until the result
+// hardly changes: by less than the starts differ, or by less than a tenth of the change expected from halving the step.
+// Also stops at kMinNewtonTolerance, or if a run fails. `coarse`: run of `twice`; replaced by the last successful run.
+// Returns the last change. Throws if the first run fails, or if a run with twice the step of `twice` fails.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
@@ -240,7 +239,7 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
     Run tighter{.setting = twice};
     tighter.setting.newton_tolerance = std::max(kMinNewtonTolerance, kDecade * twice.newton_tolerance);
     const SamplePtr sample = run(tighter, coarse);
-    // A failure is accepted only if the effect of an earlier tenfold decrease is known.
+    // Accept a failure only if an earlier division has given a change to return.
     if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
     if (!sample) return change;
     change = tighter.errors;
@@ -254,7 +253,8 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   }
 }
 
-// Runs a reference and estimates its errors. Chooses newton_tolerance at twice the step, where runs take half the time.
+// Runs a candidate for the reference and estimates its errors. Chooses newton_tolerance at twice the step, because runs
+// take half the time there. If a run fails, returns nullptr.
 Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   try {
     Setting twice = candidate.setting;
@@ -303,8 +303,8 @@ bool Campaign::decides(const Run& run, const Run& tighter) const {
   return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.doubt(tighter, q));
 }
 
-// Lowers newton_tolerance, with this fixed step, from the scene's value until the step decides. Returns the run in
-// which it does, or nullptr.
+// With this fixed step, lowers newton_tolerance from the scene's value until Run::step_decides. Returns the run with
+// step_decides; nullptr if there is none.
 Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
@@ -332,8 +332,7 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   return exact;
 }
 
-// Measures all fixed steps. The run with the shortest step checks the reference. The uncertainty of this check follows
-// from the difference to the next longer step.
+// Measures all fixed steps. Then adds a cross check of the reference by the run with the shortest step; see CrossCheck.
 void Campaign::measure_steps(Integrator integrator) {
   SamplePtr before, last;
   double step_before = 0, step_last = 0;
@@ -352,7 +351,7 @@ void Campaign::measure_steps(Integrator integrator) {
   result_.cross_checks.push_back(check);
 }
 
-// Values of time.tolerance: the planned ones, or else values half a decade apart. For the scene's integrator, also the
+// Values of time.tolerance: those of the plan, or else values half a decade apart. For the scene's integrator, also the
 // scene's own tolerance.
 std::vector<double> Campaign::tolerances_of(Integrator integrator) const {
   std::set<double, std::greater<>> tolerances;
@@ -383,10 +382,10 @@ void Campaign::measure_linear() {
   }
 }
 
-// Runs meshes from fine to coarse and compares each, except the finest, with the mesh of twice the cells along each
-// side. Lists the results from coarse to fine.
+// Runs meshes from fine to coarse, and compares each with the mesh of twice the cells along each side, if there is one.
+// Lists the results from coarse to fine.
 void Campaign::measure_meshes() {
-  std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
+  std::map<double, SamplePtr> by_refinement;  // the keys, multiples of 1/8, are exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
   std::set<double, std::greater<>> asked, all(std::begin(kRefinements), std::end(kRefinements));  // finest first
   if (plan_.meshes) {
@@ -404,7 +403,7 @@ void Campaign::measure_meshes() {
     by_refinement[refinement] =
         run(tried, against,
             against ? run_error::matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
-    // Meshes that serve only as a comparison are not listed, unless they fail.
+    // Do not list meshes with which others are only compared, unless they fail.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;
     if (!against && !tried.failed()) tried.failure = "nothing finer to compare with";
@@ -413,8 +412,8 @@ void Campaign::measure_meshes() {
 }
 
 Accuracy Campaign::measure() {
-  // Rough estimate of the work: three values of newton_tolerance for each step, half as much for the other axes, and
-  // for each reference as much as three runs at its step.
+  // Rough estimate of the work: for each step, three values of newton_tolerance; for all other axes together, half of
+  // that; for each reference, three runs at its step.
   constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
   for (const double step : steps_)
     work_ += static_cast<double>(integrators_.size()) * kRunsOfAStep * work_of(as_in_scene(best_, step));

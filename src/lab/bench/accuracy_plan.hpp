@@ -8,16 +8,16 @@
 
 namespace weft::bench {
 
-/// If a list is absent, the program chooses it; an empty list omits its runs, except that with the scene's own
-/// time.tolerance.
+/// If a list is absent, the program chooses it. If a list is empty, its runs are omitted (except the run with the
+/// scene's own time.tolerance).
 struct AccuracyPlan {
   std::optional<std::vector<scene::Integrator>> integrators;
   std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step
   std::optional<std::vector<double>> tolerances;  ///< time.tolerance [m]
   std::optional<std::vector<double>> meshes;      ///< number of cells along each side, relative to the scene
-  std::optional<int> starts;  ///< number of starts, each displaced by one micrometre more; default 1, or 3 with contact
+  std::optional<int> starts;  ///< number of starts (Run), each displaced by 1 µm more; default: 1, with contact 3
 };
-/// Smallest number of starts for which a median is more reliable than a single run.
+/// Minimum number of starts with contact: the median of fewer is no more reliable than a single run.
 inline constexpr int kMinStartsWithContact = 3;
 
 }  // namespace weft::bench

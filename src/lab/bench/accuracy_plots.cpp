@@ -14,7 +14,7 @@ struct Style {
   const char *name, *color;
 };
 Style style_of(Integrator integrator) {
-  // The colours differ in print and with red-green blindness (palette of Okabe and Ito).
+  // Palette of Okabe and Ito: the colours also differ in grey print and for readers with red-green blindness.
   switch (integrator) {
     case Integrator::implicit_euler:
       return {"Euler", "#d55e00"};
@@ -26,7 +26,7 @@ Style style_of(Integrator integrator) {
   return {"", "black"};
 }
 
-// Adds one curve for each integrator that has runs.
+// Adds one curve for each integrator with runs.
 template <class Across>
 void add_curves(Panel& panel, Quantity quantity, const char* kind, Marker marker, bool dashed,
                 const std::vector<const Run*>& runs, const Across& across) {
@@ -49,7 +49,7 @@ std::string error_label(Quantity quantity) {
   return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "ratio" : unit);
 }
 
-// Adds curves of Run::left over newton_tolerance for the coarsest step, the scene's step and the finest.
+// Adds curves of Run::left over newton_tolerance, for the longest step, the scene's step and the shortest step.
 void add_tolerances(Panel& panel, const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   if (runs.empty()) return;

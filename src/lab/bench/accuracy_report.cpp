@@ -21,7 +21,7 @@ std::string label(Quantity quantity) {
   return fmt::format("{} [{}]", name_of(quantity), unit_of(quantity));
 }
 
-// Order observed between this run and the one before in its series; empty if it cannot be determined.
+// Order of the error, observed between this run and the run before in its series; empty if it cannot be determined.
 std::string observed_order(const Accuracy& accuracy, const Run* before, const Run& run, Quantity quantity) {
   if (before == nullptr || before->failed() || control_of(*before) == control_of(run)) return {};
   const double coarse = error_of(*before, quantity), fine = error_of(run, quantity);
@@ -41,7 +41,7 @@ std::string error_text(const Accuracy& accuracy, const Run& run, Quantity quanti
   return fmt::format("{}{:.1e}", accuracy.resolved(run, quantity) ? "" : "~", error_of(run, quantity));
 }
 
-// Runs of several integrators; each error is followed by the order observed since the row above.
+// Runs of several integrators. With `with_orders`, each error is followed by the order observed since the row above.
 Table runs_table(const Accuracy& accuracy, const std::vector<const Run*>& runs, bool with_orders) {
   const auto quantities = quantities_of(accuracy);
   Table table{{"integrator", "setting", "steps", "rejected", "Newton a step", "linear a step", "CPU s"}};
@@ -69,7 +69,7 @@ Table runs_table(const Accuracy& accuracy, const std::vector<const Run*>& runs, 
   return table;
 }
 
-// Errors and CPU times: one row per step, one column per newton_tolerance. * marks runs in which the step decides.
+// Errors and CPU times: one row per step, one column per newton_tolerance. * marks runs with Run::step_decides.
 Table grid_table(const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   std::set<double, std::greater<>> steps, tolerances;
@@ -143,7 +143,7 @@ std::string reference_text(const Accuracy& accuracy) {
       cross_checks_text(accuracy));
 }
 
-// Distribution of the errors over the starts, for all runs with the solver settings of the scene.
+// Distribution of the errors over the starts, for all runs with the newton_tolerance of the scene.
 Table starts_table(const Accuracy& accuracy) {
   const Quantity q = deciding_quantity(accuracy);
   std::vector<const Run*> runs = with_solver_of_scene(accuracy);
@@ -175,7 +175,7 @@ std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
 }
 
-// Errors of the starts in the deciding quantity, separated by semicolons.
+// Run::start_errors, separated by semicolons.
 std::string starts_text(const Run& run) {
   std::string text;
   for (const double error : run.start_errors) text += (text.empty() ? "" : ";") + number(error);

@@ -1,4 +1,4 @@
-// Properties of runs, series and references; see accuracy.hpp.
+// Members and functions of accuracy.hpp that evaluate runs.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Conclusions from the runs of bench/accuracy, as sentences.
+// Conclusions from the runs of accuracy.hpp, as sentences.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,26 +13,25 @@ namespace {
 
 using scene::Integrator;
 
-// Target error of the recommended setting, relative to the cloth's size.
+// Target of recommendation(), relative to the cloth's size.
 constexpr double kTargetErrorRatio = 0.01;
 // CPU times or errors within this ratio count as equal.
 constexpr double kEqualRatio = 1.1;
-// Target errors in the conclusion [m].
+// Target errors of conclusion() [m].
 constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
-// The reference's uncertainty must not exceed this fraction of a target.
+// Maximum uncertainty of the reference, relative to a target, with which the target can be verified.
 constexpr double kMaxUncertaintyRatio = 0.3;
-// Errors below this count as no motion [m].
+// If all errors are below this value, nothing moves [m].
 constexpr double kNegligibleMotion = 1e-12;
-// The factor of CPU time for a tenfold smaller error (cost_of_a_digit()) is fitted to this many of the finest runs of a
-// series.
+// Maximum number of runs of a series, the finest ones, to which cost_of_a_digit() is fitted.
 constexpr std::size_t kMaxFittedRuns = 4;
 
 bool is_candidate(const Run& run) {
   return !run.failed() && (run.axis == Axis::grid || run.axis == Axis::tolerance);
 }
 
-// Whether `a` is finer than `b`. Both must have the same axis and integrator; `a` must have a smaller time.tolerance
-// or, with fixed steps, a smaller step or newton_tolerance and neither of them larger.
+// Whether `a` is finer than `b`: both have the same axis and integrator, and `a` has a smaller time.tolerance or, with
+// fixed steps, a smaller step or newton_tolerance, while neither is larger.
 bool is_finer(const Run& a, const Run& b) {
   if (a.axis != b.axis || a.setting.integrator != b.setting.integrator) return false;
   if (a.axis == Axis::tolerance) return a.setting.tolerance < b.setting.tolerance;
@@ -40,7 +39,7 @@ bool is_finer(const Run& a, const Run& b) {
          (a.setting.step < b.setting.step || a.setting.newton_tolerance < b.setting.newton_tolerance);
 }
 
-// Error plus uncertainty.
+// Upper bound of the error: error plus uncertainty.
 double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
   return error_of(run, quantity) + accuracy.doubt(run, quantity);
 }
@@ -53,7 +52,7 @@ bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quanti
          });
 }
 
-// The step [s], rounded up to four digits: if it were rounded down, a frame would need one more step.
+// The step rounded up to four digits [s]. With a step rounded down, a frame would need one more step.
 double shown_step(double step) {
   const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
   return std::ceil(step * scale - 1e-6) / scale;
@@ -113,7 +112,8 @@ class Line {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
   }
-  // Factor of CPU time for a tenth of the error as text, such as "3.6 times"; "unknown" if the fit is not conclusive.
+  // Factor of CPU time for a tenth of the error, as text, such as "3.6 times"; "unknown" if the points determine no
+  // falling line.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
     if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "unknown";
@@ -124,7 +124,7 @@ class Line {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-// Factor of CPU time for a tenth of the error, as text, fitted to the finest resolved runs of a series.
+// The same text, fitted to the finest runs of a series whose errors are resolved (Accuracy::resolved()).
 std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;
@@ -155,8 +155,8 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
       line.cost_of_a_digit(), each);
 }
 
-// Errors due to step and solver, at the scene's step and integrator, and due to the mesh of the scene. If the scene has
-// time.tolerance, the error of the solver alone is not known.
+// Errors due to step, solver and mesh with the settings of the scene. If the scene has time.tolerance, the error due to
+// the solver is not known separately.
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {
@@ -164,7 +164,7 @@ std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
     if (run.axis == Axis::mesh && run.setting.refinement == 1) left["the mesh"] = error_of(run, quantity);
     if (accuracy.of_scene.tolerance) {
       if (&run == accuracy.scene_setting_run())
-        left["the step"] = error_of(run, quantity);  // includes the solver's error
+        left["the step"] = error_of(run, quantity);  // includes the error due to the solver
       continue;
     }
     if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
@@ -223,8 +223,8 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
 
 namespace {
 
-// The most exact setting that reaches the target at a cost of at most kEqualRatio times `cpu_s`. A setting with the
-// scene's own newton_tolerance is preferred if its error is at most kEqualRatio times that of others.
+// Of the runs that reach the target in at most kEqualRatio times `cpu_s`, the one with the smallest error. Prefers a
+// run with the scene's own newton_tolerance if its error is at most kEqualRatio times that of others.
 const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, double target, double cpu_s) {
   const Run* best = nullptr;
   double least = std::numeric_limits<double>::infinity();

@@ -7,8 +7,8 @@ namespace {
 
 constexpr const char* kSecond = "duration = 1.0\nfps = 25\nstep = 0.01";
 
-/// A square sheet of cotton, 0.5 m wide, held at two corners, without contact; `cloth` adds keys to the cloth, `rest`
-/// to the scene.
+/// A square sheet of cotton, 0.5 m wide, held at two corners, without contact. `cloth`: further keys of the cloth;
+/// `rest`: further tables of the scene.
 std::string hanging(const std::string& cloth, const std::string& rest = {}) {
   return fmt::format(
       "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n{}\n"
@@ -25,7 +25,7 @@ std::string free_sheet(const std::string& cloth) {
       kSecond, cloth);
 }
 
-/// A sheet above a floor, with all contacts.
+/// A sheet above a floor, with contact.
 std::string above_floor(const std::string& cloth, const std::string& time) {
   return fmt::format(
       "[time]\n{}\n\n[[cloth]]\nname = \"sheet\"\n{}\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n", time,
@@ -116,8 +116,8 @@ std::vector<ExtremeCase> make_cases() {
       free_sheet("\n[[cloth.pin]]\nlow = [1, 1]\ninterpolation = \"linear\"\n"
                  "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\n"),
       25,
-      // Allowed gain [J]: ½ m v² of the whole sheet at the speed of the pin, times three, as stretched threads
-      // accelerate the sheet further.
+      // Energy that the pin can add [J]: ½ m v² of the whole sheet at the speed of the pin, times three, because
+      // stretched threads accelerate the sheet further.
       3 * 0.5 * 0.05 * 250 * 250);
   add("no_stiffness", "no stiffness at all",
       hanging("material = { stretch = 0, shear = 0, bend = 0, stretch_viscosity = 0, shear_viscosity = 0, "

@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// The value as text: "12.3", or "~12.3" if it is estimated.
+// The value in a unit as text, such as "12.3"; "~12.3" if it is estimated. `unit`: factor from SI units.
 std::string text_of(const scene::Figure& figure, double unit) {
   return fmt::format("{}{:.3g}", figure.estimated ? "~" : "", figure.value * unit);
 }

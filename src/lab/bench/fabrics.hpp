@@ -11,33 +11,34 @@
 
 namespace weft::bench {
 
-/// Loads at which extension is measured [N/m]: the three of the FAST system and that of the KES system.
+/// Loads at which extension is measured [N/m]: three of the FAST system, and one of the KES system.
 inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
 
 struct FabricRun {
   scene::Fabric fabric;
-  std::array<double, 2> drape{}, drape_in_scenes{};  ///< coefficients of two specimens; see cusick::Solved [1]
+  /// Drape coefficients of two specimens, solved exactly and with the default tolerance (cusick::Solved).
+  std::array<double, 2> drape{}, drape_in_scenes{};
   Cantilever elastic = {}, as_it_is = {};            ///< without and with bending friction
-  std::array<double, kLoads.size()> weft{}, warp{};  ///< extension along weft and warp, at each load [1]
+  std::array<double, kLoads.size()> weft{}, warp{};  ///< relative extension along weft and warp, at each load
   double cpu_s = 0;
 
   double mean_drape() const { return 0.5 * (drape[0] + drape[1]); }
   double mean_drape_in_scenes() const { return 0.5 * (drape_in_scenes[0] + drape_in_scenes[1]); }
 };
 
-/// `folder`: where specimen files are written temporarily. Throws Error(simulation_failed).
+/// Runs all tests of a fabric, with temporary files in `folder`. Throws Error(simulation_failed).
 FabricRun test_fabric(const scene::Fabric& fabric, const std::filesystem::path& folder);
 
-/// Relative deviation of the drape coefficient from the nearest published value [1]; nullopt if none is published.
+/// Relative deviation of the drape coefficient from the nearest published value; nullopt if none is published.
 std::optional<double> drape_error(const FabricRun& run);
 
 /// All values, for other programs.
 Table fabrics_table(const std::vector<FabricRun>& runs);
 /// Plots of drape, bending rigidity, and force against extension.
 std::string fabrics_svg(const std::vector<FabricRun>& runs);
-/// The report. It refers to the plot by this name, as a file beside it.
+/// The report. `plot`: name of the file with the plot, in its folder.
 std::string fabrics_markdown(const std::vector<FabricRun>& runs, const std::string& plot);
-/// One sentence computed from the runs: how many fabrics drape within 10 % of the published value.
+/// One sentence: how many fabrics drape within 10 % of the published value.
 std::string conclusion(const std::vector<FabricRun>& runs);
 
 }  // namespace weft::bench

@@ -36,7 +36,7 @@ std::vector<std::string> cells_of(const std::string& line) {
     else
       cells.back() += line[i];
   }
-  cells.pop_back();  // the last bar ends a cell and starts none
+  cells.pop_back();  // no cell follows the last bar
   return cells;
 }
 

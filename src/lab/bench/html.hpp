@@ -6,7 +6,7 @@
 
 namespace weft::bench {
 
-/// Returns the SVG text of a plot, given its link in the report; see link_to().
+/// Returns the SVG text of the plot to which the report refers with `link`; see link_to().
 using FindPlot = std::function<std::string(const std::string& link)>;
 
 /// Converts the Markdown subset of the reports (headings, paragraphs, `code`, **strong**, tables, plots) to HTML. Plots

@@ -11,12 +11,12 @@
 namespace weft::bench {
 namespace {
 
-// Sizes in pixels: panel, plot area, one row of the legend below it.
+// Sizes of the panel, the plot area, and one row of the legend below it [pixels].
 constexpr double kPanelWidth = 430, kLeft = 62, kTop = 34, kPlotWidth = 350, kPlotHeight = 260, kAxisHeight = 44,
                  kNameHeight = 15;
 constexpr std::size_t kPanelsInARow = 3, kNamesInARow = 3;
 
-/// A logarithmic axis from 10^low to 10^high, drawn over `length` pixels from `start`.
+/// A logarithmic axis from 10^low to 10^high, drawn from `start` over `length` [pixels].
 struct PlotAxis {
   double low = 0, high = 1, start = 0, length = 1;
   double at(double value) const { return start + length * (std::log10(value) - low) / (high - low); }
@@ -26,7 +26,7 @@ bool is_drawn(const Vec2& point) {
   return point.x() > 0 && point.y() > 0 && point.allFinite();
 }
 
-// Axis that covers all points of the panel, with a margin at both ends.
+// Axis that contains all points of the panel, with a margin at both ends.
 PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : panel.curves) {
@@ -41,7 +41,7 @@ PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   return {low - room, high + room, start, length};
 }
 
-// Text of mantissa · 10^decade: for example 0.02, 5, 200; for decades beyond ±3 as 10^4 or 2·10^4.
+// Text of mantissa · 10^decade, such as 0.02, 5 or 200; for decades beyond ±3, such as 10^4 or 2·10^4.
 std::string tick_name(double mantissa, int decade) {
   const double value = mantissa * std::pow(10.0, decade);
   if (decade >= -3 && decade <= 3) return fmt::format("{:g}", value);
@@ -49,7 +49,8 @@ std::string tick_name(double mantissa, int decade) {
                      decade);
 }
 
-// Multiples of powers of ten that get a label: enough for three labels, without overlap. `decades`: length of the axis.
+// Multiples of powers of ten that get a label, so that there are about three labels or more, without overlap.
+// `decades`: length of the axis.
 std::vector<double> labelled_multiples(double decades) {
   if (decades < 0.5) return {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9};
   if (decades < 1) return {1, 2, 3, 4, 5, 7};
@@ -57,7 +58,7 @@ std::vector<double> labelled_multiples(double decades) {
   return {1};
 }
 
-// Grid lines at powers of ten and at 2 and 5 times these; labels where space allows.
+// Grid lines at 1, 2 and 5 times the powers of ten, with labels where space allows.
 std::string ticks(const PlotAxis& axis, bool vertical) {
   constexpr double kMaxLabelledDecades = 12;
   std::string text;

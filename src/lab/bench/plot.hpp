@@ -15,17 +15,17 @@ struct Curve {
   std::string color;
   Marker marker = Marker::circle;
   bool dashed = false;
-  std::vector<Vec2> points = {};  ///< points with a coordinate that is not positive and finite are not drawn
-  bool line = true;               ///< whether lines connect the points; else only markers
+  std::vector<Vec2> points = {};  ///< a point is drawn only if both coordinates are positive and finite
+  bool line = true;               ///< whether lines connect the markers
 };
 
 struct Panel {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
-  double unresolved_below = 0;  ///< errors below this value are uncertain; the region is shaded
+  double unresolved_below = 0;  ///< errors below this value are uncertain; their region is shaded
 };
 
-/// The panels in rows of three, each with its own axes and legend.
+/// Draws the panels in rows of three, each with its own axes and legend.
 std::string log_log_svg(const std::vector<Panel>& panels);
 
 }  // namespace weft::bench

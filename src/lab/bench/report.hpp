@@ -13,19 +13,19 @@ namespace weft::bench {
 /// Rows of equal length; the first one is the header.
 using Table = std::vector<std::vector<std::string>>;
 
-/// Comma separated values; fields with a comma, quote or line feed are quoted (RFC 4180).
+/// Comma-separated values. Fields with a comma, quote or line feed are quoted (RFC 4180).
 std::string csv(const Table& table);
 std::string markdown(const Table& table);
 
-/// Destination of a link to `file`, which is in the folder of the report. Bytes other than ASCII letters, digits and
-/// "-._~" are percent-encoded (RFC 3986), as spaces and parentheses end a destination in Markdown.
+/// Destination of a link to `file` in the folder of the report. Bytes other than ASCII letters, digits and "-._~" are
+/// percent-encoded (RFC 3986), because spaces and parentheses would end a destination in Markdown.
 std::string link_to(const std::string& file);
 
-/// Counts how often each verdict occurred.
+/// Counts how often each verdict occurs.
 class Tally {
  public:
   void add(Verdict verdict) { ++of_[static_cast<std::size_t>(verdict)]; }
-  /// Number of outcomes that are `unbounded` (more energy than allowed, but no warning) or `not_finite`.
+  /// Number of verdicts Verdict::unbounded and Verdict::not_finite.
   int wrong() const;
   std::string text() const;
 
@@ -34,8 +34,8 @@ class Tally {
 };
 
 Table map_table(const std::vector<MapCell>& cells);
-/// The stability map as SVG: one panel per integrator; stiffness increases upward, the time step increases
-/// to the right. Cells are coloured by verdict.
+/// The stability map as SVG, with one panel per integrator. Stiffness increases upward, the time step to the right. The
+/// verdict gives the colour of a cell.
 std::string map_svg(const std::vector<MapCell>& cells);
 
 }  // namespace weft::bench

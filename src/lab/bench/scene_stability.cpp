@@ -14,14 +14,14 @@
 namespace weft::bench {
 namespace {
 
-// A trial is aborted if its CPU time exceeds kSlowRatio times that of the unchanged scene plus kSlowSeconds.
+// A trial is aborted if its CPU time exceeds kSlowRatio times that of the unchanged scene, plus kSlowSeconds [s].
 constexpr double kSlowRatio = 20, kSlowSeconds = 5;
 
 constexpr std::size_t index_of(VariedParameter axis) {
   return static_cast<std::size_t>(axis);
 }
 
-// All coefficients of friction of a scene.
+// All friction coefficients of a scene.
 std::vector<double*> frictions(scene::Scene& scene) {
   std::vector<double*> all;
   for (scene::Cloth& cloth : scene.cloths) all.push_back(&cloth.material.friction);
@@ -55,7 +55,7 @@ void scale_materials(scene::Scene& scene, const Factors& factors) {
   for (double* value : frictions(scene)) *value *= friction;
 }
 
-// Multiplies the cells along each side; returns false if they cannot be multiplied by this factor.
+// Multiplies the number of cells along each side by `factor`. Returns false if this is not possible.
 bool scale_mesh(scene::Scene& scene, double factor) {
   if (factor == 1) return true;
   const bool all_patterns = std::ranges::all_of(
@@ -66,7 +66,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   return true;
 }
 
-// Whether the factor changes the simulation. It does not if the scene's values of this parameter are 0 or unused.
+// Whether the factor changes the simulation. For example, it does not if all values of this parameter are 0.
 bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
@@ -87,11 +87,11 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
-      varied = scene;  // unscaled: a factor of 0 leaves no friction
+      varied = scene;  // test the scene's own values: a factor of 0 changes friction, but leaves none
       return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
              (scene.contact.self || scene.contact.obstacles);
-    // A step is never longer than a frame. Successive factors differ by 2: if half of a factor already gives a step of
-    // at least a frame, that factor changes nothing.
+    // The simulation takes no step longer than a frame. Each factor above 1 is twice the one before: if half of a
+    // factor gives a step of at least a frame, the factor changes nothing any more.
     case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
     case VariedParameter::mesh:
@@ -100,7 +100,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   return true;
 }
 
-// Adds the faults of a frame, which TrialVerdict defines.
+// Adds the faults of a frame to `broken`; see TrialVerdict.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
   if (report.stretch_ratio > simulation::kMaxStretchRatio) broken.insert("cloth is stretched beyond its max_stretch");
@@ -117,7 +117,7 @@ bool is_finite(const production::SceneSimulation& simulation) {
   return std::ranges::all_of(simulation.state().positions, [](const Vec3& x) { return x.allFinite(); });
 }
 
-// Runs the scene to its end or until it fails, becomes too slow or `stop` interrupts it; fills `trial`.
+// Runs the scene until it ends, fails, becomes too slow, or `stop` interrupts it. Records the results in `trial`.
 void run(const scene::Scene& scene, double max_cpu_s, const std::function<bool()>& stop, Trial& trial) {
   const double begin = process_cpu_seconds();
   std::set<std::string> broken;
@@ -147,7 +147,7 @@ void run(const scene::Scene& scene, double max_cpu_s, const std::function<bool()
   if (!in_time) trial.verdict = TrialVerdict::too_slow;
 }
 
-// `known`: faults of the unchanged scene, which do not count against a trial.
+// Runs a trial. `known`: faults that are not new; see TrialVerdict.
 Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_cpu_s,
                   const std::vector<std::string>& known, const std::function<bool()>& stop) {
   Trial trial{factors};
@@ -177,7 +177,7 @@ Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_
   return trial;
 }
 
-// The factors of all trials: first those that change a single parameter, then those of the map.
+// The factors of all trials: first those that vary a single parameter, then those of the map.
 std::vector<Factors> plan_trials(const scene::Scene& scene) {
   std::vector<Factors> plan;
   const auto add = [&](const Factors& factors) {
@@ -251,7 +251,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
   const auto report_trial = [&](const Trial& trial) {
     if (each) each(trial, static_cast<double>(result.trials.size() + 1) / static_cast<double>(plan.size() + 1));
   };
-  // Throws the error of the scene if it cannot be built at all.
+  // If the scene cannot be built, throw its error.
   { const production::SceneSimulation whole(scene); }
   result.as_is = try_factors(scene, {1, 1, 1, 1, 1, 1}, std::numeric_limits<double>::infinity(), {}, stop);
   report_trial(result.as_is);

@@ -52,7 +52,7 @@ std::string value_of(VariedParameter axis, double factor, const SceneStability& 
   return fmt::format("{:g} ms", 1e3 * stability.as_is.step * factor);
 }
 
-// Distance of factors from 1, on a logarithmic scale; factors below 0.1 count as 0.1.
+// Distance of a factor from 1, on a logarithmic scale; factors below 0.1 count as 0.1.
 double distance(double factor) {
   return std::abs(std::log(std::max(factor, 0.1)));
 }

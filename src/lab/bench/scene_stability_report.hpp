@@ -1,4 +1,4 @@
-// The report of scene_stability.hpp, as text and as SVG.
+// The report about the stability margins of a scene, as text and as SVG.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace weft::bench {
 
-/// One sentence: the limit nearest to the scene's values, or, if the unchanged scene breaks, the smallest change with
-/// which nothing breaks.
+/// One sentence: the margin nearest to the scene's values; if the unchanged scene breaks, the smallest change with
+/// which it has no fault.
 std::string margin_sentence(const SceneStability& stability);
-/// For each parameter, the first factors below and above 1 at which the scene breaks, and what breaks.
+/// For each parameter, the factors below and above 1 at which the scene first breaks, and its faults there.
 Table margin_table(const SceneStability& stability);
 Table trial_table(const SceneStability& stability);
-/// One row per parameter, and the map of stiffness and step, coloured by verdict.
+/// One row of trials per parameter, and the map of stiffness and step, coloured by verdict.
 std::string trial_svg(const std::string& title, const SceneStability& stability);
 std::string scene_stability_markdown(const std::string& title, const SceneStability& stability,
                                      const std::string& picture);

@@ -13,22 +13,22 @@
 namespace weft::bench {
 namespace {
 
-// Lower bound on the bytes moved by one linear iteration, in single precision. Full block: nine numbers and a column
-// index. Isotropic block (multiple of the identity): one number and a column index. Particle: its preconditioner block
-// (three padded vectors), and padded vectors of conjugate gradients: direction p, product q, solution x, residual r,
-// preconditioned residual z. The product reads p and writes q. The update of x and r reads p and q, and reads and
-// writes x and r. The preconditioner reads r and writes z. The new direction reads z, and reads and writes p.
+// Bytes that one linear iteration moves at least, in single precision. Full block: nine numbers and a column index.
+// Isotropic block: one number and a column index. Particle: its preconditioner block (three padded vectors), and padded
+// vectors of conjugate gradients: direction p, product q, solution x, residual r, preconditioned residual z. These
+// operations move 2 + 6 + 2 + 3 vectors: the product reads p and writes q; the update reads p and q, and reads and
+// writes x and r; the preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
 constexpr double kPaddedVec3Bytes = 16;
 constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4,
                  kParticle = 3 * kPaddedVec3Bytes + (2 + 6 + 2 + 3) * kPaddedVec3Bytes;
-// The same for one Newton iteration. The linearisation reads or clears the matrix, writes it in double precision, reads
-// it, and writes a copy in single precision. Positions, velocities and forces are moved in each of three evaluations:
-// linearisation, line search, and residual after the line search. Data of the elements are not counted.
+// The same for one Newton iteration. The linearisation clears the matrix and writes it in double precision, then reads
+// it and writes a copy in single precision. Each of three evaluations (linearisation, line search, residual after the
+// line search) moves positions, velocities and forces. Data of the elements are not counted.
 constexpr double kFullBlockAssembled = 9 * (8 + 8 + 8 + 4), kIsotropicBlockAssembled = 8 + 8 + 8 + 4,
                  kParticleEvaluated = 3 * 3 * 24;
 
-// Typical exponents of cost in particles and 1 / step, and speed-up per additional thread; used only to predict run
-// times.
+// Typical exponents with which cost grows with the number of particles and with 1 / step, and typical speed-up per
+// additional thread. Used only to predict run times.
 constexpr double kUsualExponent = 1.3, kUsualStepExponent = 0.6, kUsualGainOfAThread = 0.4;
 
 // FNV-1a hash.
@@ -57,7 +57,7 @@ void count(const simulation::FrameReport& report, const StageTime& whole, SpeedR
   run.at(SpeedStage::rest) += rest;
 }
 
-/// While it lives, parallel loops are counted in `counts`; null: nothing is counted.
+/// Counts parallel loops in `counts` during its lifetime; null: counts nothing.
 class Counting {
  public:
   explicit Counting(LoopCounts* counts) { counted_loops = counts; }
@@ -102,7 +102,7 @@ SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, c
   simulation.run_preroll();
   Drawing draw;
   if (open_drawing) draw = open_drawing();
-  // The first picture compiles shaders, so it is not measured.
+  // Drawing the first picture compiles shaders, so it is not measured.
   if (draw) draw(*simulation.snapshot());
   for (int k = 1; k < frames.end; ++k) {
     simulation::FrameReport report;
@@ -159,7 +159,7 @@ double memory_bound_s(const SpeedRun& run) {
 double read_bandwidth(double bytes) {
   constexpr double kMinTimedSeconds = 0.05;  // shorter timings are too noisy
   const std::vector<std::uint64_t> numbers(static_cast<std::size_t>(bytes / sizeof(std::uint64_t)) + 1, 1);
-  // Each thread reads its own range repeatedly without waiting for the others, so that synchronisation is not measured.
+  // Each thread reads its own range again and again without waiting for the others: synchronisation is not measured.
   const auto threads = static_cast<std::size_t>(thread_count());
   const std::size_t share = (numbers.size() + threads - 1) / threads;
   const auto read = [&](int times) {
@@ -168,14 +168,14 @@ double read_bandwidth(double bytes) {
       for (int k = 0; k < times; ++k) {
         std::uint64_t sum = 0;
         for (std::size_t i = begin; i < end; ++i) sum += numbers[i];
-        asm volatile("" : : "r"(sum) : "memory");  // keeps the loop from being optimised away
+        asm volatile("" : : "r"(sum) : "memory");  // prevents the compiler from removing the loop
       }
     });
     return timer.seconds();
   };
   int times = 1;
   while (read(times) < kMinTimedSeconds) times *= 2;
-  // Other processes can only slow the measurement down, so the best of three counts.
+  // Take the fastest of three measurements, because other processes can only slow them down.
   double best = 0;
   for (int k = 0; k < 3; ++k)
     best = std::max(best, times * static_cast<double>(numbers.size() * sizeof numbers[0]) / read(times));

@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-// Colours of the stages; they differ in print and with red-green blindness (palette of Okabe and Ito).
+// Colours of the stages (palette of Okabe and Ito): they also differ in grey print and with red-green blindness.
 constexpr const char* kColors[kSpeedStages] = {"#d55e00", "#e69f00", "#0072b2", "#009e73", "#999999", "#cc79a7"};
 
 double frames_of(const SpeedRun& run) {
@@ -26,7 +26,7 @@ double wall_ms(const SpeedRun& run, const StageTime& stage) {
 double bound_ms(const SpeedRun& run) {
   return 1e3 * memory_bound_s(run) / frames_of(run);
 }
-/// Sum of the stages that the memory bound covers.
+/// Sum of the stages to which memory_bound_s() applies.
 StageTime solving(const SpeedRun& run) {
   StageTime sum = run.at(SpeedStage::forces);
   sum += run.at(SpeedStage::preconditioner);
@@ -40,7 +40,7 @@ double linear_a_newton(const SpeedRun& run) {
   return static_cast<double>(run.linear_iterations) / std::max(1, run.newton_iterations);
 }
 
-/// Stages that took time in any of these runs.
+/// The stages that took time in any of the runs.
 std::vector<SpeedStage> stages_of(const std::vector<const SpeedRun*>& runs) {
   std::vector<SpeedStage> stages;
   for (std::size_t s = 0; s < kSpeedStages; ++s)
@@ -64,7 +64,7 @@ std::vector<const SpeedRun*> select(const std::vector<SpeedRun>& runs, const Con
   return selected;
 }
 
-// The number with digit grouping, such as 4,096.
+// The number with grouped digits, such as 4,096.
 std::string grouped(std::int64_t number) {
   std::string text = std::to_string(number);
   for (auto place = static_cast<std::ptrdiff_t>(text.size()) - 3; place > 0; place -= 3)
@@ -129,7 +129,7 @@ std::string how_far_from_the_bound(const std::vector<const SpeedRun*>& sizes) {
       100 * bound / takes);
 }
 
-// Appends, in parentheses, the exponent with which the value grows with the number of particles since the row above.
+// Appends to `text`, in parentheses, the exponent() of a value that grows from `was` in the row above to `is`.
 std::string with_exponent(std::string text, const SpeedRun* before, const SpeedRun& run, double was, double is) {
   if (const auto power = before ? exponent(*before, run, was, is) : std::nullopt)
     text += fmt::format(" ({:.2f})", *power);

@@ -2,7 +2,7 @@
 
 namespace weft::bench {
 
-// scenes/sphere_drape.toml, word for word; a test compares them.
+// A copy of scenes/sphere_drape.toml; a test compares them.
 const char* const kSphereDrape =
     R"(# A sheet of canvas, 1 m x 1 m, falls flat on a sphere and drapes over it and the floor: the scene by which speed is
 # compared with other programs. Its resolution is a parameter; 16 mm from particle to particle become 8 mm with

@@ -11,14 +11,15 @@
 namespace weft::bench {
 namespace {
 
-// Allowed energy gain: kSolverEnergyRatio times the energies in play, for solver tolerances, plus kEnergyRounding [J].
+// Allowed increase of energy, besides EnergyLimit: kSolverEnergyRatio times the energies in play, for errors of the
+// solver, plus kEnergyRounding [J].
 constexpr double kSolverEnergyRatio = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
   return report.kinetic_energy + report.potential_energy + report.elastic_energy;
 }
 
-/// Tracks finiteness, speed and energy of a run from frame to frame.
+/// Checks positions, speeds and energy of a run in each frame.
 class Watch {
  public:
   Watch(const scene::Scene& scene, const production::SceneSimulation& simulation, const EnergyLimit& limit)
@@ -29,7 +30,7 @@ class Watch {
     potential_low_ = potential_high_ = start.potential_energy;
   }
 
-  // Returns false if a position or the energy is not finite.
+  // Updates `outcome` with the next frame. Returns false if a position or the energy is not finite.
   bool see(const simulation::FrameReport& report, const frame::SnapshotPtr& snapshot, Outcome& outcome) {
     for (std::size_t c = 0; c < cloths_; ++c) {
       const auto& x = snapshot->states[c].positions;
@@ -42,8 +43,8 @@ class Watch {
     before_ = snapshot;
     const double energy = mechanical_energy(report);
     if (!std::isfinite(energy)) return false;
-    // Scale of allowed errors: the larger of kinetic + elastic energy at the start and the largest elastic energy so
-    // far, plus the range of potential energy so far.
+    // Energies in play: the larger of kinetic + elastic energy at the start and the largest elastic energy so far, plus
+    // the range of potential energy so far.
     largest_energy_ = std::max(largest_energy_, report.elastic_energy);
     potential_low_ = std::min(potential_low_, report.potential_energy);
     potential_high_ = std::max(potential_high_, report.potential_energy);
@@ -114,22 +115,22 @@ Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limi
 
 namespace {
 
-// Side [m], density [kg/m²], and particles along each side of the square sheet.
+// Side [m], density [kg/m²], and number of particles along each side of the square sheet of the map.
 constexpr double kWidth = 0.5, kDensity = 0.2;
 constexpr int kParticles = 11;
 
 scene::Scene swing(scene::Integrator integrator, double stiffness, double step) {
   scene::Scene scene;
   scene.name = "swing";
-  // A frame every 40 ms, or every step if steps are longer.
+  // One frame every 40 ms; if steps are longer, one frame per step.
   scene.time = {.duration = 1000, .fps = 1 / std::max(step, 0.04), .step = step, .integrator = integrator};
   scene.contact.self = scene.contact.obstacles = false;
   scene::Cloth cloth;
   cloth.name = "sheet";
   cloth.size = {kWidth, kWidth};
   cloth.particles_weft = cloth.particles_warp = kParticles;
-  // Fixed values of no named fabric, so that the map does not change with new fabric data. (Measured: with softer
-  // bending, three cells of the stiffest threads and longest steps are refused.)
+  // Use no named fabric, so that the map does not change with new fabric data. Measured: with softer bending, three
+  // cells with the stiffest threads and longest steps are refused.
   scene::Material& material = cloth.material;
   material.density = kDensity;
   material.stretch_weft = material.stretch_warp = stiffness;
@@ -137,7 +138,7 @@ scene::Scene swing(scene::Integrator integrator, double stiffness, double step) 
   material.bend = 5e-5;
   material.bend_viscosity = 5e-6;
   material.bend_friction = 2e-4;
-  material.max_stretch = 0;  // so that only the stretch stiffness, which the map varies, resists stretching
+  material.max_stretch = 0;  // threads do not lock, so only the stretch stiffness, which the map varies, resists
   scene::Pin left, right;
   left.low = left.high = {0, 1};
   right.low = right.high = {1, 1};
@@ -159,7 +160,7 @@ double stiffest_period(double stiffness) {
 
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
-  // Two swings are long enough for an instability to show.
+  // An instability shows within two swings.
   constexpr double kSwings = 2;
   constexpr int kDecades = 10, kMaxMapSteps = 25'000;
   std::vector<MapCell> cells;

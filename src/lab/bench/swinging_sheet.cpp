@@ -2,7 +2,7 @@
 
 namespace weft::bench {
 
-// scenes/swinging_sheet.toml, word for word; a test compares them.
+// A copy of scenes/swinging_sheet.toml; a test compares them.
 const char* const kSwingingSheet =
     R"(# A soft sheet, held at both ends of its upper edge, swings down from a slant, and nothing can touch: how exact the run is depends on
 # the time integration alone.

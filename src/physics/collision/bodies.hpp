@@ -1,4 +1,4 @@
-// All colliding surfaces, in one numbering of vertices and triangles.
+// All bodies that collide (cloths, ropes, rigid bodies, obstacles), in one numbering of vertices and triangles.
 #pragma once
 
 #include <array>
@@ -12,33 +12,33 @@
 
 namespace weft::collision {
 
-/// How a surface collides.
+/// Collision properties of a body.
 struct BodyTraits {
   bool deformable = false;  ///< its vertices are particles, which the solve moves
-  double thickness = 0;     ///< half of it is added to the activation distance of a pair [m]; 0 for obstacles
+  double thickness = 0;     ///< contact thickness [m]; each side adds half of its own to the activation distance
   double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
   bool moving = true;       ///< false: its vertices never leave their start positions
   bool rigid = false;       ///< its vertices keep their distances from each other
-  Index frame = -1;         ///< if deformable and rigid: first of its four frame particles; −1: none
+  Index frame = -1;         ///< if deformable and rigid: first of its four particles (mesh::RigidFrame); −1: none
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
 struct Patch {
   std::span<const std::uint8_t> vertices;  ///< one flag per vertex of the body; 1: belongs to the patch
-  double thickness = 0;                    ///< [m]
+  double thickness = 0;                    ///< contact thickness [m]
   double friction = 0;                     ///< Coulomb coefficient; see ContactMaterial
 };
 
-/// Contact material of a vertex. Each body has one, followed by one for each of its patches. Two materials in contact
-/// use the geometric mean of their friction, unless ContactParameters::friction has coefficients for their bodies.
+/// Contact material of a vertex. A body has one for itself, followed by one for each of its patches. Two materials in
+/// contact use the geometric mean of their friction, unless ContactParameters::friction has coefficients for their
+/// bodies.
 struct ContactMaterial {
   std::size_t body = 0;
-  double thickness = 0, friction = 0;
+  double thickness = 0, friction = 0;  ///< [m], Coulomb coefficient
 };
 
-/// Owns the triangles; the rest of the engine holds spans of them. The vertices of all bodies share the numbering of
-/// the position arrays. These list particles first, so add cloth first, then bodies that are deformable and rigid, then
-/// obstacles.
+/// Owns the triangles; the rest of the engine holds spans of them. Vertex numbers are indices into the position arrays.
+/// These begin with the particles, so add cloths first, then rigid bodies that forces move, then obstacles.
 class Bodies {
  public:
   Bodies() = default;
@@ -46,16 +46,17 @@ class Bodies {
   Bodies& operator=(Bodies&&) = default;
 
   /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
-  /// before these vertices that belong to the body but to no triangle, such as frame particles. Patches and `limbs`
-  /// include these positions. If patches share a vertex, the last one counts. `limbs`: limb number of each vertex, from
-  /// 0; empty: one limb.
+  /// before these vertices that belong to the body but to no triangle, such as the particles of a rigid body. `patches`
+  /// and `limbs` have entries for these positions, too. If patches share a vertex, the last one counts. `limbs`: number
+  /// of the limb of each vertex, from 0; empty: one limb. Limbs are parts of a character, such as arms, that may touch
+  /// or overlap.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 
   std::size_t size() const { return traits_.size(); }
   const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
 
-  /// Valid until the next add(). Stays valid if the Bodies is moved.
+  /// Valid until the next add(). Stays valid if this object is moved.
   std::span<const Triangle> triangles() const { return triangles_; }
   std::span<const Surface> surfaces() const { return surfaces_; }
   /// Surfaces that can collide with themselves: deformable and not rigid. They come first.
@@ -65,7 +66,7 @@ class Bodies {
   const std::vector<std::size_t>& body_of_vertices() const { return body_of_; }
   std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
 
-  /// Limb of each vertex, numbered within its body. Limbs of one body may touch or overlap.
+  /// Limb of each vertex, numbered within its body.
   const std::vector<Index>& limb_of_vertices() const { return limb_of_; }
 
   /// All contact materials. Without patches: one for each body, in the order of the bodies.
@@ -73,10 +74,10 @@ class Bodies {
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
   /// Index within its body of the first triangle with these corners, in any order; the number of triangles if there is
-  /// none. For an edge, repeat one end: finds the first triangle at the edge.
+  /// none. To find the first triangle at an edge, repeat one end of the edge.
   Index triangle_of(const Triangle& corners) const;
 
-  /// The section of an array over all vertices that belongs to this body.
+  /// The part of an array over all vertices that belongs to this body.
   template <class T>
   std::span<T> part(std::size_t body, std::span<T> values) const {
     return values.subspan(surfaces_[body].first_vertex, surfaces_[body].vertex_count);

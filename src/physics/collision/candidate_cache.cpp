@@ -8,7 +8,7 @@
 namespace weft::collision {
 namespace {
 
-// With coherence the pairs must include those that share a vertex. Otherwise ProximityFinder finds these itself.
+// With coherence, the pairs must include those with one common vertex. Otherwise ProximityFinder adds these itself.
 BroadPhaseOptions options_of(const SearchParameters& parameters) {
   BroadPhaseOptions options = parameters.broad_phase;
   options.one_shared = parameters.coherence;
@@ -104,8 +104,8 @@ void CandidateCache::find_clear_bodies(const Motion& motion) {
   }
 }
 
-// Refits the bounds of all bodies except obstacles that rest where they rested at the last fit, if the margin is the
-// same.
+// Refits the bounds of all bodies. Skips obstacles that stand still and have not moved since the last refit, if the
+// margin is unchanged.
 void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto stays = [&](std::span<const Vec3> x) {
@@ -129,12 +129,11 @@ bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
   return clear_[bodies_.body_of(static_cast<Index>(vertex))].holds(x);
 }
 
-// Whether x is within the margin of the box for which the vertex's end was collected, or in the half-space of its
-// obstacle.
+// Whether x is within the margin of the vertex's end box (low_ to high_), or in the half-space of its obstacle.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
   const Vec3 beyond = (x - high_end()[vertex]).cwiseMax(low_[vertex] - x);
-  // A box contains all points within the margin along each axis. Bounds with more directions are only sure to contain
-  // the points within the margin in Euclidean distance.
+  // Bounds with 6 directions contain all points within the margin along each axis. Bounds with more directions contain
+  // only those within the margin in Euclidean distance.
   const bool boxes = parameters_.broad_phase.directions == 6;
   const double distance = boxes ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
   return distance <= margin || is_kept_clear(vertex, x);

@@ -13,7 +13,7 @@ namespace weft::collision {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-// Near pairs that become contacts at a time: enough for many threads, few enough that the memory does not count.
+// Number of near pairs that become contacts in one batch: enough for many threads, with a negligible amount of memory.
 constexpr std::size_t kPairsAtOnce = 16 * kFineGrainSize;
 
 double ramp(double from, double to, double value) {
@@ -21,21 +21,21 @@ double ramp(double from, double to, double value) {
 }
 
 // Limits the activation distance in a step over h [s] to `gap` [m] plus the fraction h /
-// Numerics::Contact::range_growth_time of the full one.
+// Numerics::Contact::range_growth_time of the full activation distance.
 void limit_opening(Contact& contact, double gap, double h) {
   const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.range_growth_time);
   contact.depth -= contact.range - range;
   contact.range = range;
 }
 
-// Distance along the normal at the start of the step [m]; 0 if it is negative.
+// Distance of the points of a pair along its normal at the start of the step [m]; 0 if negative.
 double gap_at_start(const FeaturePair& pair, const StepMotion& motion) {
   double gap = 0;
   for (std::size_t k = 0; k < 4; ++k) gap += pair.weights[k] * pair.normal.dot(motion.x_t0[pair.vertices[k]]);
   return std::max(gap, 0.0);
 }
 
-// Pairs one corner of a triangle with the closest point of the other triangle.
+// Pairs a corner of the triangle `corners` with the closest point of the other triangle.
 FeaturePair pair_with_corner(Index corner, const Triangle& corners, const FeaturePair& closest) {
   FeaturePair result = closest;
   double side = 0;
@@ -62,7 +62,7 @@ double stiffness_fraction(const Proximity& proximity, bool with_cloth) {
          ramp(0, numerics.contact.ramp_width, smallest_weight);
 }
 
-// A pair of bodies uses the coefficients given for it, or else the geometric mean of those of both materials.
+// Tabulates friction for all pairs of materials: coefficients given for their bodies, or else the geometric mean.
 ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& parameters,
                                std::span<const double> masses)
     : bodies_(bodies), stiffness_(parameters.stiffness), step_(parameters.step), masses_(masses) {
@@ -112,7 +112,7 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
   auto contact = build(push.exit_pair, fraction, kNoLimit, motion);
   if (!contact) return;
   limit_opening(*contact, push.exit_pair.distance, motion.h);
-  contact->full_range = kNoLimit;  // keep the stiffness constant with depth
+  contact->full_range = kNoLimit;  // makes the spring linear
   contact->friction = contact->static_friction = 0;
   response.add(*contact, motion.x_t0);
 }
@@ -146,8 +146,9 @@ void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closes
       response.add_wall(*contact, motion.x_t0);
 }
 
-// The activation distance of a corner contact is at most its present distance, so it exerts no force now. A corner
-// contact has no friction, because the contact of the closest features has friction.
+// Adds a contact between each corner that is a particle and the plane through the closest point of the other triangle,
+// perpendicular to the normal of `closest`. Its activation distance is at most the present gap, so it exerts no force
+// yet. It has no friction, because the contact of the closest features has friction.
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {
@@ -166,7 +167,8 @@ void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& clos
   }
 }
 
-// Returns nullopt if neither side has a particle. `range_limit`: upper bound of the activation distance [m].
+// Builds the contact of a pair of features with this fraction of its full stiffness. `range_limit`: upper bound of the
+// activation distance [m]. Returns nullopt if neither side has a particle.
 std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fraction, double range_limit,
                                              const StepMotion& motion) const {
   Contact contact;

@@ -12,7 +12,7 @@
 namespace weft::collision {
 namespace {
 
-// Distance below which features are near, so that they may get contacts [m].
+// Distance below which features are near and may get contacts [m].
 double detection_distance_of(const Bodies& bodies) {
   double max_thickness = 0;
   for (const ContactMaterial& material : bodies.materials())
@@ -20,7 +20,7 @@ double detection_distance_of(const Bodies& bodies) {
   return numerics.contact.detection * max_thickness;
 }
 
-// The rigid bodies with triangles that are carried by frame particles.
+// The rigid bodies that have triangles and that particles move (mesh::RigidFrame).
 std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
   constexpr Index kFrame = 4;
   std::vector<RigidGroup> groups;
@@ -29,7 +29,7 @@ std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const doubl
     const Surface& surface = bodies.surfaces()[b];
     if (frame < 0 || surface.triangles.empty()) continue;
     const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
-    // The vertices of a body may begin with frame particles, which belong to no triangle.
+    // The vertices of a body may begin with these particles, which belong to no triangle.
     Index first = bodies.vertex_count(), last = 0;
     for (const Triangle& corners : surface.triangles)
       for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
@@ -81,7 +81,7 @@ void Engine::update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> 
 
 template <class Collect>
 void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
-  // Swap the list of pairs with Separation, so that only one copy exists.
+  // Swap the list of pairs between candidates_ and separation_, so that only one copy exists.
   CandidatePairs& pairs = candidates_.pairs();
   separation_.exchange(pairs.apart);
   list_pairs();
@@ -91,7 +91,8 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
   gathered_at_.clear();
 }
 
-// Gathers features that may come within the detection distance near x, skipping pairs that a plane keeps far apart.
+// Gathers the pairs of features that may be near while no vertex is farther than the Verlet margin from x. Skips pairs
+// of triangles that a separating plane keeps far enough apart. Does nothing if the last result still covers x.
 void Engine::gather(std::span<const Vec3> x) {
   const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
   const auto is_near = [&] {
@@ -130,9 +131,9 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
-  // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here,
-  // because pairs that only turning planes separate come near each other. Exception: pairs for which separate_guess()
-  // has found such a plane, and which it has not moved since, are not tested again.
+  // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here: a
+  // pair that needs a turning plane comes close. Exception: pairs for which separate_guess() found a turning plane, and
+  // which it did not move afterwards, are not tested again.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
@@ -148,10 +149,9 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Pushes apart surfaces that would meet on the way to the estimate x_t1. Contacts found at intersecting positions would
-// have meaningless directions, and each iteration would find only one contact of a stack of layers. Exempts no pinched
-// cloth, because x_t1 is only an estimate. Between cloths, seeks only planes for the whole step (measured in
-// falling_band: two thirds of all searches were for parts of the step, and most failed).
+// Pushes apart surfaces that would meet on the way to the estimate x_t1: contacts found at intersecting positions have
+// meaningless directions. Exempts no pinched cloth, because x_t1 is only an estimate. Between cloths, seeks only planes
+// for the whole step. (In falling_band, two thirds of all searches would be for parts of the step, most in vain.)
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;
@@ -164,8 +164,8 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
 }
 
 // Finds near pairs at the expected end of the step. On a curved surface, contact directions found at the start would
-// oppose sliding and take energy. A pair that no plane of constant direction separates on the trajectory is searched at
-// the start, where its features are still on their own sides.
+// oppose sliding and take energy. Pairs that no plane of constant direction separates on the trajectory are searched at
+// the start instead, where their features are still on their own sides.
 void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)
@@ -208,7 +208,7 @@ void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& mot
 void Engine::continue_from(std::span<const Vec3> x) {
   const StepMotion motion{x_t0_, x, x, step_};
   carried_.begin_step(x, x, {});
-  if (coherence_) candidates_.drop();  // kept closest points belong to the start of the step
+  if (coherence_) candidates_.drop();  // they belong to the start of the step
   begin_contacts(x, x);
   std::vector<Proximity> near;
   find_near(x, near);
@@ -216,14 +216,14 @@ void Engine::continue_from(std::span<const Vec3> x) {
   add_failing(pushed_pairs_, motion);
 }
 
-// Provides the candidate pairs from x_from to x_t1 and clears the contacts.
+// Clears the contacts. Collects candidate pairs again if the kept ones do not cover the trajectory from x_from to x_t1.
 void Engine::begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1) {
   if (!candidates_.covers_start(x_from) || !candidates_.lists_near(x_t1)) collect(x_from, x_t1);
   response_.begin_step(step_);
   builder_.begin_step();
 }
 
-// Finds near features at x, the start of the candidate pairs' trajectory.
+// Finds near pairs at x, the start of the trajectory for which candidate pairs were collected.
 void Engine::find_near(std::span<const Vec3> x, std::vector<Proximity>& near) {
   if (coherence_) {
     near.clear();
@@ -240,7 +240,7 @@ bool Engine::is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   return !find_failing(x_t0, x_t1, PlaneKinds::all);
 }
 
-// Whether any pair has no separating plane of the allowed kinds.
+// Sets failing_ to the pairs without a separating plane of the allowed kinds. Returns whether there are any.
 bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
   failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
@@ -261,7 +261,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins,
                                     PlaneKinds which) {
   // If corrections move vertices out of the bounds of the candidate pairs, collect the pairs again. After
-  // kTightCollections times, enlarge the bounds of all vertices to contain their starts and ends.
+  // kTightCollections such collections, enlarge the bounds of all vertices to contain their starts and ends.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
   pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());
@@ -319,7 +319,7 @@ void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
     candidates_.drop();
 }
 
-// Saves the positions, from which candidate pairs and features follow, and the planes that do not follow from them.
+// Saves the positions for which candidate pairs were collected, and the planes that do not follow from them.
 template <class Archive>
 void Engine::serialize_candidates(Archive& archive) {
   const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };

@@ -1,12 +1,12 @@
 // Collision of all cloths and obstacles over one time step.
 //
 //   CandidateCache     broad phase: candidate pairs of triangles, kept while valid
-//   Separation         a separating plane for each pair, which also bounds its distance from below
-//   ProximityFinder    narrow phase: near pairs of features at the expected end of the step, or at its start
+//   Separation         finds a separating plane for each pair; the gap along it is a lower bound of the distance
+//   ProximityFinder    narrow phase: near vertex-face and edge-edge pairs at the expected end of the step, or its start
 //   ContactBuilder     near pairs -> contacts with stiffness, activation distance, friction
 //   ContactResponse    contacts in the solve, as springs or as velocity constraints
 //   Separation         checks the solved step; pairs that would meet get contacts or are pushed apart
-//   PinchedPairs       cloth squeezed between obstacles, exempt from the check
+//   PinchedPairs       cloth squeezed between obstacles, exempt from this check
 #pragma once
 
 #include <array>
@@ -32,85 +32,87 @@ struct EngineParameters {
   SearchParameters search;
   ContactParameters contact;
   ResponseForm response = ResponseForm::springs;
-  double stick_speed = numerics.contact.stick_velocity;  ///< of the springs: friction sticks below it [m/s]
+  double stick_speed = numerics.contact.stick_velocity;  ///< as in ContactSet::set_step() [m/s]
 };
 
+/// In each step, the caller first calls begin_step(). After each solve, it calls is_separated(). If pairs fail, it
+/// calls push_apart(), then continue_from() for another solve. It calls accept() when it accepts the step.
 class Engine {
  public:
-  /// `x`: all vertices at the start [m]. `masses`: of the particles [kg]; must outlive the engine.
+  /// `x`: all vertices at the start of the run [m]. `masses`: of the particles [kg]; must outlive the engine.
   Engine(Bodies bodies, const EngineParameters& parameters, std::span<const Vec3> x, std::span<const double> masses);
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Finds the contacts of a step over h [s] from x_t0. x_t1: expected end; exact for obstacles, an estimate for
-  /// particles. `motions`: per body, its rigid motion, or the identity if it deforms; empty: no body moves rigidly.
-  /// x_t0 and x_t1 must outlive the step. With springs, tries to change x_t1 so that every pair has a separating plane.
-  /// `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether x_t1 has changed.
+  /// Finds the contacts of a step over h [s] from x_t0. x_t1: the expected end, exact for obstacles, an estimate for
+  /// particles. Both must outlive the step. `motions`: per body, its rigid motion, or the identity if it deforms;
+  /// empty: no body moves rigidly. With springs, pushes x_t1 apart until every pair has a separating plane; if that
+  /// fails, x_t1 stays unchanged. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether
+  /// x_t1 has changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
-  /// Continues the step from x [m], which was reached without an intersection and has the obstacles at their end. Finds
-  /// contacts anew around x, and adds contacts for all pairs for which push_apart() was called since begin_step().
-  /// Friction still measures slip from the start of the step. x replaces x_t0 in the calls that follow and must outlive
-  /// the step.
+  /// Continues the step from x [m]. Surfaces must not intersect on the way from x_t0 to x, and obstacles must be at
+  /// their end. Finds contacts anew around x, and adds contacts for all pairs that failed before the calls of
+  /// push_apart() in this step. Friction still measures slip from the start of the step. x replaces x_t0 in the calls
+  /// that follow and must outlive the step.
   void continue_from(std::span<const Vec3> x);
   /// Pairs for which is_separated() found no separating plane. Valid until the next call that tests or pushes apart.
   std::span<const CornerPair> failing() const { return failing_; }
 
-  /// Call between two steps. Drops the state that only speeds up the search and does not follow from positions.
+  /// Call between two steps. Drops search state that only saves time and does not follow from positions, so that
+  /// results do not depend on earlier steps.
   void forget();
 
-  /// Saves or restores the state besides x [m] that the next step depends on. Throws std::runtime_error if it does not
-  /// fit these bodies.
+  /// Saves or restores the state on which the next step depends, besides the positions x [m]. Throws std::runtime_error
+  /// if it does not fit these bodies.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
 
-  /// The contacts of the present step.
   ContactResponse& response() { return response_; }
   const ContactResponse& response() const { return response_; }
 
   /// Whether every pair of triangles that is not exempted has a separating plane on the trajectory to x_t1.
   bool is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Adds contacts for the failing pairs of the last call of is_separated(); returns how many are new.
+  /// Adds contacts for the failing pairs of the last call of is_separated(). Returns how many are new.
   int add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
   /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair of cloth and
-  /// obstacle cannot be separated, exempts the cloth from the obstacle. Unless `may_pinch`, only cloth that this
-  /// obstacle pinches already may be exempted; otherwise the result is not separated. If `may_move_pins` is false and a
-  /// pinned particle had to move, the result is not separated and nothing is exempted. `which`: see Planes::kinds_of().
+  /// obstacle cannot be separated, exempts the cloth from the obstacle. The result is not `separated` if other cloth
+  /// than this obstacle pinches already would be exempted and `may_pinch` is false, or if a pinned particle had to move
+  /// and `may_move_pins` is false. Nothing is exempted then. `which`: see Planes::kinds_of().
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
   /// Number of exempted cloth triangles, each counted once per obstacle limb.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
-  /// The pinched cloths and their obstacles, with places at x [m], the start of the last step.
+  /// The pinched cloths and their obstacles, with positions at x [m], the start of the last step.
   std::vector<Pinch> pinches(std::span<const Vec3> x) const {
     return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
-  /// The exempted triangles. exempt() adds one between two steps, for an engine that replaces another.
+  /// The exempted triangles. exempt() copies one from another engine that this one replaces; call it between two steps.
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Number of near pairs within the detection distance at the expected end of the last step. Some pairs are searched
-  /// at the start of the step instead: with springs, those that no plane of constant direction separates; with velocity
-  /// constraints, all.
+  /// Number of pairs within the detection distance at the expected end of the last step. At the start instead: with
+  /// springs, pairs that no plane of constant direction separates; with velocity constraints, all.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Smallest distance of these pairs [m]; infinite if there are none.
   double min_distance() const;
 
-  /// All pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as
-  /// long as failing().
+  /// Pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as
+  /// failing().
   std::span<const CornerPair> find_intersections(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
   /// Detection distance: features closer than this are near [m].
   double detection_distance() const { return candidates_.detection_distance(); }
-  /// Whether no particle can meet a body, an obstacle, in the current step. If so, its motion has no effect.
+  /// Whether this body is an obstacle that no particle can meet in the current step. If so, its motion has no effect.
   bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
 
  private:
@@ -131,21 +133,21 @@ class Engine {
 
   Bodies bodies_;
   CandidateCache candidates_;
-  bool has_self_collision_;  // cloth against itself and other cloth
+  bool has_self_collision_;  // of cloth with itself and other cloth
   Separation separation_;
   ProximityFinder finder_;
-  std::vector<Vec3> gathered_at_;               // where the near features were gathered [m]; empty: not gathered
-  std::optional<CoherentDetection> coherence_;  // if enabled, keeps pairs and closest points instead of the cache
+  std::vector<Vec3> gathered_at_;               // positions for which finder_ gathered features [m]; empty: none
+  std::optional<CoherentDetection> coherence_;  // if enabled, keeps pairs and closest points instead of candidates_
   ContactBuilder builder_;
   ContactResponse response_;
-  std::vector<Vec3> predicted_walls_x_t1_;
+  std::vector<Vec3> predicted_walls_x_t1_;  // see ContactResponse::predict_wall_contacts() [m]
   PinchedPairs pinched_;
   CarriedStarts carried_;
 
   double step_ = 0;                                 // h [s]
   std::span<const Vec3> x_t0_;                      // start of the step
-  std::vector<PinchedPairs::Push> pinched_pushes_;  // contacts that push pinched cloth out, in this step
-  std::vector<CornerPair> pushed_pairs_;            // pairs for which push_apart() was called since begin_step()
+  std::vector<PinchedPairs::Push> pinched_pushes_;  // pushes of pinched cloth in this step
+  std::vector<CornerPair> pushed_pairs_;            // pairs that failed before calls of push_apart() in this step
   std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
   std::span<const CornerPair> failing_;             // of the last call of find_failing()
 };

@@ -43,7 +43,6 @@ void Air::add(const Evaluation& at) const {
   ranges_of_triangles_.for_each(at.range, triangles_.size(), [&](std::size_t p) { add_drag(triangles_[p], at); });
 }
 
-// Adds the drag on four faces.
 template <std::size_t Corners>
 void Air::add_drag(const Faces<Corners>& faces, const Evaluation& at) const {
   // Area vector of a quad, planar or not: half the cross product of its diagonals.

@@ -19,11 +19,11 @@ struct AirParameters {
 /// Quadratic drag along the normal of each cell or triangle, divided equally among its corners: f = −½ ρ c A ‖v_n‖ v_n,
 /// with the density ρ, the drag coefficient c, the area A and the velocity v_n along the normal, relative to the air.
 ///
-/// The drag is implicit although it is not stiff. If it were evaluated once per step at the initial velocity (Etzmuß et
-/// al. 2001, "Time integration"), terminal velocities and folds in steady wind would depend on the step size. The
-/// matrix contains the derivative with respect to velocities, lumped on the diagonal: an upper bound of the full
-/// derivative, exact if the corners of a face change velocity together. The derivatives of normals and areas are
-/// neglected.
+/// The drag is implicit although it is not stiff. If it were evaluated once per step, at the initial velocity (Etzmuß
+/// et al. 2001, "Time integration"), terminal velocities and folds in steady wind would depend on the step size. The
+/// matrix contains the derivative of the drag with respect to velocities, lumped on the diagonal. This is an upper
+/// bound of the full derivative, and exact if all corners of a face change their velocity alike. The derivatives of
+/// normals and areas are neglected.
 class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);

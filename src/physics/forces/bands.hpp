@@ -8,27 +8,28 @@
 
 namespace weft::forces {
 
-/// The bands of a sheet. A piece of an elastic band has the energy ½ k r (l / r − 1)²: length l, rest length r,
-/// stiffness k [N]. A hem has the energy ½ E L ‖s''‖² at each particle between two pieces: bending stiffness E [N·m²],
-/// second difference of the positions s'', mean length of both pieces in the pattern L. A hem is straight at rest: if
-/// its edge is curved in the pattern with radius R, the hem pulls with E / R² [N], which is negligible beside the
-/// stiffness of cloth. A seam allowance is an elastic band as stiff as a strip of cloth of its width.
+/// The bands of a sheet. A piece of an elastic band, with length l, rest length r and stiffness k [N], has the energy ½
+/// k r (l/r − 1)². At each particle between two pieces, a hem has the energy ½ E L ‖s''‖² with the bending stiffness E
+/// [N·m²], the second difference s'' of the positions, and the mean length L of both pieces in the pattern. A hem is
+/// straight at rest. If its edge has a radius R in the pattern, the hem therefore acts on the cloth with a force of
+/// about E/R² [N], which is negligible beside the forces of the cloth. A seam allowance is an elastic band as stiff as
+/// a strip of cloth of its width.
 class Bands final : public Force {
  public:
-  /// `stretch`: stiffness of the cloth [N/m].
+  /// `stretch`: stretch stiffness of the cloth [N/m].
   Bands(const mesh::Sheet& sheet, Index first, double stretch);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void partition(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range evaluates all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::Assembly& assembly) const override;
 
-  /// For sewn sheets: interpolates the rest lengths of all pieces between those of the start (progress 0) and those of
-  /// the pattern (progress 1).
+  /// For sewn sheets: interpolates the rest lengths of all pieces between the lengths at the start (progress 0) and the
+  /// rest lengths in the pattern (progress 1).
   void interpolate_rest_shape(double progress);
 
  private:

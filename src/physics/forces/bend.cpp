@@ -11,7 +11,7 @@ template <class Differences, class Points>
   return sum;
 }
 
-// Adds size × weights[a] × weights[b] to the scalar of each pair of particles a < b.
+// Adds size × weights[a] × weights[b] to the Assembly's scalar of each pair of particles a < b.
 template <class Differences>
 void add_pairs(const Differences& d, const Lanes& size, const solver::AssemblyRows& assembly) {
   for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a) {
@@ -35,7 +35,7 @@ void Bend::set_held(std::span<const char> held) {
 }
 
 // Only weights and areas depend on `held`. Every call creates differences of the same particles in the same order, so
-// that the pattern of the Jacobian does not change.
+// that the sparsity pattern of the Jacobian does not change.
 void Bend::create_differences(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
@@ -61,16 +61,16 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
   const std::size_t lane = size++ % 4;
   if (packs.size() < packs_of(size)) packs.emplace_back();
   Differences<Count>& pack = packs[packs_of(size) - 1];
-  // The following lanes may stay unused: they repeat this difference, with area 0.
+  // Fills the following lanes, too: until a later call overwrites them, they repeat this difference with area 0.
   for (std::size_t l = lane; l < 4; ++l) {
     for (std::size_t k = 0; k < Count; ++k) pack.particles[k][l] = particles[k], pack.weights[k][l] = weights[k];
     pack.area[l] = l == lane ? area : 0;
   }
 }
 
-// Adds the second derivative at the middle one of three particles; exact for parabolas. This derivative is the change
-// of slope, divided by the length in which it happens: the mean of both spacings, or at a clamp half of the free
-// spacing (Bend). The weights sum to exactly zero, so that a translation adds no rounding.
+// Adds the second derivative at the middle one of three particles; exact for parabolas. It is the change of slope,
+// divided by the length over which the slope changes: the mean of both spacings, or at a clamp half of the free spacing
+// (see Bend). The weights sum to zero, so that a translation causes no curvature.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
@@ -120,7 +120,7 @@ void Bend::add(const Evaluation& at) const {
 
 // The stiffness of damping is proportional to c cᵀ, with c as in BendDamping. The matrix contains ‖c‖² I instead, so
 // that all of bending needs scalars only, no 3×3 blocks. Along c, which is nearly the normal, both are equal; across c,
-// the membrane is far stiffer.
+// the stretch stiffness is usually far greater.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

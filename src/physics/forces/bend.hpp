@@ -9,20 +9,20 @@
 
 namespace weft::forces {
 
-/// The bending force f = −B Δ² s along the normal N (Etzmuß et al. 2001, "Elastic Model") is the restoring force of a
-/// plate with rigidity B, Poisson's ratio ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²). This class
-/// discretises the energy by central differences on grid lines (s_uu, s_vv) and in cells (s_uv). The energy also
-/// determines the forces at free edges.
+/// The bending force f = −B Δ² s along the normal N of the surface s(u, v) (Etzmuß et al. 2001, "Elastic Model") is the
+/// restoring force of a plate with rigidity B, Poisson's ratio ν = 0 and energy density ½ B (‖s_uu‖² + 2 ‖s_uv‖² +
+/// ‖s_vv‖²). This class discretises the energy by central differences on grid lines (s_uu, s_vv) and in cells (s_uv).
+/// The energy also determines the forces at free edges.
 ///
-/// The full second differences are used, not their component along N. On an inextensible sheet both are equal. The
-/// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
-/// "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components add B/l² to the stretch
-/// stiffness: for cotton at a spacing l = 1 cm, 0.5 N/m are added to 1000 N/m.
+/// The energy contains the full second differences, not only their components along N. On an inextensible sheet both
+/// are equal. The energy is then quadratic in the positions, so that its Jacobian is constant, positive semidefinite,
+/// and assembled once (Bergou et al., "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane
+/// components add B/l² to the stretch stiffness: for cotton at a spacing l = 1 cm, 0.5 N/m to 1000 N/m.
 ///
-/// A difference covers half a spacing on either side of its middle particle. If the middle and only one end are held,
-/// the held side keeps its direction, and the other half spacing contains the whole change of direction: the clamp acts
-/// at the last held particle. If both halves counted, the clamp would act half a spacing farther inside, an error of
-/// first order. For viscosity and friction see BendDamping.
+/// A difference on a line covers half a spacing on either side of its middle particle. If the middle particle and only
+/// one of the others are held, the held side keeps its direction. The difference then covers only the half spacing on
+/// the free side, so that the clamp acts at the last held particle. If it covered both halves, the clamp would act half
+/// a spacing farther inside, an error of first order. For viscosity and friction see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
@@ -47,7 +47,7 @@ class Bend final : public Force {
     std::array<Four, Count> particles{};
     std::array<Lanes, Count> weights{};
     Lanes area{};                                       // [m²]
-    std::array<Four, Count*(Count - 1) / 2> scalars{};  // of their pairs, 01, 02, ...
+    std::array<Four, Count*(Count - 1) / 2> scalars{};  // per pair 01, 02, ...: Assembly::scalar()
   };
   /// All differences of one kind: along lines, or in cells.
   template <std::size_t Count>

@@ -6,8 +6,8 @@
 namespace weft::forces {
 namespace {
 
-// Smallest length of a piece, relative to its rest length. Coinciding particles have no direction; the tiny length
-// keeps the matrix finite.
+// Lower bound of a piece's length, relative to its rest length. It keeps the matrix finite: a piece of length 0 has no
+// direction.
 constexpr double kMinPieceStretch = 1e-12;
 
 std::size_t slot(Index i) {
@@ -57,7 +57,8 @@ void Cord::compute_weights(Turn& turn) const {
   turn.weights = {one, -(one + other), other};
 }
 
-// If the middle and one end are held, the free half piece contains the whole change of direction; see Bend.
+// Clamps: if the middle and only one end are held, the second difference covers only the half piece on the free side;
+// see Bend.
 void Cord::set_held(std::span<const char> held) {
   for (Turn& turn : turns_) {
     const auto is_held = [&](std::size_t k) { return held[slot(turn.particles[k])] != 0; };
@@ -136,7 +137,7 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   const Vec3 n = d / length, across = v - n.dot(v) * n;
   const double speed = across.norm();
   if (!(speed > 0)) return;
-  // Drag of one end, divided by the squared speed [kg/m].
+  // Drag on one end, divided by the squared speed [kg/m].
   const double coefficient = 0.25 * parameters_.air_density * parameters_.drag * parameters_.diameter * length;
   const auto drag = solver::padded<double>(coefficient * speed * across);
   at.force.subtract(a, drag);

@@ -22,10 +22,11 @@ struct CordParameters {
 /// The forces within one chain.
 ///
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
-/// / r). Bending: each particle between two pieces has the energy ½ EI L ‖s''‖², where s'' is the second difference of
-/// the positions for the rest lengths, and L is the mean of both lengths (as in Bend on lines, clamps included). The
-/// cord is straight at rest. For viscosity of bending see BendDamping. Air: the drag on a piece is −½ ρ c d l ‖v_n‖
-/// v_n, half at either end, where v_n is the component across the piece of its velocity relative to the air.
+/// / r). Bending: each particle between two pieces has the energy ½ EI L ‖s''‖². s'' is the second difference of the
+/// positions with the rest lengths as spacings, and L is the mean of both rest lengths; at clamps they are as in Bend.
+/// The cord is straight at rest. For viscosity of bending see BendDamping. Air: the drag on a piece is −½ ρ c d l ‖v_n‖
+/// v_n, half of it at either end. v_n is the piece's velocity relative to the air, without its component along the
+/// piece.
 class Cord final : public Membrane {
  public:
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
@@ -33,7 +34,7 @@ class Cord final : public Membrane {
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void partition(std::span<const Index> /*bounds*/) override {}  // every range visits all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range evaluates all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

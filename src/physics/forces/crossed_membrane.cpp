@@ -13,13 +13,14 @@ namespace {
 
 // Smallest relative length, as kMinStretch of TriangleMembrane.
 constexpr double kCollapsed = 1e-12;
-// θ: fraction of ⟨g²⟩ that enters the lengths. At 1, a cell that bends along one direction becomes narrower along the
-// other, while its neighbours and clamps do not (measured: errors of a cantilever of 16 cells at 1e4, 1e5 and 1e6 N/m
-// are −0.7, −3.5 and −8.1 % at 1; 0.1, −0.5 and −2.8 % at a quarter; 0.2, 0.1 and −0.8 % at a tenth). Smaller values
-// flatten cells less under tension.
+// θ: fraction of ⟨g²⟩ that enters the lengths. With θ = 1, a cell that bends along one direction becomes narrower along
+// the other, but its neighbours and clamps do not. (Measured: errors of the tip of a cantilever of 16 cells with
+// stretch stiffnesses of 1e4, 1e5 and 1e6 N/m. θ = 1: −0.7, −3.5 and −8.1 %; 1/4: 0.1, −0.5 and −2.8 %; 1/10: 0.2, 0.1
+// and −0.8 %.) The smaller θ, the less tension flattens cells.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The normal turns in proportion to 1 / ‖D₁ × D₂‖; below S₀, it turns too
-// fast to be a reference for the middle (measured: with S₀ at a tenth, a pin that pulls leather reduces steps to 1 µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The rate at which the normal turns is proportional to 1/‖D₁ × D₂‖; in
+// folded cells it turns too fast to be a reference for the middle (measured: with a tenth in place of this half,
+// leather that a pin pulls needs steps of 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -30,8 +31,8 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
 // Weights of the corners in the twist; the middle has none.
 constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
-// Stiffness across a thread due to tension (see Lateral). clamped_lateral() keeps it at 0 or above, so that the matrix
-// is positive semidefinite (as in Stretch).
+// See CrossedMembrane::Lateral. clamped_lateral() is never negative, so that the matrix is positive semidefinite (as in
+// Stretch).
 double exact_lateral(double length) {
   return 1 - 1 / length;
 }
@@ -231,10 +232,10 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
   return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
-// Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the relative lengths L, with stretch stiffness k and viscosity η. For
-// shear, sums the same outer product, without `lateral`. Then adds the geometric stiffness (that of the stresses):
-// across n, with the gradients of the flat cell; along n, with those of a cell with its middle at the mean of the
-// corners, plus the stiffness of the height; in all directions, the stiffness of the twist.
+// Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the relative lengths L, with the stretch stiffness k and the viscosity η,
+// and the same for shear without `lateral`. Then adds the geometric stiffness (that of the stresses): across n, with
+// the gradients of the flat cell; along n, with those of a cell with its middle at the mean of the corners, plus the
+// stiffness of the height; in all directions, the stiffness of the twist.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

@@ -5,21 +5,22 @@
 
 namespace weft::forces {
 
-/// TriangleMembrane without membrane locking (spurious bending stiffness). If four triangles keep their lengths, the
-/// middle m of their cell stays in the plane of its corners a, b, c, d: cells stay flat, and kinks between cells
-/// replace bending. Here the height w of the middle above the mean of the corners, along the normal n of the diagonals,
-/// lengthens all four triangles equally, instead of each by its own inclination. The derivatives s_u and s_v are those
-/// of the flat cell with its middle at m' = m − w n, and
+/// TriangleMembrane without membrane locking (spurious bending stiffness). If the four triangles of a cell do not
+/// stretch, the middle m of the cell stays in the plane of the corners a, b, c, d: a TriangleMembrane of stiff threads
+/// bends only between cells. Here w is the height of the middle above the mean of the corners, along the normal n of
+/// both diagonals. It lengthens all four triangles equally, instead of each by its own inclination. The derivatives s_u
+/// and s_v are those of the flat cell with its middle at m' = m − w n, and
 ///
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
 ///
-/// where g is the gradient of the middle's weight in a triangle, and ⟨⟩ the average over the cell. θ = kHeightFraction
-/// is small, so that tension still flattens cells. t = a − b + c − d is the twist of the cell. If the threads at two
-/// opposite sides are skew, the vector of the thread halfway between them is their mean. Its square is exactly ‖t‖² / 4
-/// less than the mean of their squares; the last term compensates this. Plane parallelograms have w = 0 and t = 0:
-/// nothing changes. n = D₁ × D₂ / S with the diagonals D₁ = c − a, D₂ = d − b and S = ‖D₁ × D₂‖; for folded cells with
-/// ‖D₁ × D₂‖ < S₀, S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that w and t count less, the more a cell is folded. (Chen et al.,
-/// "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices against locking.)
+/// where g is the gradient of the middle's barycentric coordinate in a triangle, and ⟨⟩ is the average over the cell. θ
+/// = kHeightFraction is positive, so that tension flattens cells. t = a − b + c − d is the twist of the cell. If the
+/// threads at two opposite sides are skew, the vector of the thread halfway between them is their mean. Its square is
+/// exactly ‖t‖²/4 less than the mean of their squares; the last term compensates this. A plane parallelogram has w = 0
+/// and t = 0, and the same energy as in a TriangleMembrane. The normal is n = D₁ × D₂ / S with the diagonals D₁ = c − a
+/// and D₂ = d − b and S = ‖D₁ × D₂‖. A cell with ‖D₁ × D₂‖ < S₀ is folded; then S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that
+/// ‖n‖ and thus the terms of w and t fall to zero as the cell folds. (Against the same locking, Chen et al.,
+/// "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
   /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
@@ -29,8 +30,8 @@ class CrossedMembrane final : public TriangleMembrane {
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
   void partition(std::span<const Index> bounds) override;
-  /// The matrix and add_jacobian() contain the Gauss-Newton part and the stiffness of elastic stresses, but neither the
-  /// stiffness that stresses add because n changes, nor the stiffness of viscous stresses.
+  /// The matrix and add_jacobian() contain the Gauss-Newton part and the geometric stiffness of elastic stresses. They
+  /// omit its part from changes of n, and the geometric stiffness of viscous stresses.
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -64,7 +65,8 @@ class CrossedMembrane final : public TriangleMembrane {
   static Vec3 normal_change(const State& state, const Vec3& product);
   static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
   static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
-  /// Stiffness across a thread due to tension, relative to its stretch stiffness, as a function of its relative length.
+  /// Stiffness across a thread from its tension, relative to its stretch stiffness, as a function of its relative
+  /// length.
   using Lateral = double (*)(double length);
   using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
   static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);

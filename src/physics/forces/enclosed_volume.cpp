@@ -10,14 +10,15 @@
 namespace weft::forces {
 namespace {
 
-// Volume up to which a surface counts as flat, relative to its area to the power 3/2 (sphere: 0.09, rounding: 1e-16).
+// Volume up to which a surface counts as flat, relative to its area to the power 3/2. This ratio is 0.09 for a sphere,
+// and 1e-16 by rounding for a flat surface.
 constexpr double kFlatVolume = 1e-9;
 
 std::size_t index_of(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-// Loops of border edges. Each edge has the opposite direction as in its triangle.
+// Loops of border edges. Each edge runs opposite to its direction in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
   // A border edge is one whose reverse is in no triangle.
   std::map<std::array<Index, 2>, int> runs;
@@ -73,7 +74,7 @@ double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradien
   const auto place = [&](Index i) -> const Vec3& {
     return index_of(i) < x.size() ? x[index_of(i)] : middles[index_of(i) - x.size()];
   };
-  // Positions relative to the vertex itself keep the products accurate far from the origin.
+  // Positions relative to vertex i itself keep the products accurate far from the origin.
   const auto derivative = [&](std::size_t i) {
     const Vec3& own = place(static_cast<Index>(i));
     Vec3 sum = Vec3::Zero();

@@ -10,16 +10,18 @@
 
 namespace weft::forces {
 
-/// The volume inside a triangle surface. Triangles from the edges of each border to the mean of the border's particles
-/// close its opening, so that the volume does not depend on the origin. Volumes of separate surfaces are added.
+/// The volume inside a triangle surface. If the surface has openings, triangles from the edges of each border to the
+/// mean of the border's particles close them; otherwise the volume would depend on the origin. Volumes of separate
+/// surfaces are added.
 ///
-/// V = 1/3 Σ x_i · ∂V/∂x_i and ∂V/∂x_i = 1/6 Σ x_j × x_k over the triangles (i, j, k) of the vertex star of i: a third
-/// of their area vectors. The derivative with respect to a border's mean is divided equally among the border's
-/// particles.
+/// V = 1/3 Σ x_i · ∂V/∂x_i. The derivative ∂V/∂x_i = 1/6 Σ x_j × x_k, over the triangles (i, j, k) of the vertex star
+/// of i, is a third of the sum of their area vectors. The derivative with respect to a border's mean is divided equally
+/// among the border's particles.
 class EnclosedVolume {
  public:
-  /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign is chosen so that the
-  /// volume at `start` [m] is positive; if the surface is flat there, the front of the triangles is outside.
+  /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign of the volume is such
+  /// that the surface at `start` [m] has a positive volume; if the surface is flat at `start`, the front of the
+  /// triangles is outside.
   EnclosedVolume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> start);
 
   /// Returns the volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] into `gradient`, which has the same

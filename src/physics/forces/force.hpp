@@ -1,4 +1,4 @@
-// Interface and data of all forces of the cloth.
+// Interface of all forces on a cloth, a rope or a rigid body.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,7 @@
 
 namespace weft::forces {
 
-/// The forces on particles [begin, end). Ignores forces that are added to other particles.
+/// Sums the forces on particles [begin, end). Ignores forces on other particles, which another thread computes.
 class ForceRows {
  public:
   ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
@@ -37,29 +37,31 @@ class ForceRows {
 
 struct LockLinearisation;
 
-/// One evaluation of the forces at (x, v). A PaddedVec3 holds three numbers and a zero.
+/// Input and output of one evaluation of the forces at (x, v).
 struct Evaluation {
   std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
   ForceRows force;                                ///< receives the forces f [N]
-  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part of add_constant_stiffness(). Each term is made symmetric and
-  /// positive semidefinite, as conjugate gradients and line search require. Empty: forces only.
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part of add_constant_stiffness(). Each force makes its term
+  /// symmetric and positive semidefinite, as conjugate gradients and the line search require. Empty: forces only.
   solver::AssemblyRows assembly = {};
-  double rate = 0;  ///< dv/dx of the integration scheme [1/s]: v = rate (x − x̂), x̂ fixed in a step; 0: v is fixed
-  /// Earlier positions whose weighted sum is x̂ (see Past). Empty: rates of strain q are ∂q/∂x v.
+  /// dv/dx of the integration method [1/s]: v = rate (x − x̂), where x̂ is constant in a step; 0: v is constant.
+  double rate = 0;
+  /// Earlier positions whose weighted sum is x̂ (see Past). Empty: the rate of a strain q is ∂q/∂x v.
   std::span<const Past> past = {};
-  /// Range of Force::partition() to evaluate; kAll: everything.
+  /// Index of the range of Force::partition() to evaluate; kAll: all particles.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
   /// Velocity of the air at each particle [m/s]. If empty, each force uses its own uniform wind.
   std::span<const solver::PaddedVec3<double>> air_velocity = {};
-  /// Extensions at which StretchLimit evaluates its matrix (its forces are always those at x); null: at x, too.
+  /// Extensions of threads at which StretchLimit linearises its stress for the matrix; null: at x. Its forces are
+  /// always those at x.
   const LockLinearisation* locks = nullptr;
 
   /// Rate of a quantity q of the positions. `now` is q(x), at_positions(y) returns q at earlier positions y, and
-  /// by_velocity() returns ∂q/∂x v, which is used if `past` is empty. With ∂q/∂x v and implicit Euler, an edge that
-  /// turns by θ in a step would seem to lengthen by the fraction 1 − cos θ. Stiff viscosity would shorten the edge by 1
-  /// − cos θ in every step, and create energy.
+  /// by_velocity() returns ∂q/∂x v, which is used if `past` is empty. Why differences: if an edge turns by θ in a step
+  /// of implicit Euler, ∂q/∂x v counts this as a lengthening by the fraction 1 − cos θ. Stiff viscosity would then
+  /// shorten the edge by that fraction in every step, and add energy.
   template <class Quantity, class AtPositions, class ByVelocity>
   Quantity rate_of(const Quantity& now, const AtPositions& at_positions, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -69,8 +71,8 @@ struct Evaluation {
   }
 };
 
-/// A force on the particles of one cloth. Constructors of forces take `first`, the cloth's first particle in the global
-/// numbering.
+/// A force on the particles of one cloth, rope or rigid body. Constructors of forces take `first`, its first particle
+/// in the global numbering.
 class Force {
  public:
   virtual ~Force() = default;
@@ -79,7 +81,7 @@ class Force {
   virtual void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const = 0;
   /// Whether everything that the force adds to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
-  /// Looks up the blocks of the pairs. Call once, when the pattern is known.
+  /// Looks up the matrix blocks of these pairs. Call once, when the sparsity pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
 
   /// Prepares ranges of particles that threads may evaluate at the same time: range r is [bounds[r], bounds[r + 1]).
@@ -90,22 +92,22 @@ class Force {
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that does not depend on x, if there is one; only set_held() changes this part. add() adds
-  /// the forces of this part, but not its matrix.
+  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. Only set_held() and Cord::set_length_ratio()
+  /// change it. add() adds the forces of this part, but not its matrix.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
-  /// Adds the exact −(∂f/∂x + rate ∂f/∂v), with the rates of an empty `Evaluation::past`. It is indefinite under
-  /// compression and unsymmetric with viscosity. For vibrations and tests. Exceptions: CrossedMembrane omits parts, and
-  /// Cord its air drag; Air and Rigidity add nothing.
+  /// For vibrations and tests: adds the exact −(∂f/∂x + rate ∂f/∂v), with rates of strain as if `Evaluation::past` were
+  /// empty. It is indefinite under compression and unsymmetric with viscosity. Exceptions: CrossedMembrane omits parts,
+  /// and Cord its air drag; Air and Rigidity add nothing.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 
-  /// Sets which particles of all cloths are held or moved from now on: a clamp changes the stiffness of the free
-  /// particles beside it. The pattern of the Jacobian does not change.
+  /// Sets which particles are held, at rest or along a path: a clamp changes the bending stiffness of the free
+  /// particles beside it. `held`: per particle of all cloths. The sparsity pattern of the Jacobian does not change.
   virtual void set_held(std::span<const char> /*held*/) {}
 };
 
-/// A force that resists deformation within the sheet or along a cord, and measures its strain.
+/// A force against strain in the plane of a sheet or along a cord. It also measures this strain.
 class Membrane : public Force {
  public:
   /// Largest relative change of length of a piece of weft, warp or cord, in absolute value.
@@ -116,7 +118,8 @@ class Membrane : public Force {
 
 /// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
-/// Lumped masses of triangles [kg], a third at each corner, and of bands and seam allowances, half at each end.
+/// Lumped masses of a sheet [kg]: a third of each triangle at each corner, half of each piece of a band or seam
+/// allowance at each end.
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

@@ -1,4 +1,4 @@
-// Forces on four elements at a time (edges, cells, triangles), one per lane of a register.
+// Arithmetic on four elements at a time (edges, cells, triangles): one element per lane of a register.
 #pragma once
 
 #include <Eigen/Core>
@@ -107,7 +107,7 @@ inline BlockLanes outer(const VecLanes& a, const VecLanes& b, const Lanes& s = L
   return {a.x * b.x + s, a.y * b.x, a.z * b.x, a.x * b.y,    a.y * b.y + s,
           a.z * b.y,     a.x * b.z, a.y * b.z, a.z * b.z + s};
 }
-/// The block of each element, packed as in the matrix.
+/// The block of each element, in the order of the matrix's entries.
 inline std::array<solver::PackedBlock, 4> packed(const BlockLanes& m) {
   const auto low = transposed(m[0], m[1], m[2], m[3]), high = transposed(m[4], m[5], m[6], m[7]);
   std::array<solver::PackedBlock, 4> blocks;
@@ -122,8 +122,8 @@ inline void add_scalars(const solver::AssemblyRows& assembly, const Four& scalar
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
-/// Calls body(index, lane, is_used) for the four lanes of pack number `pack` in a list of `count` elements. Lanes
-/// behind the last element repeat it, with is_used false.
+/// Calls body(index, lane, is_used) for the four lanes of pack number `pack` of `count` elements. In the last pack,
+/// lanes behind the last element repeat it, with is_used = false.
 template <class Body>
 void for_each_lane(std::size_t count, std::size_t pack, const Body& body) {
   for (std::size_t l = 0; l < 4; ++l) body(std::min(4 * pack + l, count - 1), l, 4 * pack + l < count);
@@ -133,7 +133,7 @@ inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// Ranges::partition() for packs of four elements; all_of(pack) lists their particles as Fours.
+/// Ranges::partition() for packs of four elements. all_of(pack) returns their particles: one Four per corner.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
   ranges.partition(bounds, packs.size(), [&](std::size_t p, const auto& visit) {

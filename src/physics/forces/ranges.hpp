@@ -10,8 +10,9 @@
 
 namespace weft::forces {
 
-/// For each range of particles, the elements (or packs of elements) of a list that act on a particle in it. Elements at
-/// a bound are in several ranges; each range adds only to its own particles (ForceRows, AssemblyRows).
+/// For each range of particles, the elements (or packs of elements) of a list that act on a particle in it. An element
+/// with particles of several ranges is in each of them; each range adds only to its own particles (ForceRows,
+/// AssemblyRows).
 class Ranges {
  public:
   /// `bounds`: see Force::partition(). touch(element, visit) must call visit(particle) for all particles of an element.
@@ -29,7 +30,8 @@ class Ranges {
       });
   }
 
-  /// Calls body(element) for the elements of a range, or for all `count` if the range is Evaluation::kAll, in order.
+  /// Calls body(element) for the elements of a range, or for all `count` elements if the range is Evaluation::kAll, in
+  /// ascending order.
   template <class Body>
   void for_each(std::size_t range, std::size_t count, const Body& body) const {
     if (range == Evaluation::kAll) {

@@ -48,7 +48,7 @@ void Rigidity::add(const Evaluation& at) const {
     at.force.add(first_ + static_cast<Index>(k),
                  solver::padded<double>(Vec3(-0.25 * stress * mesh::RigidFrame::corner(k))));
   if (!at.assembly) return;
-  // Omits the stiffness that the stress itself adds: it is small but may be indefinite.
+  // Omits the geometric stiffness (that of the stress), which is small but may be indefinite.
   const Mat3 affine_map = shape * deviations_.cwiseInverse().asDiagonal();  // A
   const Mat3 affine_shape = affine_map * shape.transpose();
   const double end_rate = time_to_end > 0 ? 2 : 1;

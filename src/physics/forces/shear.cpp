@@ -120,13 +120,15 @@ void Shear::add(const Evaluation& at) const {
   });
 }
 
-// The second derivative of c is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²); to stay positive semidefinite, the matrix keeps
-// only one of these squares, the one with the sign of the elastic stress. Opposite corners have opposite derivatives,
-// so four blocks, with signs, serve all pairs.
+// The second derivative of c = ⟨s_u, s_v⟩ is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the elastic stress, one of
+// these squares is positive and one negative; the matrix contains only the positive one, so that it stays positive
+// semidefinite. Opposite corners have opposite derivatives, so that the six pairs need only four different blocks, up
+// to their sign.
 void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
   const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);
   const Lanes size = cells.elasticity + at.rate * cells.viscosity;
-  // ∂c/∂x of corners 3 and 1; those of 0 and 2 are their negatives, also in the kept square.
+  // `main`, `cross`: ∂c/∂x of corners 3 and 1; those of corners 0 and 2 are the negatives. The same holds for the
+  // weights `main_half` and `cross_half` of corners 3 and 1 in the positive square.
   const VecLanes u_part = cells.half_u * s.sv, v_part = cells.half_v * s.su;
   const VecLanes main = u_part + v_part, cross = u_part - v_part;
   const Lanes main_half = cells.half_u + sign * cells.half_v, cross_half = cells.half_u - sign * cells.half_v;

@@ -15,12 +15,12 @@ struct ShearParameters {
 
 /// Eq. (1), entry 12, of Etzmuß et al. (2001): stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
 ///
-/// s_u and s_v are the derivatives of the positions along weft and warp: central differences in the middle of each
-/// cell, each the mean over two opposite edges, with an error of O(l²) for spacing l. The paper uses central
-/// differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), also with four particles per term, which vanish for
-/// any pattern that repeats at every second particle. The differences of this class both vanish only for the
-/// checkerboard pattern, which stretches the edges. The paper prints O(l³) for its difference; a test measures order 2
-/// for this one.
+/// s_u and s_v are the derivatives of the positions along weft and warp. In the middle of each cell, this class
+/// computes each of them as the mean of the differences along two opposite edges. The error is O(l²) for a spacing l: a
+/// test measures order 2. The paper uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), and
+/// states O(l³). These differences vanish for every pattern that repeats at every second particle, so the paper's shear
+/// does not resist it. The differences of this class both vanish only for the checkerboard pattern, which the edges of
+/// Stretch resist.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);
@@ -61,7 +61,6 @@ class Shear final : public Force {
   static StrainLanes strain(const Cells& cells, Points x);
   static void add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at);
 
-  /// Calls body(cell) for all cells, in order.
   template <class Body>
   void for_each_cell(const Body& body) const;
 

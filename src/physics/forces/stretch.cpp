@@ -64,7 +64,7 @@ void Stretch::add(const Evaluation& at) const {
   ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
     const Edges& edges = packs_[p];
     const VecLanes d = gather(at.x, edges.j) - gather(at.x, edges.i);
-    // A collapsed edge has no direction; the lower bound of its length keeps the matrix finite.
+    // An edge of length 0 has no direction; the lower bound of its length keeps the matrix finite.
     const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
     const VecLanes n = 1 / length * d;
     Lanes tension = edges.elasticity * (length - edges.rest_length);
@@ -81,17 +81,17 @@ void Stretch::add(const Evaluation& at) const {
     subtract(at.force, edges.j, pull);
     if (!at.assembly) return;
 
-    // Across the edge, tension adds stiffness. Compression would subtract stiffness; this is omitted, so that the
-    // matrix stays positive semidefinite.
+    // Across the edge, tension adds stiffness, and compression subtracts it. The matrix omits what compression
+    // subtracts, so that it stays positive semidefinite.
     const Lanes lateral = edges.elasticity * max(1 - edges.rest_length / length, lanes_of(0.0));
     const Lanes along = edges.elasticity + at.rate * edges.viscosity;
     forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
   });
 }
 
-// Includes d/dd of (n·w) n, where w is the relative velocity, because the direction n turns with the edge. This part is
-// unsymmetric and O(η‖w‖/l), so add() omits it from the matrix. The forces stay exact, but Newton's method then
-// converges only linearly.
+// Includes the derivative of (n·w) n with respect to the edge's direction n; w is the relative velocity of its ends.
+// This part, O(η‖w‖/l), is unsymmetric, so add() omits it from Newton's matrix. Newton's method then converges only
+// linearly.
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
   for_each_edge([&](const Edge& edge) {

@@ -19,7 +19,8 @@ struct StretchParameters {
 ///
 /// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
 /// force density of the paper, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force of
-/// an edge. Viscosity has the same form in the rate of strain: dissipation ½ η A (d/dt (‖d‖/l))².
+/// an edge. Viscosity has the same form, with the rate of strain instead of the strain: dissipation ½ η A (d/dt
+/// (‖d‖/l))².
 class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
@@ -32,9 +33,7 @@ class Stretch final : public Membrane {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Largest |‖d‖/l − 1| of all edges.
   double max_strain(std::span<const Vec3> x) const override;
-  /// Raises strains[particle − first] to the largest |‖d‖/l − 1| of the particle's edges.
   void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
 
  private:
@@ -50,7 +49,6 @@ class Stretch final : public Membrane {
     Lanes rest_length{}, elasticity{}, viscosity{};
   };
 
-  /// Calls body(edge) for all edges, in order.
   template <class Body>
   void for_each_edge(const Body& body) const;
 

@@ -7,8 +7,8 @@
 namespace weft::forces {
 namespace {
 
-// A piece needs some stiffness below the onset, so that its tension determines its extension. The solution does not
-// depend on the value.
+// A piece needs some stiffness below the onset, so that find_extension() has one solution. The solution of the step
+// does not depend on the value.
 StretchParameters with_min_stiffness(StretchParameters below) {
   constexpr double kMinStiffness = 1;  // [N/m]
   below.weft = std::max(below.weft, kMinStiffness), below.warp = std::max(below.warp, kMinStiffness);
@@ -19,8 +19,8 @@ StretchParameters with_min_stiffness(StretchParameters below) {
 constexpr int kMaxExtensionIterations = 20;
 constexpr double kExtensionTolerance = 1e-3;
 
-// Returns the extension with this tension [N/m], starting from an extension `e` with at least this tension. As the
-// tension is convex, Newton's method converges from above.
+// Returns the extension at which cloth and lock together have this tension [N/m]. The tension at `e` must not be
+// smaller. Newton's method then converges from above, as the tension is a convex function of the extension.
 double find_extension(const Lock& lock, double stiffness, double tension, double e) {
   if (tension <= stiffness * lock.onset()) return tension / stiffness;
   for (int k = 0; k < kMaxExtensionIterations; ++k) {
@@ -102,12 +102,12 @@ Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each piece that is beyond its onset, at x or (threads only) in `lag`.
-// block_of(a, b) returns the block of −∂f/∂x for corners a and b, linearised at `lag` if there is one.
+// Calls body(piece, corner_forces, block_of) for each piece that is beyond its onset at x, or (threads only) by `lag`.
+// block_of(a, b) returns the block of −∂f/∂x for corners a and b, linearised at `lag` if it is not null.
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {
-  // For nearly all pieces, the squared length suffices to show that they are below the onset.
+  // Compares squared lengths, because nearly all pieces are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
@@ -218,7 +218,7 @@ void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag
   }
 }
 
-// If `exact`, uses the whole second derivative of |sine|; else only its positive square, as Shear does.
+// If `exact`, uses the whole second derivative of the shear; else only its positive square, as Shear does.
 template <class Body>
 void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);

@@ -22,11 +22,11 @@ class Lock {
  public:
   /// Strain at which threads begin to lock, relative to the limit. Below it, the stress is exactly 0.
   static constexpr double kOnset = 0.7;
-  /// Stress at the limit [N/m]; at 1.1 times the limit it is 9,500. A ball at 100 m/s pulls with ρ v² / (2 √e), 3,500
-  /// to 9,000 N/m in the fabrics of film/scene/fabrics.hpp (a transverse wave along a thread of strain e, with the
-  /// density ρ per area and the speed v of the ball; Smith, McCrackin & Schiefer, "Stress-Strain Relationships in Yarns
-  /// Subjected to Rapid Impact Loading", 1958). Measured with 2e4 and a stress that is linear from the limit on:
-  /// Newton's method oscillates at the kink, and takes 1.2 times the iterations.
+  /// Stress at the limit [N/m]; at 1.1 times the limit the stress is 9,500 N/m. This suffices for the impact of a ball
+  /// at v = 100 m/s: a transverse wave along threads of strain e then causes the tension ρ v² / (2 √e), 3,500 to 9,000
+  /// N/m for the densities ρ [kg/m²] of film/scene/fabrics.hpp (Smith, McCrackin & Schiefer, "Stress-Strain
+  /// Relationships in Yarns Subjected to Rapid Impact Loading", 1958). Larger (measured: 2e4, with kStraight = 1):
+  /// Newton's method oscillates near the limit, and takes 1.2 times the iterations.
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;
 
@@ -50,22 +50,23 @@ class Lock {
   double onset_, span_;
 };
 
-/// Extensions at which Newton's method linearises the locks of a cloth's threads. At its extension, a piece has the
-/// tension that the last linearisation predicted: the tension is a dual unknown, as for contacts. If Newton's method
-/// linearised at the iterate, a piece would lose only a third of its excess over the onset per iteration.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads. At this extension, a piece of a
+/// thread has the tension that the last linearisation predicted: the tension is a dual unknown, as for contacts. If
+/// Newton's method linearised at the iterate, a piece would lose only a third of its excess over the onset per
+/// iteration, because the stress is cubic.
 struct LockLinearisation {
   std::vector<double> extensions;   ///< per piece of a thread
-  std::vector<std::uint32_t> near;  ///< pieces beyond the onset, in `extensions` or at the iterate
+  std::vector<std::uint32_t> near;  ///< pieces beyond the onset, by `extensions` or at the iterate
 };
 
-/// The energy of each piece of weft and warp is A · Lock::energy() at its extension ‖s‖ − 1, where A is the area that
-/// it covers. The energy of each cell or triangle of area A is A · Lock::energy() at its shear |⟨s_u, s_v⟩|. If both
-/// derivatives have unit length, this is the sine of the deviation of weft and warp from a right angle. Pieces, cells
-/// and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+/// A piece of weft or warp that covers the area A has the energy A · Lock::energy() at its extension ‖s‖ − 1. A cell or
+/// triangle of area A has the energy A · Lock::energy() at its shear |⟨s_u, s_v⟩|. If both derivatives have unit
+/// length, the shear is the sine of the deviation of weft and warp from a right angle. Pieces, cells, triangles and
+/// their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
 class StretchLimit final : public Force {
  public:
-  /// `stretch`: limit of the extension; `shear`: limit of the sine. Infinite: no limit. `below`: stiffness below the
-  /// onset.
+  /// `stretch`: limit of the extension; `shear`: limit of the shear. Infinite: no limit. `below`: parameters of the
+  /// cloth's Stretch or TriangleMembrane.
   StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
@@ -78,12 +79,13 @@ class StretchLimit final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Sets the extensions of `lag` to those at x, before the first iteration of a step.
+  /// Before the first iteration of a step: sets the extensions of `lag` to those at x.
   void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
-  /// Updates `lag` before the linearisation at x. `first`: whether this is the first iteration of a step, which keeps
-  /// the extensions because no tension is predicted yet.
+  /// Before each linearisation at x: updates `lag`. `first`: whether this is the first iteration of a step; it keeps
+  /// the extensions of begin(), as no tension has been predicted yet.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
-  /// For the pieces in `lag.near`: adds the force linearised at `lag` minus the exact force, at any x.
+  /// Replaces exact forces by linearised ones: for the pieces in `lag.near`, adds the force at x that is linearised at
+  /// `lag`, minus the exact force at x.
   void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
   /// Copies the current rest shape of `membrane`, the one that the constructor received.
@@ -107,7 +109,7 @@ class StretchLimit final : public Force {
     std::array<Index, kMaxThreadCorners> particles;
     std::array<double, kMaxThreadCorners> along;
     double area;       // covered area [m²]
-    double stiffness;  // below the onset [N/m]
+    double stiffness;  // of the cloth, without the lock [N/m]
   };
   /// A crossing of threads, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
   struct Crossing {
@@ -116,10 +118,11 @@ class StretchLimit final : public Force {
     Weights weft, warp;
     double area;  // [m²]
   };
-  /// Derivative of a piece's energy with respect to its corners: minus its forces [N].
+  /// Derivatives of a piece's energy with respect to its corners: minus the forces on them [N].
   using CornerForces = std::array<Vec3, kMaxCorners>;
 
-  /// Stress at e and stiffness of the Lock's tangent at `lag` [N/m]; both 0 if that stress is not positive.
+  /// The tangent to the Lock's stress at the extension `lag`: its value at e, and its slope [N/m]. Both are 0 if the
+  /// value is not positive.
   struct Tangent {
     double stress, stiffness;
   };

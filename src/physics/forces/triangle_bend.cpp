@@ -9,12 +9,12 @@ namespace weft::forces {
 
 namespace {
 
-// 2 ‖s_uv‖²: the mixed derivative counts twice.
+// Factors of the parts uu, vv and uv of the energy, whose sum over ab contains uv and vu.
 const Vec3 kMultiplicity(1, 1, 2);
-// Smallest rest curvature, times √area of the triangle. Smaller values are rounding errors and become 0.
+// Smallest rest curvature, times √area of the triangle (without unit). Smaller values are rounding errors and become 0.
 constexpr double kMinRestCurvature = 1e-9;
 
-/// The plane of a triangle: its unit normal, and the gradients of the corners' linear weights.
+/// The plane of a triangle: its unit normal, and the gradients of the barycentric coordinates.
 struct Plane {
   Vec3 normal;
   std::array<Vec3, 3> gradients;  // [1/m]
@@ -38,8 +38,8 @@ std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const
   return {solver::vec3_of(x[particles[0]]), solver::vec3_of(x[particles[1]]), solver::vec3_of(x[particles[2]])};
 }
 
-/// Returns the signed rest curvatures κ_uu, κ_vv and κ_uv; removes the rest shape's in-plane curvature from the
-/// stencil.
+/// Returns the signed rest curvatures κ_uu, κ_vv and κ_uv. Changes the weights of the stencil so that it subtracts the
+/// rest shape's in-plane curvature (see TriangleBend).
 Vec3 extract_rest_curvature(CurvatureStencil& stencil, double area, const std::array<Vec2, 3>& material,
                             std::span<const Vec3> rest) {
   Mat3 curved = Mat3::Zero();
@@ -80,7 +80,7 @@ void TriangleBend::set_held(std::span<const char> held) {
   rebuild_elements();
 }
 
-// Every call creates elements with the same particles in the same order, so the Jacobian keeps its pattern.
+// Every call creates elements with the same particles in the same order, so the Jacobian keeps its sparsity pattern.
 void TriangleBend::rebuild_elements() {
   elements_.clear(), particles_.clear(), weights_.clear();
   std::size_t pairs = 0;
@@ -96,7 +96,7 @@ void TriangleBend::rebuild_elements() {
     elements_.push_back({begin, begin + count, pairs, area, rest});
     pairs += count * (count - 1) / 2;
   }
-  weights_.resize(weights_.size() + 3);  // weights are loaded four at a time
+  weights_.resize(weights_.size() + 3);  // add_pairs() loads four weights at a time
 }
 
 TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Quad> x) const {
@@ -171,8 +171,8 @@ void TriangleBend::add(const Evaluation& at) const {
     Lanes area{};
     for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
 
-    // Moments for s_uu, s_vv and s_uv, and the stiffness of damping: as in Bend, with ‖c‖² I instead of c cᵀ (measured:
-    // the scene catwalk takes no more iterations).
+    // Moments for s_uu, s_vv and s_uv, and the stiffness of damping. As in Bend, this stiffness contains ‖c‖² I instead
+    // of c cᵀ (measured: the scene catwalk takes no more iterations).
     std::array<std::array<Quad, 4>, 3> moments;
     std::array<Lanes, 3> stiffness{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -199,7 +199,8 @@ void TriangleBend::add(const Evaluation& at) const {
   });
 }
 
-// Adds Σ_c stiffness[c] w_a[c] w_b[c], c over uu, vv and uv, for all pairs of particles with weights w, four at a time.
+// Adds Σ_c stiffness[c] w_a[c] w_b[c] for all pairs (a, b) of particles with weights w, where c is uu, vv and uv.
+// Computes four pairs at a time.
 void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
                              const solver::AssemblyRows& assembly) const {
   const std::size_t count = element.end - element.begin, stride = 4 * packs_of(count);
@@ -225,12 +226,13 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
   }
 }
 
-// Forces and stiffness of the energy −B A n·m, m = Σ κ_ab s_ab = Σ_k rest_weight(k) x_k. Calls push(k, force) for all
-// particles, more than once for corners, and add_block(a, b, block) for all pairs with a corner.
+// Forces and stiffness of the energy −B A n·m with m = Σ κ_ab s_ab = Σ_k rest_weight(k) x_k. Calls push(k, force) for
+// all particles, and twice for corners. Calls add_block(a, b, block) for all pairs that contain a corner; one pair may
+// get several blocks.
 //
-// With g_k the in-plane gradient of corner k's linear weight, δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j (g_k·δx_j) + n
-// Σ_j (g_k·g_j)(n·δx_j). If `exact` is false, the blocks are the Gauss-Newton matrix of ‖s_ab − κ_ab n‖² without its
-// constant part; together with that part, they are positive semidefinite.
+// If g_k is the gradient of corner k's barycentric coordinate, then δn = −Σ_k g_k (n·δx_k) and δg_k = −Σ_j g_j
+// (g_k·δx_j) + n Σ_j (g_k·g_j)(n·δx_j). If `exact` is false, the blocks are the Gauss-Newton matrix of ‖s_ab − κ_ab n‖²
+// without its constant part; together with that part, they are positive semidefinite.
 template <class Push, class AddBlock>
 void TriangleBend::rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners,
                                bool exact, const Push& push, const AddBlock& add_block) const {
@@ -268,7 +270,7 @@ void TriangleBend::add_rest_moment(const Element& element, const Curvature& curv
   const auto push = [&](std::size_t k, const Vec3& force) { at.force.add(particle[k], solver::padded<double>(force)); };
   const auto add_block = [&](std::size_t a, std::size_t b, const Mat3& block) {
     if (!at.assembly || particle[a] >= particle[b]) return;
-    // Index of the pair: all pairs of earlier rows, and the earlier ones of this row.
+    // The index of a pair (i, j) is the number of pairs before it, in the order 01, 02, ... 12, ...
     const std::size_t count = particle.size(), i = std::min(a, b), j = std::max(a, b);
     at.assembly.add(blocks_[element.pairs + i * (2 * count - i - 1) / 2 + (j - i - 1)], block);
   };

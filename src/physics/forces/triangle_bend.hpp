@@ -10,12 +10,12 @@ namespace weft::forces {
 /// The plate model of class Bend (for grids), for triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², where ab is uu, vv, uv
 /// and vu. B is the rigidity, A the area, s_ab the curvature vectors of CurvatureStencil, n the triangle's unit normal,
 /// and κ_ab the signed rest curvature, positive if the sheet bends toward its front. If the rest shape is curved, its
-/// own s_ab also have in-plane components. The stencil subtracts these as multiples of the triangle's current tangents
-/// s_u and s_v. So they turn with the triangle, and the rest shape has no energy.
+/// s_ab also have in-plane components. The stencil subtracts them as multiples of the triangle's tangents s_u and s_v,
+/// so that they turn with the triangle and the rest shape has no energy.
 ///
-/// The part without κ_ab is quadratic with a constant, definite Jacobian, as for grids. Triangles with rest curvature
-/// have another part, −B A Σ_ab κ_ab n·s_ab. Every evaluation computes its forces and its matrix anew. For viscosity
-/// and friction see BendDamping.
+/// The part of the energy without κ_ab is quadratic, with a constant and positive semidefinite Jacobian, as for grids.
+/// The part −B A Σ_ab κ_ab n·s_ab of triangles with rest curvature is not quadratic; every evaluation computes its
+/// forces and its matrix anew. For viscosity and friction see BendDamping.
 class TriangleBend final : public Force {
  public:
   /// `pinned`: per particle of all cloths, whether set_held() may hold it; these particles start held. Empty: none.
@@ -38,17 +38,17 @@ class TriangleBend final : public Force {
   struct Element {
     std::size_t begin, end;    // its range in particles_ and weights_, corners first
     std::size_t pairs;         // index of its first pair, in scalars_ and blocks_; order 01, 02, ... 12, ...
-    double area;               // [m²], times the reinforcement
+    double area;               // [m²], times Reinforcement::bend
     Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
   };
-  /// s_uu, s_vv and s_uv of one element, and of four elements.
+  /// s_uu, s_vv and s_uv [1/m] of one element, and of four elements.
   using Curvature = std::array<Quad, 3>;
   using CurvatureLanes = std::array<VecLanes, 3>;
   std::span<const Index> particles(const Element& e) const {
     return std::span(particles_).subspan(e.begin, e.end - e.begin);
   }
   Curvature curvature(const Element& element, std::span<const Quad> x) const;
-  Mat3 curvature(const Element& element, std::span<const Vec3> x) const;  // as columns
+  Mat3 curvature(const Element& element, std::span<const Vec3> x) const;  // s_uu, s_vv and s_uv as columns
   CurvatureLanes curvatures(std::size_t first, std::size_t count, std::span<const Quad> x) const;
   void rebuild_elements();
   void add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
@@ -67,8 +67,8 @@ class TriangleBend final : public Force {
   // Concatenated over all elements.
   std::vector<Index> particles_;
   std::vector<Quad> weights_;   // of s_uu, s_vv and s_uv [1/m²]
-  std::vector<Index> scalars_;  // of pairs
-  std::vector<Index> blocks_;   // of pairs, if any element is curved at rest; else empty
+  std::vector<Index> scalars_;  // per pair: Assembly::scalar()
+  std::vector<Index> blocks_;   // per pair: Assembly::block(), if any element is curved at rest; else empty
   Ranges ranges_;               // of packs of four elements
 };
 

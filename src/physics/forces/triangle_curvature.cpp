@@ -13,19 +13,21 @@ namespace {
 
 using Point = std::complex<double>;
 
-// Largest number of triangle rings around an edge whose vertices define its slope. One suffices for nearly all edges;
+// Maximum number of triangle rings around an edge whose vertices define its slope. One suffices for nearly all edges;
 // near a border, or if the vertices are nearly on a conic, two or three are necessary.
 constexpr int kMaxRings = 3;
-// Largest norm of the corrections of a slope's weights, relative to that of the uncorrected ones (across_opposite). A
-// larger correction makes the slope a small difference of large numbers; fit_quadratic() then adds a ring.
+// Maximum norm of the correction of a slope's weights, relative to the norm of the uncorrected weights
+// (across_opposite). A larger correction makes the slope a small difference of large numbers; fit_quadratic() then adds
+// a ring.
 constexpr double kMaxCorrection = 1;
-// Tolerance for rounding of the moments of a stencil whose coordinates are about one.
+// Tolerance for rounding errors of moments (see correct_weights), whose coordinates are about 1.
 constexpr double kMomentTolerance = 1e-9;
 
-/// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle [1/m].
+/// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle, as a
+/// weighted sum of the function's values at vertices [1/m].
 struct Slope {
   std::vector<std::pair<Index, double>> weights;
-  bool near_pin = false;  ///< a pinned triangle is near, so that held_ may change the weights
+  bool near_pin = false;  ///< a triangle of the patch has three pinned corners: held_ may change the weights
 };
 
 class Slopes {
@@ -41,9 +43,10 @@ class Slopes {
   struct Patch {
     std::vector<std::pair<Index, std::array<Point, 3>>> triangles;
     std::vector<std::pair<Index, Point>> vertices;
-    std::size_t last_ring = 0;  // index of its first triangle
+    std::size_t last_ring = 0;  // index of the first triangle of the last ring
   };
-  /// Coordinates for slopes: d = a along + b over, from the middle of the edge; operator() returns (a, b).
+  /// Oblique coordinates (a, b) of a point: point − middle = a along + b over. `middle` and `along` are those of the
+  /// edge; `over` is the vector between the two vertices opposite the edge.
   struct Axes {
     Point middle, along, over;
 
@@ -81,13 +84,13 @@ std::size_t Slopes::side_of(Index triangle, const mesh::Edge& edge) const {
   return static_cast<std::size_t>(std::find(of.begin(), of.end(), index) - of.begin());
 }
 
-// Unfolds the triangle beyond one side of patch.triangles[member], if it exists and is not in the patch.
+// Adds the triangle beyond one side of patch.triangles[member], unfolded, if it exists and is not in the patch.
 void Slopes::add_neighbour(Patch& patch, std::size_t member, std::size_t side) const {
   const auto [triangle, corners] = patch.triangles[member];
   const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
   const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
   if (next < 0 || std::ranges::any_of(patch.triangles, [&](const auto& t) { return t.first == next; })) return;
-  // Both triangles are counter-clockwise, so the side has the opposite direction in the neighbour.
+  // Both triangles are counter-clockwise, so the side runs in the opposite direction in the neighbour.
   const std::size_t m = side_of(next, edge);
   const Point from = corners[(side + 1) % 3], to = corners[side];
   Point turn = (to - from) / (material(next, m + 1) - material(next, m));
@@ -108,8 +111,9 @@ void Slopes::add_ring(Patch& patch) const {
     for (std::size_t side = 0; side < 3; ++side) add_neighbour(patch, member, side);
 }
 
-// Returns the weights after the smallest correction that gives them the wanted moments. `moments` has one column per
-// weight. Returns an empty vector if the correction is too large or none exists.
+// Returns `weights` plus the smallest correction after which moments × weights = `wanted`. Each row of `moments`
+// contains the values of one function at the vertices, and `wanted` its exact derivative. Returns an empty vector if
+// the correction is too large or none exists.
 Eigen::VectorXd correct_weights(const Eigen::VectorXd& weights, const Eigen::MatrixXd& moments,
                                 const Eigen::VectorXd& wanted) {
   const Eigen::VectorXd moment_error = wanted - moments * weights;
@@ -120,16 +124,15 @@ Eigen::VectorXd correct_weights(const Eigen::VectorXd& weights, const Eigen::Mat
   return {};
 }
 
-// Difference of the two vertices opposite the edge: ∂/∂b, exact for linear functions.
+// Weights of the difference between the two vertices opposite the edge: ∂/∂b (see Axes), exact for linear functions.
 Eigen::VectorXd across_opposite(std::size_t count) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
   weights[3] = 1, weights[2] = -1;
   return weights;
 }
 
-// Starts from the difference of the two opposite vertices and adds the smallest weights that make the slope exact for
-// quadratic functions. The result is invariant under linear maps of the patch, so that stretched meshes are as accurate
-// as others.
+// Corrects the weights of across_opposite() so that the slope is exact for quadratic functions. The result is invariant
+// under linear maps of the patch, so that stretched meshes are as accurate as others.
 Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
   for (int ring = 1; ring <= kMaxRings; ++ring) {
     add_ring(patch);
@@ -143,13 +146,14 @@ Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
         correct_weights(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
     if (weights.size() > 0) return weights;
   }
-  // Too few triangles for a quadratic: a mesh of one or two triangles, or a corner of a mesh.
+  // There are too few triangles for a quadratic, as in a mesh of one or two triangles, or at a corner of a mesh.
   return across_opposite(patch.vertices.size());
 }
 
-// Slope of a patch with held triangles; empty if no triangle is held, or if correct_weights() finds no weights.
+// Slope of a patch with held triangles (three held corners). Empty if no triangle is held, or if correct_weights()
+// finds no weights.
 Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const {
-  // At its edge, the slope of a held triangle is that of the linear function through its corners.
+  // If a triangle at the edge is held, the slope is that of the linear function through its corners.
   for (std::size_t member : {0, 1}) {
     if (!all_corners_marked(held_, patch.triangles[member].first)) continue;
     const std::size_t apex = 2 + member;
@@ -159,7 +163,7 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
     weights[0] = (-0.5 + d.x()) / d.y(), weights[1] = (-0.5 - d.x()) / d.y();
     return weights;
   }
-  // Finds the nearest side between a held triangle and one that is not held.
+  // Finds the nearest clamp: a side between a held triangle and one that is not held.
   double nearest = std::numeric_limits<double>::infinity();
   std::array<Point, 2> clamp;
   for (const auto& [triangle, corners] : patch.triangles) {
@@ -177,12 +181,12 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
   return std::isinf(nearest) ? Eigen::VectorXd() : fit_in_front_of_clamp(patch, axes, clamp);
 }
 
-// Slope that is exact for linear functions and for s², where s is the distance in front of a clamp whose held triangle
-// lies on its left, and 0 at held triangles.
+// Slope that is exact for linear functions and for s². s is the distance in front of the clamp, and 0 at held
+// triangles. The held triangle is on the left of the edge `clamp`.
 Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
                                               const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];
-  // Relative to the length of the clamp, as a and b are to the lengths of `along` and `over`.
+  // In units of the clamp's length, so that the moments are about 1.
   const auto distance = [&](const Point& at) { return std::max(0.0, cross(at - clamp[0], line) / std::norm(line)); };
   const auto count = static_cast<Eigen::Index>(patch.vertices.size());
   std::vector<char> in_clamp(patch.vertices.size());
@@ -220,7 +224,7 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   if (slope.near_pin)
     if (const Eigen::VectorXd of_clamp = fit_clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
 
-  // Converts from the direction `over` to the outward normal n, with the unit tangent t: over = c t + d n.
+  // Converts the derivative along `over` to that along the outward normal n. With the unit tangent t, over = c t + d n.
   const double length = std::abs(axes.along), c = (std::conj(axes.along) * axes.over).real() / length,
                d = -cross(axes.along, axes.over) / length;
   best[1] -= c / length;
@@ -229,12 +233,13 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   return slope;
 }
 
-// A symmetric matrix as (uu, vv, √2 uv): the dot product of two such vectors is that of the matrices.
+// A symmetric matrix as (uu, vv, √2 uv): the dot product of two such vectors is the Frobenius product of the matrices.
 Vec3 packed(const Eigen::Matrix2d& m) {
   return {m(0, 0), m(1, 1), std::numbers::sqrt2 * 0.5 * (m(0, 1) + m(1, 0))};
 }
 
-// Projection that removes the moments about free borders. `border_normals`: n nᵀ of each border's normal n, packed.
+// Projection that removes the moments about a triangle's free borders. `border_normals`: per border with normal n,
+// packed(n nᵀ).
 Mat3 project_out_borders(const std::vector<Vec3>& border_normals) {
   Mat3 p = Mat3::Identity();
   for (const Vec3& direction : border_normals) {
@@ -269,7 +274,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
     bool near_pin = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
-      const Vec3 twist = packed(outward * along.transpose()) / area;  // the side's length cancels 1 / length of ∂/∂t
+      const Vec3 twist = packed(outward * along.transpose()) / area;  // l of the sum cancels the 1/l of ∂/∂t
       add(corners[(k + 1) % 3], twist);
       add(corners[k], -twist);
       const Vec3 bend = packed(outward * outward.transpose());
@@ -287,7 +292,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       stencils[t].weights.push_back(weight);
     };
     for (Index corner : corners) append(corner, weights.at(corner));
-    // Omits weights that cancel by symmetry, of which only rounding remains, unless pins may change them.
+    // Omits vertices whose weights cancel by symmetry up to rounding, unless pins may change the weights.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
           (near_pin || weight.norm() * area > kMomentTolerance))

@@ -8,7 +8,7 @@ namespace weft::forces {
 
 namespace {
 
-// Lower bound of ‖s‖: a collapsed thread has no direction, but the matrix stays finite.
+// Lower bound of ‖s‖, which keeps the matrix finite: a thread of length 0 has no direction.
 constexpr double kMinStretch = 1e-12;
 
 // ‖s‖, at least kMinStretch
@@ -98,8 +98,8 @@ void TriangleMembrane::attach(const solver::Assembly& assembly) {
     }
 }
 
-// Differences to the first corner keep rounding errors relative to the size of the triangle, not to its distance from
-// the world's origin.
+// Differences to the first corner make rounding errors proportional to the size of the triangle, not to its distance
+// from the origin.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
   const Vec3& origin = x[a];
@@ -155,7 +155,7 @@ void TriangleMembrane::add(const Evaluation& at) const {
 // Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy in s_u and s_v. The
 // stretch terms are those of Stretch for an edge of rest length 1. The shear terms are those of Shear: the second
 // derivative of ⟨s_u, s_v⟩ is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the stress, one of these
-// squares is positive and one negative; the matrix keeps only the positive one.
+// squares is positive and one negative; the matrix contains only the positive one.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
   const auto lateral_of = [](const Lanes& length) { return max(1 - 1 / length, lanes_of(0.0)); };

@@ -9,21 +9,21 @@
 
 namespace weft::forces {
 
-/// The continuum of Stretch and Shear on triangles of constant strain: s_u and s_v are the derivatives of the positions
-/// along weft and warp, constant in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth Simulation",
-/// 1998, with the energy of the continuum). The energy density is
+/// The continuum of Stretch and Shear on triangles of constant strain. The derivatives s_u and s_v of the positions
+/// along weft and warp are constant in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth
+/// Simulation", 1998, but with the energy of the continuum). The energy density is
 ///
 ///     ½ k1 (‖s_u‖ − 1)² + ½ k2 (‖s_v‖ − 1)² + ¼ μ ⟨s_u, s_v⟩²
 ///
-/// and dissipation has the same form in the rates. For every linear map, the stress is exactly that of the continuum,
-/// for any orientation of the triangles.
+/// The dissipation has the same form in the rates. If the deformation of the cloth is linear, the stress is exactly
+/// that of the continuum, for any orientation of the triangles.
 class TriangleMembrane : public Membrane {
  public:
   /// A triangle; s_u and s_v are linear in its corners.
   struct Element {
     std::array<Index, 3> particles;
     std::array<Vec2, 3> gradients;  // s_u = Σ gradients[k].x() x_k, s_v likewise [1/m]
-    double area;                    // [m²], times the reinforcement
+    double area;                    // [m²], times Reinforcement::stretch
   };
 
   TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
@@ -36,9 +36,10 @@ class TriangleMembrane : public Membrane {
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
-  /// For sewn sheets: interpolates the rest shape of each triangle between its shape at the start (progress 0, without
-  /// stress there) and that in the pattern (progress 1). Blends the right stretch tensor U of the start relative to the
-  /// pattern, in axes of weft and warp, with the identity.
+  /// For sewn sheets: interpolates the rest shape of each triangle between its shape at the start (progress 0; the
+  /// start has no stress) and that in the pattern (progress 1). The deformation from the pattern to the start has a
+  /// right stretch tensor U in the axes of weft and warp; this function interpolates linearly between U and the
+  /// identity.
   void interpolate_rest_shape(double progress);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
@@ -49,7 +50,7 @@ class TriangleMembrane : public Membrane {
   struct Gradient {
     Vec3 u, v;
   };
-  /// The larger relative change of length, along weft or warp, in absolute value.
+  /// The larger relative change of length of a triangle along weft or warp, in absolute value.
   virtual double strain(std::size_t triangle, std::span<const Vec3> x) const;
 
   StretchParameters stretch_;
@@ -80,7 +81,8 @@ class TriangleMembrane : public Membrane {
 
   Index first_;
   std::vector<Element> elements_;
-  /// For sewn sheets: inverse of each triangle's matrix of sides in the pattern, and U of its start minus the identity.
+  /// For sewn sheets: the inverse of the matrix of a triangle's sides in the pattern, and U − I (see
+  /// interpolate_rest_shape).
   struct Start {
     Eigen::Matrix2d inverse, excess;
   };

@@ -38,6 +38,7 @@ class BlockGroups {
   std::vector<char> is_free_;  // per group: nothing from outside the group acts on it
 };
 
+// Joins the groups of the particles of a term. If the weights do not sum to zero, the term acts against an obstacle.
 template <class Term>
 void join_by_term(const Term& term, BlockGroups& groups) {
   double sum = 0;

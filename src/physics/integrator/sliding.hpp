@@ -10,11 +10,12 @@
 
 namespace weft::integrator {
 
-/// Friction can hide a remaining error, because friction and contacts are stiff until the cloth slides as a whole. If
-/// friction is near its limit, this class therefore measures the residual force along the friction, and the friction in
-/// excess of what the normal force allows. It measures sums over a diagonal block (measured with single particles
-/// instead: two to three times the iterations in sphere_drape). (Measured on slopes half a degree too steep for
-/// sticking: sheets slide 1.00 to 1.01 of a rigid body's distance; without this class 0.92 to 0.97.)
+/// Newton's method can end while wrong friction still holds a cloth back, because friction and contacts are stiff until
+/// the cloth slides as a whole: the velocity error then seems small. If friction is near its limit, this class
+/// therefore computes the residual force along the friction, and the friction in excess of what the normal force
+/// allows. (Measured on slopes half a degree too steep for sticking: sheets slide 1.00 to 1.01 of a rigid body's
+/// distance; without this class 0.92 to 0.97.) It uses sums over a diagonal block; with single particles, sphere_drape
+/// takes two to three times the iterations.
 class Sliding {
  public:
   /// Evaluates the contact forces of a system at this stage. Returns false if there is no contact.

@@ -9,7 +9,8 @@ namespace weft::integrator {
 namespace {
 
 // The proportional-integral controller PI.4.2 (Söderlind, "Digital filters in adaptive time-stepping", ACM TOMS 29,
-// 2003): exponents of the current and the last ratio of aimed error to error, to be divided by the order plus one.
+// 2003): exponents of the ratio of aimed error to error, of this step and of the last one, to be divided by the order
+// plus one.
 constexpr double kExponentNow = 3.0 / 5, kExponentBefore = -1.0 / 5;
 
 }  // namespace
@@ -30,7 +31,7 @@ void StepControl::record_accepted_step(double h, double error) {
   const double ratio = aim_to_error_ratio(error);
   const double factor =
       std::pow(ratio, kExponentNow / order_plus_one_) * std::pow(last_ratio_, kExponentBefore / order_plus_one_);
-  // A step may be shorter than wanted to end with its frame; growth continues from the wanted length.
+  // A step may be shorter than wanted, to end with its frame; growth then starts from the wanted length.
   const double max_step = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
   // After unsolved steps, `max_step` may be below `min_step`; `max_step` is then the bound.
   wanted_ = std::min(std::max(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.min_step), max_step);

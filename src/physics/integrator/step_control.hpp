@@ -9,10 +9,10 @@
 
 namespace weft::integrator {
 
-/// Keeps the local error of each step at a tolerance: error per step, not per second. An impact changes the velocity by
-/// Δv at once, so the error of a step of length h is about h Δv for any h; a bound of the error per second would reduce
-/// h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
-/// tolerance^(p/(p+1)): 1/2 for Euler, 2/3 for midpoint and BDF2.
+/// Keeps the local error of each step near a tolerance: the error per step, not per second. An impact changes the
+/// velocity by Δv at once, so that a step of length h has an error of about h Δv; a bound of the error per second would
+/// reduce h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
+/// tolerance^(p/(p+1)); the latter exponent is 1/2 for Euler, and 2/3 for midpoint and BDF2.
 ///
 /// `wanted_` and `last_ratio_` are part of the state of a simulation.
 class StepControl {
@@ -47,7 +47,7 @@ class StepControl {
 
   double order_plus_one_, tolerance_, wanted_;
   double last_ratio_ = 1;       // aimed error / error, of the last accepted step
-  bool after_failure_ = false;  // the last step was rejected or not solved: do not grow yet
+  bool after_failure_ = false;  // the last step was rejected or not solved: steps must not grow yet
 };
 
 }  // namespace weft::integrator

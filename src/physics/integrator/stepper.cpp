@@ -13,7 +13,7 @@
 namespace weft::integrator {
 namespace {
 
-// Smallest position error that the solver must reach, in rounding errors of the largest coordinate of a block.
+// Lower bound of the allowed position error, in rounding errors of the block's largest coordinate.
 constexpr double kMinRoundings = 32;
 
 // The largest coordinate of a block, as absolute value [m].
@@ -55,7 +55,7 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
   past_.push_back({{now.x.data(), n}, 1});
   if (is_first_order(h)) return {h, 1};
 
-  // BDF2 with variable steps. Callers that choose step sizes respect longest_step().
+  // BDF2 with variable steps.
   const double r = h / history_.h;
   const double now_weight = (1 + r) * (1 + r) / (1 + 2 * r), before_weight = r * r / (1 + 2 * r);
   for_each_particle(n, [&](std::size_t i) {
@@ -66,7 +66,7 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
   return {h * (1 + r) / (1 + 2 * r), 1};
 }
 
-// Updates v and x_end from x, and sets forces to zero.
+// Computes v_ and x_end_ from x_, and sets force_ to zero.
 void Stepper::evaluate(const State& now, const Stage& stage) {
   for_each_particle(x_.size(), [&](std::size_t i) {
     v_[i] = (x_[i] - x_hat_[i]) / stage.beta;
@@ -88,13 +88,13 @@ void Stepper::linearise(System& system, const State& now, const Stage& stage, in
   system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, iteration, force_);
 }
 
-// The preconditioner times the residual. Valid until the next call.
+// Returns the preconditioner times the residual. Valid until the next call.
 std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
   const Stopwatch watch(times_.preconditioner);
   return cg_.precondition(residual);
 }
 
-// Residual at the current stage, of the full equation or of its last linearisation.
+// Computes the residual at x_, from System::forces() or System::linear_forces().
 void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
   const Stopwatch watch(times_.forces);
   evaluate(now, stage);
@@ -103,10 +103,11 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
   gather_residual(system.masses(), stage);
 }
 
-// Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass. In
-// `lasting_time`, this error displaces the block by `tolerance` · max(local error of positions, visibility threshold).
-// If this displacement were allowed in each step, adaptive step sizes would lose one order. From `slow_after`
-// iterations on, the local velocity error of implicit Euler may raise the bound. The bound never falls below rounding.
+// Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass.
+// During the time `lasting_time`, this error displaces the block by `tolerance` · max(local error of positions,
+// visibility threshold). If the solver could add this displacement in every step, adaptive step sizes would lose one
+// order. From `slow_after` iterations on, the local velocity error of implicit Euler may raise the bound. The bound
+// never falls below rounding.
 void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
@@ -119,13 +120,13 @@ void Stepper::update_tolerances(double h, int iterations) {
   }
 }
 
-// Root mean square over the mass of a block.
+// Root mean square of the vectors `of` over the mass of a block.
 double Stepper::root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of) {
   const double sum = sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * of[i].squaredNorm(); });
   return std::sqrt(sum / part.mass);
 }
 
-// Velocity of each block, root mean square, that these displacements of the stage cause [m/s].
+// Root mean square velocity of each block for these displacements of the stage [m/s].
 void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                                  std::vector<double>& speeds) const {
   speeds.clear();
@@ -135,7 +136,7 @@ void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<
 // Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
 // error. The nonlinear error is known only as a residual, which the preconditioner converts to a displacement that is
 // too small. The ratio of the last solution to its preconditioned right hand side, if above 1, corrects this
-// displacement.
+// displacement. If the line search did not take the full step, the residual contains both errors.
 void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
                                             std::span<const double> masses) {
   const bool is_full_step = fraction == 1 && solved.definite;
@@ -153,9 +154,9 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
       blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
 }
 
-// Estimates the velocity error of whole blocks due to wrong friction; only for blocks that otherwise count as solved
-// and that no constraint holds against sliding. Friction can at most stop a block, so the error is bounded by the
-// velocity that the block has or gains in the step, however large the force of a stiff contact is.
+// Estimates the velocity error of whole blocks from wrong friction, for blocks that otherwise count as solved and that
+// no constraint holds against sliding. Friction can at most stop a block. Therefore the velocity that the block has or
+// gains in the step bounds the error, however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
   const auto masses = system.masses();
   const auto needs_check = [](const BlockState& part) { return !part.holds_sliding && part.left <= part.allowed; };
@@ -171,9 +172,10 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
   }
 }
 
-// Bounds the work that the remaining residual does in the step. The norms of velocity errors hardly see stiff motion:
-// without this bound, an impact at 40 m/s stretched threads by 75 % where 24 % are right, and the solver did as much
-// work as there was energy. If a block exceeds the bound, its allowed error is reduced by the same ratio.
+// Bounds the work that the remaining residual does in the step, because norms of velocity hardly contain the error of
+// stiff motion (measured without this bound: an impact at 38 m/s stretches threads by 75 % instead of 24 %, and the
+// residual does as much work as the cloth has energy). If a block exceeds the bound, its allowed error is reduced by
+// the same ratio.
 void Stepper::bound_work(std::span<const double> masses, const State& now) {
   for (BlockState& part : blocks_) {
     const double work =
@@ -195,7 +197,7 @@ bool Stepper::is_solved(int iterations) const {
       blocks_, [&](const BlockState& part) { return part.error() <= std::max(part.allowed, unseen_speed); });
 }
 
-// Selects the blocks of the next linear solve.
+// Selects the blocks that the next linear solve includes.
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
   for (std::size_t p = 0; p < blocks_.size(); ++p)
@@ -204,13 +206,13 @@ void Stepper::select_unsolved(int iterations) {
       unsolved_.push_back(p);
 }
 
-// Line search along delta_: moves x by delta_; by less if delta_ overshoots the minimum, by more if it hardly
-// approaches the minimum. Returns the factor of delta_; if a slope is not finite, returns that slope.
+// Line search along delta_: moves x_ by delta_, by less if delta_ overshoots the minimum of the step's energy, by more
+// if it hardly approaches the minimum. Returns the factor of delta_; if a slope is not finite, returns that slope.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
-  // of the energy: positive before the minimum along delta, negative behind it. The product becomes strongly negative
-  // if contacts or compressed edges become active on the way; full steps would then oscillate. It hardly decreases if
-  // friction and compression make the matrix too stiff.
+  // of the energy: positive before the minimum along delta, negative behind it. If contacts begin or compressed edges
+  // come under tension on the way, the product becomes strongly negative; full steps would then oscillate. If friction
+  // and compression make the matrix too stiff, the product hardly decreases.
   const std::size_t n = x_.size();
   const double start_slope = dot(residual_, delta_);
   line_start_.swap(x_);
@@ -239,7 +241,7 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
   return fraction;
 }
 
-// Sets the initial guess, unchanged velocity, and the constant forces, weight included.
+// Sets x_ to the initial guess (unchanged velocity), and constant_force_ to the constant forces, weight included.
 void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity) {
   const auto masses = system.masses();
   for_each_particle(x_.size(), [&](std::size_t i) {
@@ -249,8 +251,9 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
   system.constant_forces(constant_force_);
 }
 
-// Expected direction of velocity changes: that of the last step or, without a history, of constant forces. Cloth that
-// falls, slides or drifts uniformly is then exact at any linear tolerance, and flat sheets stay flat.
+// Expected direction of velocity changes, along which the first linear solve starts: that of the last step or, without
+// a history, that of constant forces. Cloth that falls, slides or drifts uniformly is then exact at any linear
+// tolerance, and flat sheets stay flat.
 std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> masses, const State& now) {
   for_each_particle(masses.size(), [&](std::size_t i) {
     scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
@@ -302,7 +305,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
                   report.newton_iterations == 0 ? solver::AggregateSums::recompute : solver::AggregateSums::reuse);
     }
     gather_residual(masses, stage);
-    if (report.newton_iterations == 0) {  // otherwise done at the end of the last iteration
+    if (report.newton_iterations == 0) {  // later iterations did this at the end of the previous one
       estimate_local_errors(masses, now, stage, h);
       update_tolerances(h, previous_iterations);
     }
@@ -354,7 +357,8 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
     part.rounding = kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / beta_;
     part.holds_sliding = is_held(rows, linear.constraints);
-    // The first iteration solves all blocks: cloth that creeps within the tolerance would never come to rest otherwise.
+    // The first iteration solves all blocks. Otherwise, cloth that creeps slower than the tolerance would never come to
+    // rest.
     unsolved_.push_back(unsolved_.size());
   }
 }
@@ -371,9 +375,9 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
   }
 }
 
-// Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The remaining residual does no
-// work along the velocities of the stage, β v = x − x̂ (`motion_`), and, with BDF2, none along the displacement of the
-// step, x − x0 (the sum of `motion_` and `drift_`).
+// Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The residual that remains does no
+// work along the velocities of the stage, β v = x − x̂ (`motion_`). With BDF2, it does no work along the displacement
+// of the step either, x − x0 (the sum of `motion_` and `drift_`).
 solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
   goals_.clear();
   const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.midpoint_tightening : 1;
@@ -388,7 +392,6 @@ solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::spa
                    delta_, {start, motion_, drift_}, unsolved_);
 }
 
-// Reports the remaining and the allowed velocity error of the worst block.
 void Stepper::report_worst(StepReport& report) const {
   const double time = numerics.newton.lasting_time;
   report.local_error = report.solver_error = 0;
@@ -403,7 +406,7 @@ void Stepper::report_worst(StepReport& report) const {
   }
 }
 
-// Replaces the velocity changes δ/β that impacts cause by δ/h; see the class.
+// Replaces the velocity changes δ/β of impacts by δ/h; see Stepper.
 void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
   std::vector<Vec3>& right_side = scratch_;
   std::ranges::fill(right_side, Vec3::Zero());
@@ -438,7 +441,7 @@ Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
   return stage.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
 }
 
-// Estimates local errors at the current iterate. For the formulas of positions see the class.
+// Estimates local errors at the current iterate. For the formulas of positions see Stepper.
 void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
   const bool first_order = is_first_order(h);
   const double r = first_order ? 1 : h / history_.h;

@@ -1,5 +1,5 @@
-// One implicit time step (Etzmuß et al. 2001, Fig. 2): the method defines an implicit equation, which Newton's method
-// with residual control solves by constrained conjugate gradients.
+// One implicit time step (Etzmuß et al. 2001, Fig. 2). The integration method defines an implicit equation, which
+// Newton's method solves until the residual is small enough. Constrained conjugate gradients solve its linear systems.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +52,7 @@ struct StepReport {
 };
 
 /// Every method is one implicit stage x = x̂ + β v, M (v − v̂) = β f(x, v) with its own β, x̂ and v̂. Below, 0 marks
-/// the start of the step, ₋ that of the previous step, whose length is h₋, and 1 the end; y is x or v:
+/// the start of the step, 1 its end, and ₋ the start of the previous step, whose length is h₋; y stands for x and v:
 ///
 ///     method     β              x̂, v̂                                         end of the step
 ///     Euler      h              x0, v0                                       the stage
@@ -61,29 +61,29 @@ struct StepReport {
 ///
 /// Tests compare each method on x'' = −ω² x with its exact damping and phase (tests/integrator).
 ///
-/// BDF2 assumes a smooth trajectory. Without further measures, cloth rebounds from obstacles with up to half of its
-/// energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's method,
-/// and all else in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls, Int. J. Numer.
-/// Meth. Engng 96, 2013). In the solve, impacts displace particles by δ with A δ = F. F are the forces of impacts; A is
-/// the matrix of the step, with contact terms only for friction in impacts and for contacts that transmit impacts.
-/// Positions keep this displacement, but velocities change by δ/h instead of δ/β. The start velocity in the history
-/// also changes by δ/h, so that the next step starts from a smooth trajectory. Changes of velocity by corrections after
-/// a solve count as impacts, too.
+/// BDF2 assumes a smooth trajectory. If it integrated impacts like smooth forces, cloth would rebound with up to half
+/// of its energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's
+/// method, and all other forces in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls,
+/// Int. J. Numer. Meth. Engng 96, 2013). In the solve of a step, impacts displace particles by δ with A δ = F. F are
+/// the forces of impacts; A is the matrix of the step, but its only contact terms are those of friction in impacts and
+/// of contacts that transmit impacts. Positions keep the displacement δ, but velocities change by δ/h instead of δ/β.
+/// The start velocity in the history also changes by δ/h, so that the trajectory of the next step is smooth. If the
+/// caller changes velocities after the solve, these changes count as impacts, too.
 ///
-/// The local error of positions is estimated from known velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of
-/// the mean acceleration from the last step to this one; then the leading terms of the error are
+/// The local error of positions is estimated from velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of the
+/// mean acceleration from the last step to this one. Then the leading terms of the error are
 ///
 ///     Euler      h²/2 x''                           ≈ h/2 (v1 − v0)
 ///     midpoint   h³/12 x'''                         ≈ h² r / (6 (1+r)) D
 ///     BDF2       3/2 h³ (1+r)² / (6 r (1+2r)) x'''  ≈ h² (1+r) / (2 (1+2r)) D
 ///
 /// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
-/// accounts for the following steps, which propagate a third of each change of the error. Steps without a history, and
-/// BDF2 steps beyond longest_step(), use Euler's estimate: for the midpoint rule an upper bound; times 3/2 for BDF2,
-/// whose step then is an Euler step. Errors of velocity are not included; they affect positions only in later steps.
-/// The error of a diagonal block (a cloth or a rigid body) is the root mean square over its mass. It depends neither on
-/// the mesh resolution nor on a single particle in contact. The error of a step is the largest of all blocks. Held
-/// directions have no error.
+/// accounts for the following steps: each propagates a third of a change of the error. Steps without a history, and
+/// BDF2 steps beyond longest_step(), use Euler's estimate. For the midpoint rule this is an upper bound. A BDF2 step is
+/// then an Euler step, but the factor 3/2 remains. Errors of velocity are not included; they affect positions only in
+/// later steps. The error of a diagonal block (a cloth, a rope or a rigid body) is the root mean square over its mass,
+/// so that it depends neither on the mesh resolution nor on a single particle in contact. The error of a step is the
+/// largest of all blocks. Held directions have no error.
 class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
@@ -96,8 +96,8 @@ class Stepper {
   /// the history is an Euler step.
   void set_method(Method method) { method_ = method; }
 
-  /// Start of Newton's method: unchanged velocity, or the state in `next`, to continue an unfinished step or to solve a
-  /// step again with other contacts.
+  /// Where Newton's method starts: at unchanged velocity, or at the state in `next`, to continue an unfinished step or
+  /// to solve a step again with other contacts.
   enum class Start { unchanged_velocity, next };
 
   /// Computes `next` from `now` over h [s]. Does not change the history: see accept(). `gravity` [m/s²] acts on all
@@ -115,7 +115,7 @@ class Stepper {
   void accept(const State& before, const State& after, double h);
 
   struct History {
-    State before;  ///< start of the last accepted step; BDF2: v includes impacts (see above)
+    State before;  ///< start of the last accepted step; BDF2: v includes impacts (see Stepper)
     double h = 0;  ///< its length [s]; 0: no history
   };
   const History& history() const { return history_; }
@@ -153,9 +153,9 @@ class Stepper {
     double left = 0;             // remaining velocity error [m/s]
     double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]
     bool holds_sliding = false;  // a constraint holds it against sliding
-    double sliding_error = 0;    // velocity error of the whole block by wrong friction, if it is about to slide [m/s]
+    double sliding_error = 0;    // velocity error of the whole block from wrong friction, if it is about to slide [m/s]
 
-    double work_error = 0;  // velocity error that counts if the residual does too much work, else 0 [m/s]
+    double work_error = 0;  // `allowed` before bound_work() reduces it; 0: the residual does not do too much work [m/s]
 
     double error() const { return std::max({left, sliding_error, work_error}); }  // [m/s]
   };
@@ -204,12 +204,12 @@ class Stepper {
   Sliding sliding_;
   std::vector<BlockState> blocks_;
   std::vector<std::size_t> unsolved_;
-  // Per block: allowed linear errors in the mass-weighted norm, and velocities [m/s].
+  // Per block: allowed linear errors in the mass-weighted norm, and root mean square velocities [m/s].
   std::vector<double> goals_, predicted_speeds_, solved_speeds_, speeds_;
   std::vector<Past> past_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, motion_,
       drift_, scratch_;
-  // BDF2 only: change of velocities by impacts [m/s], and velocities at the end of the solve.
+  // BDF2 only: changes of velocities by impacts, and end velocities as step() returned them [m/s].
   std::vector<Vec3> impact_changes_, solved_v_;
 };
 

@@ -20,11 +20,11 @@ struct State {
 struct StagePoint {
   std::span<const Vec3> x;      ///< stage positions
   std::span<const Vec3> v;      ///< stage velocities, (x − x̂) / β as in Stepper
-  std::span<const Vec3> x_end;  ///< positions at the end of the step that belongs to this stage; contacts act there
+  std::span<const Vec3> x_end;  ///< positions at the end of the step, which follow from x; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
   /// Earlier positions of which x̂ is the weighted sum; the rate of a quantity q(x) follows from them (see Past). Empty
-  /// for the midpoint rule, where the rate is ∂q/∂x v, the exact mean rate of a quadratic q over the step.
+  /// for the midpoint rule: there the rate is ∂q/∂x v, which for quadratic q is exactly the mean rate over the step.
   std::span<const Past> past = {};
 };
 
@@ -40,16 +40,16 @@ class System {
   /// Adds all other forces at a stage [N]. May update caches of the system, but must not change its results.
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As `forces`, but with the tangent in place of each force that the last linearise() replaced by its tangent. A line
-  /// search along the solution of the linear system must use these forces.
+  /// As `forces`, but if the last linearise() replaced a force by its tangent, evaluates that tangent. A line search
+  /// along the solution of the linear system must use these forces.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
-  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. First
-  /// updates what lags behind the positions, such as the normal forces that limit friction. `iteration`: Newton
-  /// iteration, from 0 in each solve. The count continues if a paused solve continues.
+  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the contact
+  /// terms. First updates what stays constant between linearisations, such as the normal forces that limit friction.
+  /// `iteration`: Newton iteration, from 0 in each solve; it continues to count if a paused solve continues.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
-  /// Whether translating a diagonal block changes no force except through terms, constraints, and air.
+  /// Whether translating a diagonal block changes no force except those of contact terms, constraints and air.
   virtual bool is_translation_invariant() const { return false; }
 
   /// Adds the contact part of `forces` [N] at each particle: `friction`, all other contact forces (`push`), and the
@@ -61,8 +61,9 @@ class System {
     return false;
   }
 
-  /// After a solved step: replaces the terms of linear_system() by those of impacts, and adds their right hand side.
-  /// The solution is the change of velocities by impacts [m/s]. Returns false if there is no impact.
+  /// After a solved step: replaces the contact terms of linear_system() by those of impacts, and adds their right hand
+  /// side. The solution is the change δ/h of velocities by impacts [m/s] (see Stepper). Returns false if there is no
+  /// impact.
   virtual bool find_impacts(const StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
     (void)at, (void)start, (void)right_side;
     return false;

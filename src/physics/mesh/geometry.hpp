@@ -16,8 +16,8 @@ inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
 /// Sum of the triangle areas [m²].
 double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
-/// Computes one unit normal per vertex, as the area-weighted mean over its triangles; zero if the vertex has no
-/// triangle with an area. Writes `normals` (one per position) and allocates nothing.
+/// Writes one unit normal per vertex, the normalised area-weighted mean over its triangles, into `normals`; zero if all
+/// triangles of the vertex have no area. Allocates no memory.
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);
 
 /// Smallest box around the points; empty without points.

@@ -17,14 +17,14 @@ class Lattice {
     for (int k = 0; k < 3; ++k) {
       const double low = k == 0 ? 0.0 : box.min()[k];
       origin_[k] = low;
-      // Rounded up to whole blocks.
+      // Round up to whole blocks.
       const int cells = static_cast<int>(std::ceil((box.max()[k] - low) / cell));
       nodes_[k] = (cells + kBlock - 1) / kBlock * kBlock + 1;
     }
     values_.assign(static_cast<std::size_t>(nodes_[0]) * nodes_[1] * nodes_[2], std::nan(""));
   }
 
-  static constexpr int kBlock = 4;  ///< cells along the side of a block
+  static constexpr int kBlock = 4;  ///< number of cells along each side of a block
 
   int nodes(int axis) const { return nodes_[axis]; }
   std::int64_t index(int i, int j, int k) const {
@@ -38,7 +38,8 @@ class Lattice {
     return v;
   }
 
-  /// Whether the surface may pass through the block that starts at this node, if the gradient is below 3 (Field).
+  /// Whether the surface may pass through the block that starts at this node: false if |value| at its centre is too
+  /// large for a gradient below 3 (Field).
   bool may_cross(int i, int j, int k) const {
     const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
     const double half = kBlock / 2.0;
@@ -59,7 +60,8 @@ struct Node {
   double value = 0;
 };
 
-/// Cuts tetrahedra and collects their triangles. Each crossed lattice edge gets one shared vertex.
+/// Cuts tetrahedra along the zero set and collects the triangles. Each lattice edge that crosses the zero set gets one
+/// vertex, which its tetrahedra share.
 class Cutter {
  public:
   explicit Cutter(const Lattice& lattice) : lattice_(lattice) {}
@@ -77,14 +79,14 @@ class Cutter {
     }
     if (ins == 0 || outs == 0) return;
     const auto v = [&](int a, int b) { return vertex(corner[a], corner[b]); };
-    // The inside corners followed by the outside corners, each ascending, are an even or odd permutation of 0 1 2 3. An
-    // odd one reverses the triangles.
+    // The inside corners followed by the outside corners, each in ascending order, are a permutation of 0 1 2 3. If it
+    // is odd, the triangles are reversed.
     if (ins == 1) {
       add(v(in[0], out[0]), v(in[0], out[1]), v(in[0], out[2]), in[0] % 2 != 0);
     } else if (outs == 1) {
       add(v(out[0], in[0]), v(out[0], in[1]), v(out[0], in[2]), out[0] % 2 == 0);
     } else {
-      const bool odd = in[0] + in[1] == 2 || in[0] + in[1] == 4;  // {0, 2} and {1, 3} inside: odd permutations
+      const bool odd = in[0] + in[1] == 2 || in[0] + in[1] == 4;  // {0, 2} or {1, 3} inside
       const Index a = v(in[0], out[0]), b = v(in[0], out[1]), c = v(in[1], out[1]), d = v(in[1], out[0]);
       add(a, b, c, odd);
       add(a, c, d, odd);
@@ -96,13 +98,13 @@ class Cutter {
  private:
   Index vertex(const Node& a, const Node& b) {
     const auto [low, high] = std::minmax(a.index, b.index);
-    // Node indices of a lattice fit into 32 bits, so a pair of them fits into 64.
+    // Node indices fit into 32 bits.
     const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
     const auto [entry, is_new] = vertices_.try_emplace(key, static_cast<Index>(mesh.positions.size()));
     if (is_new) {
       const Node& first = a.index == low ? a : b;
       const Node& second = a.index == low ? b : a;
-      // Keep the vertex away from the nodes, so that no triangle loses its area.
+      // Keep the vertex away from the nodes, so that each triangle has an area.
       const double s = std::clamp(first.value / (first.value - second.value), 0.05, 0.95);
       const Vec3 p = lattice_.place(first.at[0], first.at[1], first.at[2]);
       const Vec3 q = lattice_.place(second.at[0], second.at[1], second.at[2]);
@@ -120,7 +122,8 @@ class Cutter {
   std::unordered_map<std::uint64_t, Index> vertices_;
 };
 
-/// The six tetrahedra of a cube: each follows the axes in another order from one end of the diagonal to the other.
+/// The six tetrahedra of a cube. The corners of each lie on a path along cube edges from one end of the diagonal to the
+/// other; the entry is the order of the axes along this path.
 constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
 
 void cut_cell(Lattice& lattice, Cutter& cutter, int i, int j, int k) {
@@ -140,7 +143,7 @@ void cut_cell(Lattice& lattice, Cutter& cutter, int i, int j, int k) {
       ++at[kOrders[o][step]];
       corner[step + 1] = node(at);
     }
-    if (o >= 3) std::swap(corner[1], corner[2]);  // the last three orders are odd
+    if (o >= 3) std::swap(corner[1], corner[2]);  // the last three orders are odd permutations
     cutter.cut(corner);
   }
 }

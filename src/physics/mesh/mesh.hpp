@@ -11,8 +11,8 @@
 
 namespace weft::mesh {
 
-/// Faces of a surface. Quads keep their four corners and are also split into two triangles. Collision and drawing both
-/// use these triangles, so that there is only one surface.
+/// Faces of a surface. Each quad is also stored as two triangles. Collision and drawing both use the triangles, so that
+/// cloth collides as it is drawn.
 struct Topology {
   std::vector<std::array<Index, 4>> quads;      ///< empty for a triangle mesh
   std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise from the front; quad q owns triangles 2q, 2q+1
@@ -24,11 +24,11 @@ struct Mesh {
   std::vector<Vec2> uv;         ///< rest coordinates (weft, warp) per vertex [m]; empty if the mesh has none
 };
 
-/// Grid of nu × nv particles in rows and columns. Index of (i, j): i + nu * j, i along weft (u), j along warp (v).
+/// Grid of nu × nv particles: columns i along weft (u), rows j along warp (v). Particle (i, j) has index i + nu * j.
 struct Grid {
-  int nu = 0, nv = 0;                         ///< particles along weft and warp, at least 2
+  int nu = 0, nv = 0;                         ///< number of particles along weft and warp, at least 2
   double lu = 0, lv = 0;                      ///< mean rest spacing along weft and warp [m]
-  double weft_grading = 1, warp_grading = 1;  ///< last / first spacing; geometric series in between
+  double weft_grading = 1, warp_grading = 1;  ///< ratio of the last to the first spacing; see graded_fraction()
   Index index(int i, int j) const { return static_cast<Index>(i + nu * j); }
   Index size() const { return static_cast<Index>(nu * nv); }
 
@@ -38,7 +38,7 @@ struct Grid {
   /// The same coordinates, measured from the middle of the sheet [m].
   double x(int i) const { return (spacings_before(i, nu, weft_grading) - 0.5 * (nu - 1)) * lu; }
   double y(int j) const { return (spacings_before(j, nv, warp_grading) - 0.5 * (nv - 1)) * lv; }
-  /// Rest spacing between columns i and i + 1, rows j and j + 1 [m].
+  /// Rest spacing between columns i and i + 1, or between rows j and j + 1 [m].
   double du(int i) const { return spacing(i, nu, lu, weft_grading); }
   double dv(int j) const { return spacing(j, nv, lv, warp_grading); }
   /// Width of the sheet that belongs to a column or row: half of the spacing on each side [m].

@@ -16,7 +16,7 @@ namespace {
 // write_ply() copies numbers byte by byte into a little-endian file.
 static_assert(std::endian::native == std::endian::little);
 
-/// Bytes of a face (the number of its corners as a byte, then their indices) and of an edge.
+/// Sizes of a face (the number of its corners as one byte, then their indices) and of an edge [bytes].
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t), kEdgeBytes = 2 * sizeof(std::int32_t);
 constexpr std::size_t kPlaceBytes = 3 * sizeof(double), kUvBytes = 2 * sizeof(float);
 

@@ -12,8 +12,8 @@ double twice_signed_area(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Projects the polygon along its normal, so that it is counter-clockwise. The normal is the sum of cross products
-/// (Newell), which uses all corners and therefore also suits polygons that are not quite flat.
+/// Projects the polygon along its normal, so that it is counter-clockwise. The normal is a sum of cross products over
+/// all corners (Newell), and so suits polygons that are not quite flat, too.
 std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> positions) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return positions[corners[k % corners.size()]]; };
   const Vec3& origin = corner(0);
@@ -27,13 +27,13 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
   return flat;
 }
 
-/// Smallest allowed ratios of an ear's height to its longest side, tried one after the other. Rounding errors move
-/// corners off a straight side; an ear there has hardly any area, and later repairs of the mesh would remove it
-/// together with its corner.
+/// Minimum ratios of an ear's height to its longest side, tried one after the other. Rounding errors move corners off a
+/// straight side. An ear at such a corner has hardly any area: later repairs of the mesh would remove the triangle
+/// together with the corner.
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
-/// Whether corner k of the ring turns left and its triangle, sides included, holds no other corner. Corners nearer to a
-/// side than `flatness` times the longest side count as on it; triangles with a smaller height are no ears.
+/// Whether corner k of the ring is an ear: it is convex, and its triangle, sides included, contains no other corner.
+/// `flatness`: ratio to the longest side. Corners nearer to a side count as on it; flatter triangles are no ears.
 bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vector<Vec2>& flat, double flatness) {
   const std::size_t n = ring.size();
   const Vec2 &a = flat[ring[(k + n - 1) % n]], &b = flat[ring[k]], &c = flat[ring[(k + 1) % n]];
@@ -42,7 +42,7 @@ bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vect
   if (!(twice_signed_area(a, b, c) > slack * std::max({ab, bc, ca}))) return false;
   for (const std::size_t other : ring) {
     const Vec2& p = flat[other];
-    // Skip the corners themselves, and their copies where a polygon touches itself.
+    // Skip the corners of the triangle, and copies of them at places where the polygon touches itself.
     if (p == a || p == b || p == c) continue;
     if (twice_signed_area(a, b, p) >= -slack * ab && twice_signed_area(b, c, p) >= -slack * bc &&
         twice_signed_area(c, a, p) >= -slack * ca)
@@ -51,10 +51,9 @@ bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vect
   return true;
 }
 
-/// A triangle with a lower ratio of height to longest side is a needle.
+/// A triangle is a needle if its height is less than this fraction of its longest side.
 constexpr double kNeedleHeightRatio = 0.05;
 
-/// Maximum number of rounds over all edges.
 constexpr int kMaxFlipRounds = 100;
 
 using Corners = std::array<std::size_t, 3>;
@@ -66,7 +65,7 @@ bool is_needle(const Corners& t, const std::vector<Vec2>& flat) {
   return twice_signed_area(flat[t[0]], flat[t[1]], flat[t[2]]) < kNeedleHeightRatio * longest_sq;
 }
 
-/// Whether d lies inside the circle through a, b and c (counter-clockwise) by more than rounding errors.
+/// Whether d lies inside the circle through a, b and c (counter-clockwise), beyond rounding errors.
 bool in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   constexpr double kRounding = 1e-5;  // for coordinates of single precision
   Mat3 m;
@@ -77,8 +76,7 @@ bool in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 }
 
 /// Flips edges inside the polygon until each is locally Delaunay (Lawson, "Software for C1 Surface Interpolation",
-/// 1977). In narrow polygons with many corners, ear clipping makes flat triangles around one vertex; flipping widens
-/// them.
+/// 1977). In narrow polygons with many corners, ear clipping makes needles around one vertex; flips widen them.
 void flip_edges(std::vector<Corners>& triangles, const std::vector<Vec2>& flat) {
   bool has_flipped = true;
   for (int round = 0; has_flipped && round < kMaxFlipRounds; ++round) {
@@ -105,7 +103,7 @@ void flip_edges(std::vector<Corners>& triangles, const std::vector<Vec2>& flat) 
   }
 }
 
-/// Cuts a polygon into ears; triangles index into `flat`. `flatness`: see kMinEarHeightRatios.
+/// Cuts a polygon into ears, which index into `flat`. `flatness`: see kMinEarHeightRatios.
 std::vector<Corners> clip_ears(const std::vector<Vec2>& flat, std::span<const double> flatness) {
   std::vector<std::size_t> ring(flat.size());
   for (std::size_t k = 0; k < ring.size(); ++k) ring[k] = k;
@@ -113,8 +111,8 @@ std::vector<Corners> clip_ears(const std::vector<Vec2>& flat, std::span<const do
   std::size_t k = 0, tried = 0;
   while (ring.size() > 3) {
     const std::size_t n = ring.size();
-    // Each round over all corners accepts flatter ears. If no corner is an ear, the polygon is not simple: cut any
-    // corner, so that the loop ends.
+    // Each round over all corners accepts flatter ears. If the last round finds no ear either, the polygon is not
+    // simple; then cut any corner, so that the loop ends.
     const std::size_t round = tried / n;
     if (round < flatness.size() && !is_ear(ring, k, flat, flatness[round])) {
       k = (k + 1) % n;

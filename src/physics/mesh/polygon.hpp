@@ -8,14 +8,14 @@
 
 namespace weft::mesh {
 
-/// Cuts a simple, nearly flat polygon of n corners (convex or not) into n - 2 triangles of its own orientation by ear
-/// clipping, and appends them. Self-crossing or collapsed polygons also give n - 2 triangles, of any shape. Time O(n²)
-/// for usual polygons, O(n³) in the worst case.
+/// Cuts a simple, nearly flat polygon of n corners (convex or not) into n - 2 triangles of the same orientation by ear
+/// clipping, and appends them. A polygon that crosses itself or has no area also gives n - 2 triangles, of any shape.
+/// Time O(n²) for usual polygons, O(n³) in the worst case.
 void triangulate_polygon(std::span<const Index> corners, std::span<const Vec3> positions,
                          std::vector<Triangle>& triangles);
 
-/// The same for a face of a file, whose coordinates have single precision. Corners along a straight side become corners
-/// of triangles with an area. If needle triangles remain, flips edges inside the polygon until all are locally
+/// The same for a face from a file, whose coordinates have single precision. Avoids triangles of nearly no area at
+/// corners along a straight side. If needle triangles remain, flips edges inside the polygon until all are locally
 /// Delaunay.
 void triangulate_face(std::span<const Index> corners, std::span<const Vec3> positions,
                       std::vector<Triangle>& triangles);

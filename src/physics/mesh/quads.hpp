@@ -16,13 +16,13 @@ inline std::array<Triangle, 2> split_quad(const Quad& q, bool first_diagonal) {
   return {Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}};
 }
 
-/// Splits quads along the diagonal that lies inside the quad. If both or neither do, uses the shorter one; if both are
+/// Splits each quad along the diagonal that lies inside it. If both or neither do, uses the shorter one; if both are
 /// equally long, the first. Quad q gives triangles 2q and 2q + 1.
 std::vector<Triangle> split_quads(std::span<const Quad> quads, std::span<const Vec3> positions);
 
-/// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z, uv
-/// = rest coordinates of column and row [m]. The diagonal alternates from quad to quad, so that no bias direction is
-/// preferred.
+/// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z.
+/// `uv` are the rest coordinates of column and row [m]. The diagonal alternates from quad to quad, so that no bias
+/// direction is preferred.
 Mesh make_sheet(const Grid& grid);
 
 }  // namespace weft::mesh

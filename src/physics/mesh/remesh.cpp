@@ -10,14 +10,15 @@
 namespace weft::mesh {
 namespace {
 
-constexpr double kMaxEdgeRatio = 4.0 / 3, kMinEdgeRatio = 4.0 / 5;  // of the wanted length (Botsch & Kobbelt 2004)
+// Edges are split above and collapsed below these ratios of their length to the wanted length (Botsch & Kobbelt 2004).
+constexpr double kMaxEdgeRatio = 4.0 / 3, kMinEdgeRatio = 4.0 / 5;
 
 std::size_t z(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, the x
-/// coordinate is kept.
+/// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, keeps
+/// the x coordinate.
 Vec3 project_to_surface(const Field& field, Vec3 p, bool in_plane) {
   constexpr double step = 1e-6;  // m
   for (int n = 0; n < 2; ++n) {
@@ -50,7 +51,7 @@ class Remesher {
   }
 
  private:
-  /// Puts a vertex in the middle of every edge that is too long, and cuts the triangles there.
+  /// Adds a vertex in the middle of every edge that is too long, and cuts the triangles at these vertices.
   void split_long_edges() {
     const EdgeSet edges = collect_edges(triangles_);
     std::vector<Index> middle(edges.edges.size(), -1);
@@ -69,7 +70,7 @@ class Remesher {
     triangles_ = std::move(cut);
   }
 
-  /// `m[k]` is the vertex between corners k and k + 1, or -1 if that edge is not cut.
+  /// Appends the pieces of a triangle to `out`. `m[k]`: vertex between corners k and k + 1; -1 if that edge is not cut.
   void cut_triangle(Triangle t, std::array<Index, 3> m, std::vector<Triangle>& out) const {
     const auto count = std::count_if(m.begin(), m.end(), [](Index v) { return v >= 0; });
     if (count == 0) return out.push_back(t);
@@ -139,13 +140,12 @@ class Remesher {
     std::vector<Index> common;
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
     if (common.size() != (on_border ? 1U : 2U)) return false;
-    // No inner edge may join two border vertices: its mirror image would be the same edge.
+    // No inner edge may join two border vertices: its mirror image would be the edge itself.
     return on_border || !border_[z(keep)] ||
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether `v` may move to p: its triangles that do not contain `other` turn by at most 60° and get no edge that is
-  /// too long.
+  /// Whether `v` may move to p: its triangles without `other` turn by at most 60° and get no edge that is too long.
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];
@@ -195,7 +195,7 @@ class Remesher {
     }
   }
 
-  /// Makes edges locally Delaunay: keeps an edge if the two angles opposite to it add up to less than π.
+  /// Makes edges locally Delaunay: flips an edge if the two angles opposite to it add up to more than π.
   void flip_edges() {
     for (const Edge& edge : edges_) {
       if (edge.triangles[1] < 0) continue;
@@ -215,7 +215,7 @@ class Remesher {
       const Triangle& corner = triangles_[z(t)];
       return *std::find_if(corner.begin(), corner.end(), [&](Index v) { return v != a && v != b; });
     };
-    // Make `left` the triangle that runs from a to b.
+    // Let `left` be the triangle that traverses the edge from a to b.
     const auto follows = [&](Index t) {
       const Triangle& corner = triangles_[z(t)];
       const auto at = std::find(corner.begin(), corner.end(), a) - corner.begin();
@@ -253,7 +253,7 @@ class Remesher {
       double count = 0;
       for (const Index w : neighbours(static_cast<Index>(v))) {
         if (border_[v] && !border_[z(w)]) continue;
-        // Finely meshed neighbours weigh more, so that gradual changes of size stay gradual.
+        // The weight is larger where wanted edges are shorter, so that the size of triangles changes gradually.
         const double weight = 1 / edge_length_(0.5 * (x_[v] + x_[z(w)]));
         sum += weight * x_[z(w)];
         count += weight;

@@ -8,7 +8,7 @@
 namespace weft::mesh {
 namespace {
 
-// Integrals over a solid, summed over the tetrahedra between one point and each surface triangle: ∫1, ∫x, ∫x xᵀ.
+// Integrals over a solid: ∫1, ∫x, ∫x xᵀ. Summed over the tetrahedra between the origin and each surface triangle.
 struct Moments {
   double volume = 0;
   Vec3 first = Vec3::Zero();
@@ -40,7 +40,7 @@ RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3
   if (triangles.empty() || !is_closed(triangles)) throw std::invalid_argument("a closed surface");
   Moments moments;
   const Vec3 origin =
-      vertices[static_cast<std::size_t>(triangles.front()[0])];  // a point of the body keeps rounding errors small
+      vertices[static_cast<std::size_t>(triangles.front()[0])];  // near the body, to keep rounding errors small
   for (const Triangle& t : triangles)
     add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin,
                     vertices[static_cast<std::size_t>(t[1])] - origin,

@@ -10,29 +10,28 @@
 
 namespace weft::mesh {
 
-/// Four particles of equal mass that together have the mass, the centre and the moments of inertia of a body. The
-/// particles are at c + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the
-/// standard deviations of the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine
-/// Body Dynamics", 2022) is a weighted sum of the four, so the inertia of the body is exactly that of the particles.
+/// Four particles of equal mass that together have the mass, the centre of mass and the moments of inertia of a body.
+/// They are at c + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the standard
+/// deviations of the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine Body
+/// Dynamics", 2022) is a weighted sum of the four particles, so body and particles have exactly the same inertia.
 class RigidFrame {
  public:
   static constexpr std::size_t kParticles = 4;
-  using Weights = std::array<double, kParticles>;  ///< sum to 1
+  using Weights = std::array<double, kParticles>;  ///< of the four particles, for one vertex; their sum is 1
 
   /// Corner k of the regular tetrahedron with coordinates ±1.
   static Vec3 corner(std::size_t k);
 
-  /// Takes the volume inside a closed mesh of outward triangles as the body. Throws std::invalid_argument if the mesh
-  /// has a border or no volume.
+  /// The body is the volume inside a closed mesh. Throws std::invalid_argument if the mesh has a border or no volume.
   RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
   double volume() const { return volume_; }               ///< [m³]
   const Vec3& deviations() const { return deviations_; }  ///< s [m]
   const Vec3& centre() const { return centre_; }          ///< centre of mass, in the coordinates of the mesh [m]
   const std::array<Vec3, kParticles>& particles() const { return particles_; }  ///< in the coordinates of the mesh [m]
-  const std::vector<Weights>& weights() const { return weights_; }              ///< per vertex
+  const std::vector<Weights>& weights() const { return weights_; }              ///< per vertex of the mesh
 
-  /// Writes the positions of the vertices for particles at the positions `frame`.
+  /// Computes the positions of the vertices from the positions `frame` of the particles.
   void place(std::span<const Vec3> frame, std::span<Vec3> vertices) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Minimum number of faces around a round shape that still enclose a volume.
+/// Minimum number of faces around an axis with which a shape encloses a volume.
 constexpr int kMinSegments = 3;
 
 Index add_vertex(Mesh& mesh, const Vec3& x) {
@@ -24,7 +24,7 @@ void add_quad(Mesh& mesh, const Quad& q, bool first_diagonal) {
   for (const Triangle& t : split_quad(q, first_diagonal)) mesh.topology.triangles.push_back(t);
 }
 
-/// Number of pieces into which `length` is cut so that each has about the length `edge`; at most `limit`, as thin bars
+/// Number of pieces of about the length `edge` into which `length` is cut; at most `limit`, because long thin bars
 /// would otherwise get thousands of rows.
 int piece_count(double length, double edge, int limit) {
   return static_cast<int>(std::clamp(std::round(length / edge), 1.0, static_cast<double>(limit)));
@@ -35,7 +35,7 @@ struct ProfilePoint {
   double radius, z;
 };
 
-/// Refines a polyline so that the cells of the revolved surface are about square at radius `radius`.
+/// Subdivides a profile so that the quads of the revolved surface are about square at radius `radius`.
 std::vector<ProfilePoint> refine(const std::vector<ProfilePoint>& corners, double radius, int segments) {
   const double edge = 2 * kPi * radius / segments;
   std::vector<ProfilePoint> profile;
@@ -50,7 +50,7 @@ std::vector<ProfilePoint> refine(const std::vector<ProfilePoint>& corners, doubl
 }
 
 /// Revolves a profile around the z axis. A profile that runs upward with the axis on its left gives an outward surface.
-/// Points on the axis (radius 0) become one vertex. `closed` joins the last point to the first.
+/// A point on the axis (radius 0) becomes one vertex. If `closed`, the last point is joined to the first.
 Mesh revolve(const std::vector<ProfilePoint>& profile, int segments, bool closed) {
   Mesh mesh;
   const auto around = static_cast<std::size_t>(segments);
@@ -101,12 +101,12 @@ Mesh icosahedron() {
 }  // namespace
 
 Mesh make_sphere(double radius, int segments) {
-  // With n pieces per side, pieces have a mean length of 1.20 radius / n (measured), so 5.24 n go around the sphere. An
-  // even n puts vertices on the axes.
+  // With n pieces per side, the measured mean length of a piece is 1.20 radius / n, so 5.24 n pieces go around the
+  // sphere. An even n puts vertices on the axes.
   const int pieces_per_side = 2 * std::max(1, static_cast<int>(std::lround(segments / (2 * 5.24))));
   const Mesh coarse = icosahedron();
   Mesh mesh;
-  // A vertex is identified by integer weights of the coarse corners, so that neighbouring faces share it exactly.
+  // The key of a vertex is the integer weights of the coarse corners, so that neighbouring faces share the vertex.
   std::map<std::array<std::array<int, 2>, 3>, Index> known;
   for (const Triangle& side : coarse.topology.triangles) {
     const auto vertex = [&](int b, int c) {
@@ -149,7 +149,7 @@ Mesh make_cylinder(double radius, double height, int segments) {
 
 Mesh make_torus(double radius, double tube_radius, int segments) {
   segments = std::max(segments, kMinSegments);
-  // Cells are square at the outer equator. A multiple of four puts a ring of vertices at the very bottom.
+  // Quads are about square at the outer equator. A multiple of four puts a ring of vertices at the lowest height.
   const double edge = 2 * kPi * (radius + tube_radius) / segments;
   const int around_tube = 4 * std::max(2, static_cast<int>(std::lround(2 * kPi * tube_radius / edge / 4)));
   std::vector<ProfilePoint> circle;
@@ -170,7 +170,7 @@ Mesh make_half_pipe(double radius, double length, double thickness, int segments
     const double x = length * row / rows - 0.5 * length;
     for (const double r : {radius, radius + thickness}) {
       for (int k = 0; k <= steps; ++k) {
-        // The rims lie at exactly z = 0, which the rounded sine of π would miss.
+        // Set z = 0 exactly at the rims: the rounded sine of π is not 0.
         const bool rim = k == 0 || k == steps;
         const double angle = kPi * k / steps;
         add_vertex(mesh, {x, -r * std::cos(angle), rim ? 0.0 : -r * std::sin(angle)});

@@ -1,22 +1,21 @@
-// Procedural bodies in closed form, with z up and centred on the origin. All but the plane are watertight and have
-// outward, counter-clockwise triangles. Vertices of round parts lie on the true surface, so a convex shape contains its
-// polyhedron.
+// Procedural bodies, with z up and centred on the origin. All but the plane are watertight and have outward,
+// counter-clockwise triangles. Vertices of round parts lie on the exact surface, so a convex shape contains its mesh.
 #pragma once
 
 #include "physics/mesh/mesh.hpp"
 
 namespace weft::mesh {
 
-/// Geodesic sphere: an icosahedron whose edges are cut into an even number of pieces, with about `segments` edges
-/// around the sphere. The six points on the axes are vertices, so the bounding box is that of the sphere.
+/// Geodesic sphere with about `segments` edges around it: an icosahedron whose edges are cut into an even number of
+/// pieces. The six points on the axes are vertices, so the bounding box is that of the sphere.
 Mesh make_sphere(double radius, int segments);
 
-/// Box with edge lengths `size` [m]. If `bevel` > 0, its edges and corners are rounded with that radius [m], limited to
-/// 0.49 of the smallest edge length; a quarter turn gets segments / 8 faces, at least one.
+/// Box with edge lengths `size` [m]. Its edges and corners are rounded with the radius `bevel` [m], which is limited to
+/// 0.49 of the smallest edge length; 0: sharp. A quarter turn has segments / 8 faces, at least one.
 Mesh make_box(const Vec3& size, double bevel, int segments);
 
-/// Base at z = -height / 2, tip at +height / 2. `segments`: number of edges around the axis, at least 3; the same for
-/// torus and cylinder.
+/// Base at z = -height / 2, tip at z = +height / 2. `segments`: number of edges around the axis, at least 3 (likewise
+/// for torus and cylinder).
 Mesh make_cone(double radius, double height, int segments);
 
 /// Ring around the z axis. `radius` is the distance of the tube's centre line from the axis; `tube_radius` < `radius`.
@@ -25,8 +24,8 @@ Mesh make_torus(double radius, double tube_radius, int segments);
 /// Axis along z from -height / 2 to +height / 2.
 Mesh make_cylinder(double radius, double height, int segments);
 
-/// Lower half of a pipe around the x axis, open upward, rims at z = 0. `radius` is the inner radius, `thickness` the
-/// wall outside of it; the pipe runs from x = -length / 2 to +length / 2. The half turn gets segments / 2 faces, at
+/// Lower half of a pipe around the x axis, open upward, with rims at z = 0, from x = -length / 2 to x = +length / 2.
+/// `radius` is the inner radius, `thickness` that of the wall outside of it. The half turn has segments / 2 faces, at
 /// least two.
 Mesh make_half_pipe(double radius, double length, double thickness, int segments);
 

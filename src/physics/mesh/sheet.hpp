@@ -11,27 +11,27 @@
 
 namespace weft::mesh {
 
-/// A band along a chain of edges: an elastic, a hem, or a seam allowance.
+/// A band along a chain of edges: an elastic band, a hem, or a seam allowance.
 struct Band {
   std::vector<Index> vertices;
-  std::vector<double> lengths;  ///< of the cloth's edges between consecutive vertices [m]
-  double ratio = 1;             ///< rest length of the band / length of the cloth along it
+  std::vector<double> lengths;  ///< rest lengths of the cloth between consecutive vertices [m]
+  double ratio = 1;             ///< rest length of the band / rest length of the cloth along it
   double stiffness = 0;         ///< force per strain [N]
   double mass = 0;              ///< per length of cloth [kg/m]
   double bend = 0;              ///< bending stiffness [N·m²]
-  double allowance = 0;         ///< width of extra cloth along the band, not part of the triangles [m]
+  double allowance = 0;         ///< width of cloth along the band that the triangles do not contain [m]
 };
 
-/// Two vertices that a button, a tooth of a zip, or a seam that can tear holds together while it is closed. `open` and
-/// `closed` are the scene times [s] at which it opens and closes; infinite: never.
+/// Two vertices that a fastener holds together while it is closed: a button, a tooth of a zip, or a seam that can tear.
+/// `open` and `closed` are the scene times at which the fastener opens and closes [s]; infinite: never.
 struct Tie {
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]
-  int tearing = -1;     ///< index of its seam in Sheet::tearing_seams; −1: the tie never tears
+  int tearing = -1;     ///< index of the seam in Sheet::tearing_seams; −1: the tie never tears
   double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
 };
 
-/// Factors by which one triangle multiplies in-plane stiffness, bending stiffness and mass of its cloth.
+/// Factors of one triangle on the in-plane stiffness, bending stiffness and mass of its cloth.
 struct Reinforcement {
   double stretch = 1, bend = 1, density = 1;
 
@@ -43,7 +43,7 @@ struct Sheet {
   std::vector<Triangle> triangles;            ///< manifold and equally oriented
   std::vector<Vec3> rest;                     ///< per vertex [m]
   std::vector<std::array<Vec2, 3>> material;  ///< (weft, warp) of each triangle's corners, counter-clockwise [m]
-  bool sewn = false;  ///< made of flat panels: the rest shape is `material` alone, and `rest` is the start position
+  bool sewn = false;  ///< made of flat panels: `material` alone is the rest shape, and `rest` are start positions
   std::vector<Band> bands;
   std::vector<Tie> ties;
   std::vector<std::string> tearing_seams;     ///< names of the seams that tear
@@ -53,27 +53,26 @@ struct Sheet {
 /// Area of a triangle at rest [m²].
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
-/// Largest ratio of a cloth's longest edge to its smallest triangle height (on grids: smallest spacing) at which the
-/// cloth may touch obstacles. Measured with sheets that fall on a ball, at default settings: with one row of thin
-/// triangles, eight of nine runs succeeded at the ratio 71, none at 141. Graded rectangles: all succeeded at a grading
-/// of 50, none at 100.
+/// Maximum ratio of a cloth's longest edge to its smallest triangle height (on grids: smallest spacing) with which the
+/// cloth may touch obstacles. Measured with sheets that fall on a ball, at default settings. With one row of thin
+/// triangles, eight of nine runs succeeded at a ratio of 71, none at 141. With graded rectangles, all runs succeeded at
+/// a grading of 50, none at 100.
 inline constexpr double kMaxUnevenness = 80;
 
-/// Triangles lower than the longest edge / kMaxUnevenness.
+/// Triangles of a sheet whose height is below (longest edge of the sheet) / kMaxUnevenness.
 struct FlatTriangles {
-  std::size_t count = 0, flattest = 0;  ///< `flattest`: index of the lowest of all triangles of the sheet
-  double least_height = 0;              ///< height of that triangle [m]
+  std::size_t count = 0, flattest = 0;  ///< number of such triangles; index of the triangle with the smallest height
+  double least_height = 0;              ///< height of triangle `flattest` [m]
   double longest_edge = 0;              ///< [m]
 };
 FlatTriangles find_flat_triangles(const Sheet& sheet);
 
-/// Makes a sheet whose rest shape is the mesh. In each triangle the weft runs along the projection of the x axis; in
-/// triangles nearly perpendicular to that axis, along the cross product of the y axis and the normal. A flat mesh in
-/// the x-y plane has x as weft and y as warp. Each triangle has its own coordinates; they differ from those of its
-/// neighbours by a rigid motion.
+/// Makes a sheet whose rest shape is the mesh. In each triangle, the weft runs along the projection of the x axis; in
+/// triangles nearly perpendicular to that axis, along the cross product of the y axis and the normal. Thus a flat mesh
+/// in the x-y plane has x as weft and y as warp. Each triangle has its own material coordinates.
 Sheet make_sheet_from_mesh(const Mesh& mesh);
 
-/// Shortest height of a triangle at rest [m].
+/// Smallest height of a triangle at rest [m].
 double height(const Sheet& sheet, std::size_t triangle);
 /// Smallest height of all triangles [m].
 double min_height(const Sheet& sheet);
@@ -84,8 +83,8 @@ enum class Pattern {
   crossed,  ///< along both diagonals, with a vertex in the middle
 };
 
-/// As make_sheet (quads.hpp), but made of triangles; the middle vertices of crossed cells follow the vertices of the
-/// grid.
+/// Like make_sheet() (quads.hpp), but made of triangles. The vertices in the middle of crossed cells come after those
+/// of the grid.
 Mesh make_triangle_sheet(const Grid& grid, Pattern pattern);
 
 }  // namespace weft::mesh

@@ -8,7 +8,7 @@
 namespace weft::mesh {
 namespace {
 
-/// One side of one triangle: `low <= high`; `forward` if the triangle runs from low to high.
+/// One side of one triangle, with `low <= high`. `forward`: the triangle traverses it from low to high.
 struct Side {
   Index low, high;
   Index triangle;
@@ -32,7 +32,7 @@ std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
   return sides;
 }
 
-/// Calls visit(first, last) for every run of sides that share an edge.
+/// Calls visit(first, last) for each edge, with the range of sorted sides that share it.
 template <class Visit>
 void for_each_edge(const std::vector<Side>& sides, const Visit& visit) {
   for (auto first = sides.begin(); first != sides.end();) {

@@ -16,7 +16,7 @@ using Quad = std::array<Index, 4>;
 /// An undirected edge and the triangles on its two sides.
 struct Edge {
   std::array<Index, 2> vertices{};         ///< lower index first
-  std::array<Index, 2> triangles{-1, -1};  ///< in ascending order; the second is -1 on a border
+  std::array<Index, 2> triangles{-1, -1};  ///< in ascending order; the second is -1 if the edge lies on the border
 };
 
 /// All edges of a triangle list, sorted by their vertex pair.
@@ -26,7 +26,7 @@ struct EdgeSet {
   std::vector<Index> non_manifold;                ///< edges with more than two triangles; they store only the first two
 };
 
-/// Collects each edge once. Indices must be in range (see `inspect`). Time O(n log n).
+/// Collects each edge once. Vertex indices must be in range (see inspect()). Time O(n log n).
 EdgeSet collect_edges(std::span<const Triangle> triangles);
 
 /// Defects and open borders of an index list. Each list is in ascending order.
@@ -43,7 +43,7 @@ struct TopologyReport {
   }
 };
 
-/// Checks any index list. Only triangles that are neither out of range nor degenerate count for edges.
+/// Checks any index list. Triangles that are out of range or degenerate do not contribute edges.
 TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_count);
 
 /// The connected component of each vertex; components are numbered in the order of their first vertices.

@@ -1,4 +1,4 @@
-// Triangles sorted into cubic cells, to find those that a straight path crosses.
+// A uniform grid of triangles, to find those that a straight path crosses.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace weft::mesh {
 
-/// Where a path crosses a triangle from its front.
+/// First crossing of a path with the front of a triangle.
 struct Entry {
-  double t = 0;         ///< fraction of the path
+  double t = 0;         ///< fraction of the path up to the crossing
   Index triangle = -1;  ///< index into the triangles of the grid; -1: no crossing
 };
 
 /// Finds crossings of straight paths with triangles. `triangles` and `x` must outlive the grid.
 class TriangleGrid {
  public:
-  /// `cell`: edge length of a cell [m]; enlarged if there would be too many cells.
+  /// `cell`: edge length of a cubic cell [m]; enlarged if there would be too many cells.
   TriangleGrid(std::span<const Triangle> triangles, std::span<const Vec3> x, double cell);
 
   /// Of the triangles that the path from `from` to `to` crosses from their front, finds the first one for which
@@ -39,12 +39,12 @@ class TriangleGrid {
   }
 
  private:
-  /// Fraction of the path at which the path crosses the triangle from the front; 2 if it does not.
+  /// Fraction of the path up to its crossing with the front of the triangle; 2 if there is none.
   double crossing_of(const Triangle& triangle, const Vec3& from, const Vec3& to) const;
   std::span<const Index> in_cell(const std::array<int, 3>& cell) const;
 
-  /// Calls `visit(triangles of the cell, fraction of the path at which the path leaves the cell)` for the cells along
-  /// the path, until a call returns true or the path ends.
+  /// Calls visit(triangles, exit_t) for each cell along the path, until a call returns true or the path ends.
+  /// `triangles`: those of the cell; `exit_t`: fraction of the path up to its exit from the cell.
   template <class Visit>
   void walk(const Vec3& from, const Vec3& to, const Visit& visit) const;
 
@@ -60,7 +60,8 @@ class TriangleGrid {
 template <class Visit>
 void TriangleGrid::walk(const Vec3& from, const Vec3& to, const Visit& visit) const {
   std::array<int, 3> at{}, step{};
-  Vec3 next, stride;  // fractions of the path: to the next cell boundary along each axis; between two boundaries
+  // Per axis, fractions of the path: `next`, up to the next cell boundary; `stride`, between two boundaries.
+  Vec3 next, stride;
   const Vec3 path = to - from;
   for (int k = 0; k < 3; ++k) {
     const double place = (from[k] - low_[k]) / cell_;

@@ -10,13 +10,14 @@
 
 namespace weft::model {
 
-/// Turbulence, added to the mean velocity of the air.
+/// Turbulence, added to the mean velocity of the air (GustField).
 struct Gusts {
   double speed = 0;  ///< root mean square of each component [m/s]; 0: none
   double size = 1;   ///< integral length, the size of the most energetic eddies [m]
-  int seed = 0;      ///< selects the random gusts
+  int seed = 0;      ///< seed of the random directions and phases of gusts
 };
 
+/// Gravity and wind at one time.
 struct PhysicsKey {
   double time = 0;     ///< [s], strictly increasing
   Vec3 gravity, wind;  ///< [m/s²]; [m/s]
@@ -27,10 +28,10 @@ struct Physics {
   double air_density = 1.2;   ///< [kg/m³]; 0: no air
   Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
   Gusts gusts;
-  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys
-  std::vector<PhysicsKey> keys;  ///< of gravity and wind; empty: the values above are constant
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
+  std::vector<PhysicsKey> keys;  ///< in place of `gravity` and `wind`; empty: these two are constant
 
-  /// Largest gravity over all keys [m/s²].
+  /// Largest gravity at any key [m/s²].
   double largest_gravity() const {
     double largest = keys.empty() ? gravity.norm() : 0;
     for (const PhysicsKey& key : keys) largest = std::max(largest, key.gravity.norm());
@@ -40,18 +41,18 @@ struct Physics {
 
 struct FanKey {
   double time = 0;                             ///< [s], strictly increasing
-  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< [m]; wind direction, of any length but 0
-  double speed = 5;                            ///< [m/s]
+  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; wind direction, of any length but 0
+  double speed = 5;                            ///< of the air on the axis, at the disc [m/s]
 };
 
-/// A cone of wind, as of a fan; see Weather.
+/// A fan: wind in a cone; see Weather.
 struct Fan {
   std::string name;
   std::vector<FanKey> keys{FanKey{}};  ///< at least one; a fan with a single key never changes
-  motion::Interpolation interpolation = motion::Interpolation::cubic;
-  double radius = 0.25;  ///< of the outlet disc [m]
-  double angle = 24;     ///< full opening angle of the cone [degrees]
-  double falloff = 1;    ///< exponent of the decrease of speed with the distance from the cone's apex
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
+  double radius = 0.25;                                                ///< of the outlet disc [m]
+  double angle = 24;                                                   ///< full opening angle of the cone [degrees]
+  double falloff = 1;  ///< exponent n: the speed on the axis falls as 1 / (distance from the cone's apex)ⁿ
 };
 
 }  // namespace weft::model

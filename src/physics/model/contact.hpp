@@ -1,4 +1,4 @@
-// How the program detects contact and responds to it.
+// Parameters of contact detection and contact response.
 #pragma once
 
 #include <optional>
@@ -11,32 +11,32 @@ enum class Response { springs, velocity_constraints };
 enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
-/// Methods that find surfaces close to each other (Etzmuß et al. 2001, "Collision Detection"). They change the speed,
-/// not the result.
+/// Methods of the broad and narrow phase (Etzmuß et al. 2001, "Collision Detection"). They change the speed, not the
+/// result.
 struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
   int leaf = 8;                   ///< maximum number of triangles per leaf
-  bool open_longer_side = false;  ///< of two overlapping nodes, descend only into the longer one
-  bool separation_lists = false;  ///< start each traversal where the previous one stopped
+  bool open_longer_side = false;  ///< of two overlapping nodes, visit only the children of the longer one
+  bool separation_lists = false;  ///< start each traversal at the pairs of nodes where the previous one stopped
   bool velocity_cones = false;    ///< keep the bounds of slow nodes while their vertices stay inside
-  bool normal_cones = false;      ///< skip regions that are provably too flat to touch themselves
+  bool normal_cones = false;      ///< skip regions that cannot touch themselves, because all their normals are similar
   bool coherence = false;         ///< keep closest points of surfaces with little relative motion
-  bool reuse = true;              ///< keep candidate pairs and close features until something moves far
+  bool reuse = true;              ///< keep candidate pairs and near features until a vertex moves too far
 };
 
-/// Coulomb friction between two objects; replaces the mean of their own coefficients.
+/// Coulomb friction between two objects, in place of the geometric mean of their own coefficients.
 struct FrictionPair {
   std::string first, second;              ///< names of cloths or obstacles; equal names: a cloth with itself
   double friction = 0.3;                  ///< coefficient of kinetic friction
   std::optional<double> static_friction;  ///< coefficient of static friction, at least `friction`; absent: equal to it
 };
 
-/// Contact of all surfaces.
+/// Parameters of all contacts.
 struct Contact {
   bool self = true;        ///< cloth against itself and other cloths
   bool obstacles = true;   ///< cloth against obstacles
-  double stiffness = 100;  ///< stiffness of one contact [N/m]; numerics.contact.inertial_stiffness bounds it from below
+  double stiffness = 100;  ///< minimum stiffness of a contact [N/m]; see also Numerics::Contact::inertial_stiffness
   std::vector<FrictionPair> pairs;
   Search search;
   Response response = Response::springs;

@@ -7,13 +7,14 @@
 namespace weft::model {
 namespace {
 
-// Shells of wave numbers around k_e, each kRatio times the one before: 1 / k falls from four integral lengths to a
-// thirtieth of one, finer than meshes of cloth. A tenth of the spectrum's energy is in still finer eddies.
+// Shells of wave numbers k around k_e; the wave number of each shell is kRatio times that of the one before.
+// kShellsBelow shells are below k_e. 1 / k ranges from four integral lengths to a thirtieth of one. A tenth of the
+// spectrum's energy is at larger k, which is left out.
 constexpr int kShells = 13;
 constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
-// k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), with the energies E and wave numbers k (relative to k_e) of
-// these shells. It is 0.747 for the whole spectrum.
+// k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), summed over these shells with energies E and wave numbers k
+// (relative to k_e). For the whole spectrum it is 0.747.
 constexpr double kLengthFactor = 0.837;
 // Rate at which waves change, relative to the turnover rate of eddies (Fung et al., 1992, Section 2).
 constexpr double kUnsteadiness = 0.5;
@@ -31,19 +32,19 @@ GustField::GustField(const Gusts& gusts, const Vec3& wind) {
   double sum = 0;
   for (int shell = 0; shell < kShells; ++shell) {
     wave_numbers.push_back(std::pow(kRatio, shell - kShellsBelow));
-    // the width of a shell is proportional to its wave number
+    // The width of a shell is proportional to its wave number.
     energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());
     sum += energies.back();
   }
-  // The generator gives the same numbers everywhere; distributions of the standard library do not.
+  // The generator gives the same numbers on all platforms; the distributions of the standard library do not.
   std::mt19937_64 generator(static_cast<std::uint64_t>(gusts.seed));
   const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // in [0, 1)
   for (int shell = 0; shell < kShells; ++shell) {
     const double k = wave_numbers[shell] * k_e;
-    // E(k), whose integral is 3/2 speed²; the width of a shell is k ln(kRatio).
+    // Spectral density E(k), whose integral over k is 3/2 speed²; the shell has the width k ln(kRatio).
     const double energy = 1.5 * gusts.speed * gusts.speed * energies[shell] / sum / (k * std::log(kRatio));
     const double turnover = std::sqrt(k * k * k * energy);
-    // Three waves along perpendicular axes, each with its amplitude along the next axis: the mean square is isotropic.
+    // Three waves along random perpendicular axes, each with its amplitude along the next: isotropic mean square.
     const double a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random(), c = random();
     const Mat3 axes = Quat(std::sqrt(1 - c) * std::sin(a), std::sqrt(1 - c) * std::cos(a), std::sqrt(c) * std::sin(b),
                            std::sqrt(c) * std::cos(b))

@@ -7,15 +7,15 @@
 
 namespace weft::model {
 
-/// A smooth, divergence-free velocity field that is the same in every run: a sum of waves with random directions and
-/// phases, which Gusts::seed selects (kinematic simulation: Fung, Hunt, Malik & Perkins, "Kinematic simulation of
-/// homogeneous turbulence by unsteady random Fourier modes", J. Fluid Mech. 236, 1992). The energies of the waves
-/// follow von Kármán's spectrum,
+/// A smooth, divergence-free velocity field: a sum of waves with random directions and phases (kinematic simulation:
+/// Fung, Hunt, Malik & Perkins, "Kinematic simulation of homogeneous turbulence by unsteady random Fourier modes", J.
+/// Fluid Mech. 236, 1992). Gusts::seed determines the random values, so the field is the same in every run. The
+/// energies of the waves follow von Kármán's spectrum,
 ///
 ///     E(k) ~ k⁴ / (k² + k_e²)^(17/6) for the wave number k,
 ///
-/// which falls with k^(−5/3) at large k; k_e is chosen so that Gusts::size is the integral length. The mean wind
-/// carries the waves along; they change at half the turnover rate of eddies of their size.
+/// which falls as k^(−5/3) at large k; k_e is chosen so that Gusts::size is the integral length. The waves move with
+/// the mean wind. They also change in time, at half the turnover rate of eddies of their size.
 class GustField {
  public:
   /// `wind`: the mean velocity of the air [m/s].

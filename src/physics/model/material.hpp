@@ -1,13 +1,13 @@
-// Properties of a fabric.
+// Physical properties of a fabric.
 #pragma once
 
 #include <string>
 
 namespace weft::model {
 
-/// A fabric in continuum units (Etzmuß et al. 2001, "Elastic Model").
+/// A fabric; the values do not depend on the mesh (Etzmuß et al. 2001, "Elastic Model").
 struct Material {
-  std::string fabric = "cotton";  ///< the named fabric that supplies the default values
+  std::string fabric = "cotton";  ///< name of the fabric that supplies the values that a scene does not give
   double density = 0.15;          ///< [kg/m²]
   double stretch_weft = 800;      ///< k1: stiffness along weft [N/m]
   double stretch_warp = 2100;     ///< k2: stiffness along warp [N/m]
@@ -18,14 +18,14 @@ struct Material {
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 1e-6;   ///< [N·m·s]
-  double bend_friction = 5e-4;    ///< moment per width that must be overcome to change the curvature [N]
+  double bend_friction = 5e-4;    ///< bending moment per width below which the curvature does not change [N]
   double thickness = 0.002;       ///< contact distance between two layers [m]
   double friction = 0.3;          ///< Coulomb coefficient; a contact uses the geometric mean of both objects
   double drag = 1.0;              ///< air resistance coefficient, for motion normal to the cloth; 0: none
 
   /// Whether cloth of this material resists bending. Without it, bending viscosity and friction have no effect.
   bool bends() const { return bend > 0; }
-  /// Whether threads of this material lock: whether it has a limit to stretch or shear.
+  /// Whether this material has a limit to stretch or shear, at which its threads lock.
   bool locks() const { return max_stretch > 0 || max_shear > 0; }
 };
 

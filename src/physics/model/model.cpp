@@ -11,7 +11,7 @@ namespace {
 /// Vertices per task; a task takes some ten microseconds.
 constexpr std::size_t kPlacedPerTask = 4096;
 
-/// Position of a number in an ascending list; absent if the list lacks it.
+/// Position of a number in a list; nothing if the list does not contain it.
 std::optional<std::size_t> position_of(std::size_t number, std::span<const std::size_t> numbers) {
   const auto found = std::ranges::find(numbers, number);
   if (found == numbers.end()) return std::nullopt;

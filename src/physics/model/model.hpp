@@ -1,5 +1,5 @@
-// The simulated model: particles with their materials, and bodies with their motion. Plain values in SI units; neither
-// files nor appearance.
+// The simulated model: cloths with their materials, and bodies with their motion. Plain values in SI units, without
+// file names and appearance.
 #pragma once
 
 #include <cstddef>
@@ -26,27 +26,28 @@
 
 namespace weft::model {
 
-/// A particle of a region of a cloth; `particle` is its index within the cloth.
+/// A particle of a cloth to which a pin, an attachment or a weight applies.
 struct Chosen {
-  Index particle = 0;
+  Index particle = 0;  ///< index within the cloth
   double share = 1;    ///< in (0, 1]: factor on the stiffness of a pin or attachment; relative part of a weight
-  bool faded = false;  ///< in the fade around the region of a pin, not in the region itself
+  bool faded = false;  ///< of a pin: outside of its region, in the fade around it, where `share` falls to 0
 };
 
-/// Particles that are held in place, or moved.
+/// Particles that are held in place, or moved by keys or with a body.
 struct Pin {
-  std::vector<Chosen> particles;    ///< first its region, then its fade
+  std::vector<Chosen> particles;    ///< first those of its region, then those of its fade
   Vec3 middle{0, 0, 0};             ///< mean start position of its region [m]
-  motion::PoseTrack motion;         ///< of `middle`, in the world, if the pin follows nothing
-  std::optional<std::size_t> body;  ///< number of the body whose motion the particles share
-  /// Index, for Model::vertex(), of the point of that body that moves as the first particle; the points of the others
-  /// come next. Absent: the particles follow the nearest triangles of a deforming body, or the pose of a rigid one.
+  motion::PoseTrack motion;         ///< of `middle`, in the world, if the pin follows no body
+  std::optional<std::size_t> body;  ///< number of the body that the pin follows
+  /// If `body` has a vertex for each particle of the pin: index of that of the first particle, for Model::vertex(); the
+  /// others follow in order. Absent: the particles follow the nearest triangles of a deforming body, or the pose of a
+  /// rigid one.
   std::optional<std::size_t> first_vertex;
   double release = -1;             ///< time of release [s]; negative: never
   std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
 };
 
-/// Additional mass, distributed over particles in proportion to their shares.
+/// Additional mass, distributed over particles in proportion to Chosen::share.
 struct Weight {
   std::vector<Chosen> particles;
   double mass = 0;  ///< [kg]
@@ -56,9 +57,9 @@ struct Weight {
 struct Cloth {
   std::string name;
   std::string source;    ///< names the cloth in error messages, such as "napkin.toml:3:1: cloth.napkin"
-  mesh::Grid grid;       ///< if it is made of quads; for a rope, one row
-  mesh::Sheet sheet;     ///< if it is made of triangles, in its own coordinates; else empty
-  bool crossed = false;  ///< four triangles per cell, around its centre; CrossedMembrane prevents membrane locking
+  mesh::Grid grid;       ///< if the cloth is made of quads; for a rope, one row
+  mesh::Sheet sheet;     ///< if the cloth is made of triangles, in its own coordinates; else empty
+  bool crossed = false;  ///< four triangles per cell, around its centre; CrossedMembrane then prevents membrane locking
   mesh::Mesh mesh;       ///< rest shape in the world, posed as at the start; uv: along weft and warp from a corner [m]
   /// Smallest distance between neighbouring particles of a grid or rope [m]. For triangles, √2 times the smallest
   /// height, which gives the same value for the two halves of a square.
@@ -70,13 +71,13 @@ struct Cloth {
   Vec3 spin{0, 0, 0};             ///< added at the start: angular velocity about the centre of mass [rad/s]
   double put_on = 0;              ///< time since the start of the run, preroll included, at which it is put on [s]
   double sewing = 0;              ///< time in which the rest shape changes from the sewn start to flat panels [s]
-  std::vector<std::string> over;  ///< names of all cloths that are put on before it and stay inside it
-  bool untangle = false;          ///< whether the start moves it off surfaces that it touches or crosses
+  std::vector<std::string> over;  ///< names of all cloths that are put on before this one and stay inside it
+  bool untangle = false;          ///< whether it is moved off surfaces that it touches or crosses at the start
   Pressure pressure;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
 
-  /// Whether the start may move the cloth: if `untangle` is set, or if it is worn over other cloth.
+  /// Whether the cloth may be moved before its first step: if `untangle` is set, or if it is worn over other cloth.
   bool may_be_untangled() const { return untangle || !over.empty(); }
 };
 
@@ -84,15 +85,15 @@ struct Cloth {
 struct Dynamics {
   mesh::RigidFrame frame;
   double mass = 0;                 ///< [kg]
-  Vec3 velocity{0, 0, 0};          ///< when forces begin to move it, added to that of its keys [m/s]
-  Vec3 angular_velocity{0, 0, 0};  ///< likewise, about the centre of mass [rad/s]
+  Vec3 velocity{0, 0, 0};          ///< added at `release` to the velocity by its keys [m/s]
+  Vec3 angular_velocity{0, 0, 0};  ///< added at `release`, about the centre of mass [rad/s]
   double release = 0;  ///< from this time on, forces move it instead of its keys [s]; minus infinity: always
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
 struct Patch {
   std::vector<std::uint8_t> vertices;  ///< one flag per vertex of the body; 1: belongs to the patch
-  double thickness = 0;                ///< of padding; half of it is added to the contact distance [m]
+  double thickness = 0;                ///< of padding; the contact distance grows by half of it [m]
   double friction = 0;                 ///< Coulomb coefficient
 };
 
@@ -114,7 +115,7 @@ struct Body {
   std::string name;
   mesh::Mesh mesh;  ///< rigid: in its own coordinates; deforming: in the world at time 0
   std::shared_ptr<const Mover> mover;
-  Parent parent = {};   ///< whose motion since the start of the run is added to its own; rigid bodies only
+  Parent parent = {};   ///< its motion since the start of the run is added to that of `mover`; rigid bodies only
   bool moving = false;  ///< whether `mover` or `parent` move it
   bool collide = true;
   bool infinite_floor = false;
@@ -122,9 +123,9 @@ struct Body {
   std::vector<Patch> patches;
   std::shared_ptr<const Dynamics> dynamics;  ///< of bodies that forces move; else null
   std::vector<Index> limbs;                  ///< of deforming bodies: limb of each vertex, from 0; limbs may intersect
-  /// Triangles of the parts that collide, with cuts closed; empty if all parts collide.
+  /// If only some parts of the mesh collide: their triangles, and triangles that close the cuts between parts.
   std::vector<mesh::Triangle> colliding;
-  std::string advice;  ///< further advice for the error message if it touches a surface at the start; or empty
+  std::string advice;  ///< appended to the error message if the body touches a surface at the start; or empty
 
   bool deforms() const { return std::holds_alternative<motion::KeyFrames>(*mover); }
   std::span<const mesh::Triangle> colliding_triangles() const {
@@ -132,7 +133,7 @@ struct Body {
   }
 };
 
-/// Springs from particles of a cloth to the nearest points of another cloth or body: buttons, pegs, tacks.
+/// Springs from particles of a cloth to the nearest points of another cloth or a body: buttons, pegs, tacks.
 struct Attachment {
   std::string name;
   std::size_t cloth = 0;  ///< number of the cloth whose particles are attached
@@ -140,18 +141,18 @@ struct Attachment {
   std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; one of them is given
   double stiffness = 10000;                      ///< stiffness of the spring of a particle with share 1 [N/m]
   std::optional<double> length;                  ///< rest length of the springs [m]; absent: the distance at `begin`
-  double begin = -1e5, release = -1;             ///< times between which it acts [s]; negative release: for ever
-  std::optional<double> breaking_load;  ///< total force of its springs above which it breaks [N]; absent: never
+  double begin = -1e5, release = -1;             ///< times between which it acts [s]; negative release: until the end
+  std::optional<double> breaking_load;           ///< sum of its spring forces above which it breaks [N]; absent: never
 };
 
-/// A layer of cloths that is put on together.
+/// A layer: cloths that are put on at the same time, over the cloths of the layers before.
 struct Layer {
-  int first_frame = 0;               ///< first frame of dressing; negative in the preroll
+  int first_frame = 0;               ///< frame at which the cloths are put on; negative in the preroll
   std::vector<std::size_t> cloths;   ///< numbers of the cloths of this layer
-  std::vector<std::size_t> dressed;  ///< numbers of the cloths of this and all lower layers, ascending
+  std::vector<std::size_t> dressed;  ///< numbers of the cloths of this and all earlier layers, ascending
 };
 
-/// Only set_motion() changes the motion of a body; until then, a pose computed for a given time stays valid.
+/// A pose computed for a given time stays valid until set_motion() changes the motion of the body.
 struct Model {
   std::string source;  ///< names the scene in error messages: its file
   Vec3 up{0, 0, 1};
@@ -165,34 +166,35 @@ struct Model {
   std::vector<Attachment> attachments;
   std::vector<Layer> layers;                      ///< of all cloths, from the skin outward; empty: one layer
   std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start, for the error message
-  std::string untangle_advice;                    ///< further advice if one of them is cloth; or empty
+  std::string untangle_advice;                    ///< appended to `start_advice` if one of them is cloth; or empty
 
   /// Start of the run, preroll included [s].
   double start_time() const { return -time.preroll_frames / time.fps; }
   /// Whether the air acts on any cloth.
   bool air_acts() const;
-  /// Whether the start may move any cloth.
+  /// Whether Cloth::may_be_untangled() for any cloth.
   bool may_be_untangled() const;
 
-  /// A copy with these cloths alone (ascending numbers). It shares the motions and has no layers, and no attachments of
-  /// or to other cloths.
+  /// A copy with these cloths only; `numbers`: ascending. It shares the motions of bodies. It has no layers, and no
+  /// attachments of or to other cloths.
   Model with_cloths(std::span<const std::size_t> numbers) const;
 
   /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its mesh. Takes time
-  /// linear in the vertices, in parallel; allocates nothing. A body that does not move has its pose of time 0.
+  /// linear in the number of vertices, in parallel; allocates nothing. A body that does not move has its pose of time 0
+  /// at all times.
   void place(std::size_t body, double t, std::span<Vec3> positions) const;
 
   /// Pose of a rigid body at time t [s], with velocities and accelerations.
   motion::PoseSample pose(std::size_t body, double t) const;
   motion::PoseSample pose(const Parent& parent, double t) const;
 
-  /// Motion of one vertex of a deforming body, or of a particle that follows it, at time t [s].
+  /// Motion at time t [s] of one vertex of a deforming body, or of a point that a pin follows (Pin::first_vertex).
   motion::VertexMotion vertex(std::size_t body, std::size_t vertex, double t) const {
     return std::get<motion::KeyFrames>(*bodies[body].mover).at(t, vertex);
   }
 
-  /// Replaces the motion of a rigid body, which from then on follows nothing. The body must be `moving`, and its
-  /// current pose must stay the same.
+  /// Replaces the motion of a rigid body; the body then follows no parent. The body must be `moving`, and the new
+  /// motion must not change its current pose.
   void set_motion(std::size_t body, const motion::PoseTrack& motion);
 };
 

@@ -7,7 +7,7 @@
 
 namespace weft::model {
 
-/// The quantity that is prescribed. The other one, pressure or amount of air, follows from the volume.
+/// The prescribed quantity: the pressure or an amount of air. The other one follows from the volume.
 enum class PressureControl {
   gauge,  ///< pressure above that of the outside air [Pa]
   air,    ///< air pumped in after closing, as volume at outside pressure [m³]; negative: out
@@ -19,11 +19,11 @@ struct PressureKey {
   double value = 0;
 };
 
-/// Air in a cloth. The cloth counts as closed from the start or, if it is sewn, from the end of sewing.
+/// Air in a cloth. The cloth is closed from the start or, if it is sewn, from the end of sewing.
 struct Pressure {
   PressureControl control = PressureControl::gauge;
   double value = 0;  ///< value of the controlled quantity if there are no keys
-  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
   std::vector<PressureKey> keys;                                       ///< empty: constant `value`
 
   /// Whether the enclosed air has any effect on the cloth.

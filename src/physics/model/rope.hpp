@@ -1,4 +1,4 @@
-// Thin chains of particles.
+// Ropes: thin chains of particles.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace weft::model {
 /// Minimum length of a piece between two particles [diameters].
 inline constexpr double kMinRopePiece = 1.5;
 
-/// Rest length of a rope at one time. A change of length is distributed evenly over the rope.
+/// Rest length of a rope at one time. A change of length scales all pieces alike.
 struct RopeKey {
   double time = 0;    ///< [s], strictly increasing
   double length = 1;  ///< rest length [m]
@@ -19,14 +19,14 @@ struct RopeKey {
 /// Properties of a rope: a cloth that is a chain of particles instead of a sheet.
 struct Rope {
   std::vector<double> lengths;  ///< rest lengths of its pieces [m]; a closed rope has as many pieces as particles
-  bool closed = false;          ///< its end joins its beginning
+  bool closed = false;          ///< whether its last particle is connected to its first
   double mass = 0;              ///< [kg/m]
   double stretch = 0;           ///< stiffness EA: force per strain [N]
   double bend = 0;              ///< bending stiffness EI [N·m²]
   double damping = 0;           ///< viscosity of stretch and bending, relative to their stiffness [s]
   double diameter = 0;          ///< contact diameter [m]
   double drag = 0;              ///< air resistance coefficient of a cylinder, for motion across the rope
-  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between its keys
+  motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
   std::vector<RopeKey> keys;                                           ///< of its length; empty: constant length
 };
 

@@ -1,4 +1,4 @@
-// Division of time, and tolerances of the solver.
+// Time steps, and tolerances of the solver.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace weft::model {
 
-/// kMinStep: smallest time step, and smallest time between two keys [s]. kMaxStepsInFrame: largest number of steps in a
-/// frame, which an int counts.
+/// `kMinStep`: smallest time step that a scene may give, and smallest time between two keys [s]. `kMaxStepsInFrame`:
+/// largest number of steps in a frame, so that an int can count them.
 inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
 
 struct Time {

@@ -12,16 +12,15 @@ namespace weft::model {
 
 /// Gravity is the same everywhere. The velocity of the air is the sum of wind, gusts and fans.
 ///
-/// A fan blows into a cone through its disc: the apex is radius / tan(angle / 2) behind the disc. In front of the disc,
-/// the air moves away from the apex with the speed
+/// A fan moves air through its outlet disc into a cone. The apex of the cone is radius / tan(angle / 2) behind the
+/// disc. In front of the disc, the air moves away from the apex with the speed
 ///
 ///     u = speed · (a / s)^falloff · (1 − q²)²,
 ///
 /// where s and a are the distances of the point and of the disc from the apex along the axis, and q is the distance
-/// from the axis relative to the radius of the cone there. A free round jet has an opening angle of about 24 degrees,
-/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). The profile of such a jet is (1 − q²)²,
-/// except at the edge, where (1 − q²)² falls to 0 with zero slope. Behind the disc and outside the cone, a fan adds
-/// nothing.
+/// from the axis relative to the radius of the cone at s. A free round jet has an opening angle of about 24 degrees,
+/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² approximates its profile and
+/// falls to 0 with zero slope at the edge of the cone. Behind the disc and outside the cone, the fan adds no velocity.
 class Weather {
  public:
   explicit Weather(const Model& model);

@@ -1,4 +1,4 @@
-// Interpolation between keys.
+// Kinds of interpolation between keys.
 #pragma once
 
 namespace weft::motion {

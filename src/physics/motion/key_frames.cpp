@@ -21,10 +21,10 @@ KeyFrames::KeyFrames(Interpolation interpolation, double first_time, double inte
   if (interpolation == Interpolation::cubic && moving()) compute_second_derivatives(from_rest);
 }
 
-/// Computes the second derivatives m at the keys with positions x, from the system of natural_second_derivatives()
-/// (spline.hpp) for the segment length h = interval_, divided by h:
+/// Computes the second derivatives m at the keys. x: positions at the keys; h = interval_. Solves the system of
+/// natural_second_derivatives() (spline.hpp) for equal segment lengths h, divided by h:
 ///   m[i-1] + 4 m[i] + m[i+1] = 6 (x[i-1] - 2 x[i] + x[i+1]) / h²
-/// with m = 0 at the end. At the start, m = 0, or for zero velocity 2 m[0] + m[1] = 6 (x[1] - x[0]) / h².
+/// with m = 0 at the end. At the start, m = 0; or, for zero velocity, 2 m[0] + m[1] = 6 (x[1] - x[0]) / h².
 void KeyFrames::compute_second_derivatives(bool from_rest) {
   const std::size_t n = keys_.size(), vertices = keys_.front().size();
   const double factor = 6 / (interval_ * interval_);

@@ -1,4 +1,4 @@
-// Bodies whose vertices are stored as key frames before the simulation starts (Etzmuß et al. 2001, "System").
+// Motion of bodies whose vertex positions are stored for each key frame (Etzmuß et al. 2001, "System").
 #pragma once
 
 #include <span>
@@ -9,25 +9,25 @@
 
 namespace weft::motion {
 
-/// State of one vertex in world space [m, m/s, m/s²].
+/// Motion of one vertex in world space [m, m/s, m/s²].
 struct VertexMotion {
   Vec3 position, velocity, acceleration;
 };
 
-/// Interpolates vertices between equally spaced key frames linearly, or by cubic splines with a continuous second
-/// derivative. Before the first key and from the last one on, the body stands still.
+/// Interpolates vertices between key frames at equal intervals: linearly, or by cubic splines with a continuous second
+/// derivative. Before the first key and from the last one on, the body does not move.
 class KeyFrames {
  public:
-  /// `from_rest`: the spline starts with zero velocity, because the body stands still before the first key. Otherwise
-  /// its acceleration is zero at the start. At the end, its acceleration is always zero. Needs at least one key and a
-  /// positive `interval` [s].
+  /// `first_time`: time of the first key; `interval`: time between keys, positive [s]. `keys`: positions of all
+  /// vertices at each key, at least one. `from_rest`: whether cubic splines start with zero velocity, as the body does
+  /// not move before the first key; otherwise they start with zero acceleration. They end with zero acceleration.
   KeyFrames(Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
             bool from_rest);
 
   /// Writes the positions of all vertices at t [s], in parallel; allocates nothing.
   void at(double t, std::span<Vec3> positions) const;
 
-  /// One vertex with its exact derivatives; at a key of a linear motion, those of the later segment.
+  /// Motion of one vertex, with exact derivatives; at a key of a linear motion, those of the later segment.
   VertexMotion at(double t, std::size_t vertex) const { return at(find_piece(t), vertex); }
 
   bool moving() const { return keys_.size() > 1; }
@@ -35,7 +35,7 @@ class KeyFrames {
   std::size_t bytes() const;
 
  private:
-  /// Position of a time among the keys: `s` [s] after key i; `stands`: before the first key, or from the last one on.
+  /// Position of a time among the keys: `s` [s] after key i. `stands`: before the first key, or from the last one on.
   struct Piece {
     std::size_t i;
     double s;

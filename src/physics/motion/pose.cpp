@@ -5,7 +5,6 @@
 namespace weft::motion {
 
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
-  // The identity rotation counts as angles of 0, even if it is not given as angles.
   const auto angles = [](const Pose& pose) {
     return !pose.angles && pose.rotation.coeffs() == Quat::Identity().coeffs() ? Vec3(Vec3::Zero()) : pose.angles;
   };

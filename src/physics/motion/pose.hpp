@@ -1,4 +1,4 @@
-// Poses of rigid bodies, and their keys.
+// Poses of rigid bodies, and tracks of keyed poses.
 #pragma once
 
 #include <optional>
@@ -9,19 +9,21 @@
 
 namespace weft::motion {
 
-/// A rigid placement: rotation, then translation.
+/// Position and orientation: a point is first rotated, then translated.
 struct Pose {
   Vec3 position{0, 0, 0};  ///< [m]
   Quat rotation{1, 0, 0, 0};
-  std::optional<Vec3> angles{};  ///< of `rotation`, about fixed x, then y, then z [degrees]; may contain whole turns
+  /// Euler angles of `rotation`, about the fixed axes x, then y, then z [degrees]; may contain whole turns.
+  std::optional<Vec3> angles{};
 };
 
-/// Difference of the angles of two poses [degrees]; empty if one of them has no angles. The identity rotation has the
-/// angles 0, even if they are not given.
+/// Difference of Pose::angles of two poses [degrees]; nothing if one of them has no angles. The identity rotation has
+/// the angles 0 if none are given.
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
-/// The rotation R with the largest tr(Rᵀ M). If M is almost a rotation, R is the nearest rotation. If M = Σ (y − ȳ)(x −
-/// x̄)ᵀ, R maps points x to y best in the least-squares sense (Kabsch, Acta Cryst. A32, 1976).
+/// The rotation R that maximises tr(Rᵀ M), for M = `matrix`. If M is almost a rotation, R is the rotation nearest to M.
+/// If M = Σ (y − ȳ)(x − x̄)ᵀ, R maps the points x to the points y with the least sum of squared errors (Kabsch, Acta
+/// Cryst. A32, 1976).
 Mat3 best_rotation(const Mat3& matrix);
 
 struct PoseKey {
@@ -31,7 +33,7 @@ struct PoseKey {
 
 struct PoseTrack {
   Interpolation interpolation = Interpolation::cubic;
-  std::vector<PoseKey> keys;  ///< empty: keeps the object's own pose
+  std::vector<PoseKey> keys;  ///< empty: the object keeps its rest pose (Track)
 };
 
 }  // namespace weft::motion

@@ -13,8 +13,9 @@
 
 namespace weft::motion {
 
-/// Second derivatives m at the keys of the natural cubic spline (zero at both ends); `h`: segment lengths, `d`: slopes
-/// of the segments (difference of values over length). Standard tridiagonal system, for inner keys i:
+/// Second derivatives m at the keys of the natural cubic spline; they are zero at both ends. `h`: lengths of the
+/// segments between keys; `d`: mean slopes of the segments (difference of values / length). Solves the tridiagonal
+/// system, for each inner key i:
 ///   h[i-1] m[i-1] + 2 (h[i-1] + h[i]) m[i] + h[i] m[i+1] = 6 (d[i] - d[i-1])
 template <class Value>
 std::vector<Value> natural_second_derivatives(std::span<const double> h, std::span<const Value> d) {
@@ -32,10 +33,11 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
 }
 
 /// Slopes at the keys of the natural cubic spline, limited per component so that the curve stays between the values of
-/// neighbouring keys. If the slopes d on both sides of a key differ in sign, the slope at the key is 0; otherwise it
-/// has their sign, and its magnitude is at most three times the smaller of theirs (Fritsch & Carlson, "Monotone
-/// piecewise cubic interpolation", SIAM J. Numer. Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat.
-/// Comput. 4, 1983). Without the limit, an object moves backward before it begins to move forward.
+/// neighbouring keys. `h`, `d`: as in natural_second_derivatives(). If the segments on both sides of a key have slopes
+/// d of different signs, the slope at the key is 0. Otherwise it has their sign, and its magnitude is at most three
+/// times the smaller of their magnitudes (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer.
+/// Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit, an object
+/// moves backward before it begins to move forward.
 template <class Value>
 std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
   const std::size_t n = h.size();
@@ -52,15 +54,14 @@ std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<cons
   return slopes;
 }
 
-/// Index of the segment that holds t; at a key, the one to its right. Requires times.front() <= t < times.back().
+/// Index of the segment that contains t; at a key, the later segment. Requires times.front() <= t < times.back().
 inline std::size_t find_segment(std::span<const double> times, double t) {
   return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), t) - times.begin()) - 1;
 }
 
-/// A vector-valued function of time through keys: piecewise linear, or cubic with limited slopes
-/// (slopes_between_keys()). The cubic has a continuous first derivative, and a continuous second derivative where no
-/// slope is limited. Before the first key and from the last one on, the value is that of this key, and derivatives are
-/// zero.
+/// A vector-valued function of time through keys: piecewise linear, or cubic with the slopes of slopes_between_keys().
+/// The cubic has a continuous first derivative; its second derivative is continuous at keys where no slope is limited.
+/// Before the first key and from the last one on, the value is that of this key, and derivatives are zero.
 template <int Dim>
 class Spline {
  public:
@@ -68,8 +69,8 @@ class Spline {
 
   struct Sample {
     Value value;                              ///< in the unit of the keys
-    Value first_derivative = Value::Zero();   ///< per s; at a key of a linear track, of the later segment
-    Value second_derivative = Value::Zero();  ///< per s²
+    Value first_derivative = Value::Zero();   ///< [unit/s]; at a key of a linear spline, that of the later segment
+    Value second_derivative = Value::Zero();  ///< [unit/s²]
   };
 
   /// Needs at least one key, as many values as times, and strictly increasing times [s].
@@ -99,8 +100,8 @@ class Spline {
   std::vector<double> times_;
   std::vector<Value> values_;
   std::vector<double> lengths_;  ///< of the segments [s]
-  std::vector<Value> chords_;    ///< slopes of the segments
-  std::vector<Value> slopes_;    ///< at the keys; empty for linear tracks
+  std::vector<Value> chords_;    ///< mean slopes of the segments
+  std::vector<Value> slopes_;    ///< at the keys; empty for linear splines
 };
 
 }  // namespace weft::motion

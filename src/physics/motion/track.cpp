@@ -10,12 +10,14 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Tolerance for half turns [rad]: far above the rounding of quaternions, far below what is visible.
+/// Deviation up to which a rotation counts as half a turn [rad]: far above the rounding of quaternions, far below what
+/// is visible.
 constexpr double kHalfTurnTolerance = 1e-6;
 
+/// Rotation with the rotation vector w.
 Quat exp(const Vec3& w) {
   const double angle = w.norm();
-  // sin(angle / 2) / angle; by its series for small angles, since the quotient is 0 / 0 at angle 0.
+  // sin(angle / 2) / angle; for small angles by its series, because the quotient is 0 / 0 at angle 0.
   const double factor = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
   return Quat(std::cos(0.5 * angle), factor * w.x(), factor * w.y(), factor * w.z());
 }
@@ -37,11 +39,12 @@ Vec3 log_near(const Quat& q, const Vec3& guess) {
   return w + 2 * kPi * std::round((guess.dot(axis) - angle) / (2 * kPi)) * axis;
 }
 
-/// Rotation vector of a change of at most one angle [rad], including whole turns; none if several angles change.
+/// If at most one of the Euler angles (Pose::angles) changes: rotation vector of that change [rad], including whole
+/// turns. Otherwise nothing.
 std::optional<Vec3> turn_of_one_angle(const Pose& from, const Pose& to) {
   const std::optional<Vec3> change = change_of_angles(from, to);
   if (!change || (change->array() != 0).count() > 1) return std::nullopt;
-  // The rotation about x comes first, so those about y and z turn its axis; the rotation about z turns the axis of y.
+  // The rotations are applied in the order x, y, z: those about y and z turn the axis of x, that about z the axis of y.
   const Vec3 angles = kPi / 180 * to.angles.value_or(Vec3::Zero());
   Vec3 axis = Vec3::UnitZ();
   if (change->x() != 0) axis = Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) * Vec3::UnitX();
@@ -49,7 +52,7 @@ std::optional<Vec3> turn_of_one_angle(const Pose& from, const Pose& to) {
   return Vec3(kPi / 180 * change->sum() * (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * axis));
 }
 
-/// Rotation vectors from key to key [rad].
+/// Rotation vectors from each key to the next [rad].
 std::vector<Vec3> rotation_vectors_between(const std::vector<Pose>& poses) {
   std::vector<Vec3> turns;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
@@ -58,7 +61,7 @@ std::vector<Vec3> rotation_vectors_between(const std::vector<Pose>& poses) {
       continue;
     }
     Vec3 turn = log(poses[i + 1].rotation * poses[i].rotation.conjugate());
-    // The sign of a half turn's axis is rounding noise: continue in the direction of the turn before.
+    // The sign of a half turn's axis is rounding noise: use the direction of the turn before.
     if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
       turn -= 2 * kPi * turn.normalized();
     turns.push_back(turn);
@@ -66,8 +69,9 @@ std::vector<Vec3> rotation_vectors_between(const std::vector<Pose>& poses) {
   return turns;
 }
 
-/// Multiplies a rotation p with known angular velocity and acceleration by e = exp(b w) from the left; db, ddb: time
-/// derivatives of b. The angular velocity becomes db w + e (angular velocity of p); the acceleration is its derivative.
+/// Replaces the rotation p by e p with e = exp(b w), and updates its angular velocity and acceleration; db, ddb: time
+/// derivatives of b. The angular velocity becomes db w + e (angular velocity of p); the angular acceleration is its
+/// time derivative.
 void rotate_sample(RotationSpline::Sample& p, const Vec3& w, double b, double db, double ddb) {
   const Quat e = exp(b * w);
   const Vec3 carried = e * p.angular_velocity;
@@ -114,7 +118,7 @@ RotationSpline::RotationSpline(Interpolation interpolation, std::vector<double> 
     const double h = lengths[i];
     Segment segment{times_[i], h, rotations_[i], Vec3::Zero(), turns[i], Vec3::Zero()};
     if (interpolation_ == Interpolation::cubic) {
-      // w1 and w3 give the angular velocities (slopes) at both keys; w2 is the rotation that remains between them.
+      // w1 and w3 follow from the angular velocities (slopes) at both keys; w2 is the rest of the rotation.
       segment.w1 = h / 3 * slopes[i];
       segment.w3 = h / 3 * slopes[i + 1];
       const Quat middle = exp(-segment.w3) * rotations_[i + 1] * rotations_[i].conjugate() * exp(-segment.w1);
@@ -147,8 +151,8 @@ Track::Track(const PoseTrack& track, const Pose& rest)
       rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
-// A time that differs from a key's only by rounding counts as the key's. Otherwise a track that ends at this key would
-// differ by rounding from one that continues, and contacts of cloth amplify this to millimetres.
+// A time that differs from that of a key only by rounding counts as that of the key. Otherwise a track that ends at
+// this key and one that continues would differ by rounding, which contacts of cloth amplify to millimetres.
 PoseSample Track::at(double t) const {
   constexpr double kRounding = 1e-12;  // [s]
   const auto key = std::ranges::lower_bound(times_, t - kRounding);

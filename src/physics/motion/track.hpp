@@ -8,7 +8,7 @@
 
 namespace weft::motion {
 
-/// A pose and how it changes, all in world space.
+/// A pose with its velocities and accelerations, in world space.
 struct PoseSample {
   Vec3 position{0, 0, 0};              ///< of the body's origin [m]
   Quat rotation{1, 0, 0, 0};           ///< body to world
@@ -17,7 +17,7 @@ struct PoseSample {
   Vec3 acceleration{0, 0, 0};          ///< [m/s²]
   Vec3 angular_acceleration{0, 0, 0};  ///< [rad/s²]
 
-  /// World velocity [m/s] of the body's point at position + `arm`; `arm` along the axes of the world [m].
+  /// World velocity [m/s] of the body's point at position + `arm`; `arm`: in world axes [m].
   Vec3 velocity_at(const Vec3& arm) const { return velocity + angular_velocity.cross(arm); }
 
   /// World acceleration [m/s²] of the same point.
@@ -26,17 +26,20 @@ struct PoseSample {
   }
 };
 
-/// Motion of an object that follows `parent`, in the world: the product of poses parent · parent_start⁻¹ · own, with
-/// exact derivatives. `own` is the motion that the object has if the parent stays at `parent_start`.
+/// World motion of an object that follows `parent`: the product of poses parent · parent_start⁻¹ · own, with exact
+/// derivatives. `own`: motion of the object if the parent stays at `parent_start`.
 PoseSample compose(const PoseSample& parent, const Pose& parent_start, const PoseSample& own);
 
-/// Interpolates rotations through keys. If two successive keys have Euler angles (see change_of_angles()) and at most
-/// one of the three differs, the rotation turns by that difference, including whole turns. Otherwise it turns by the
-/// smallest angle; a half turn continues the direction of the turn before it. Linear: constant angular velocity between
-/// keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions with derivatives in closed form (Kim, Kim &
-/// Shin, "A general construction scheme for unit quaternion curves with simple high order derivatives", SIGGRAPH 1995);
-/// angular velocity is continuous. Angular velocities at the keys are slopes_between_keys() (spline.hpp) of the
-/// rotation vectors between keys, so rotation about one axis is the Spline of the angle.
+/// Interpolates rotations through keys. From one key to the next, the object rotates by the smallest possible angle; if
+/// this is half a turn, in the direction of the rotation before. If both keys have Euler angles (see
+/// change_of_angles()) and at most one of the three differs, the object rotates by that difference instead, including
+/// whole turns.
+///
+/// Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions
+/// with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with
+/// simple high order derivatives", SIGGRAPH 1995). The angular velocity is then continuous; at the keys it is
+/// slopes_between_keys() (spline.hpp) of the rotation vectors between keys. Therefore a rotation about one axis equals
+/// the Spline of its angle.
 class RotationSpline {
  public:
   struct Sample {
@@ -65,8 +68,8 @@ class RotationSpline {
   std::vector<Segment> segments_;
 };
 
-/// The pose of a track at any time. Before the first key and from the last one on the body rests; at the first key
-/// it has the velocity of the first segment.
+/// The pose of a PoseTrack at any time. Before the first key and from the last one on, it does not change; at the first
+/// key, its velocity is that of the first segment.
 class Track {
  public:
   /// `rest`: the pose of a track without keys.

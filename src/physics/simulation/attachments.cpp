@@ -99,8 +99,8 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
     }
     const double distance = (place - own).norm();
     spring.length = attachment.length.value_or(distance);
-    // A spring alone moves its particle at up to gap √(k/m), where the gap is the distance beyond the rest length. An
-    // implicit step moves the particle by no more than the gap.
+    // Let e be the spring's extension beyond its rest length. Without other forces, the particle reaches the speed e
+    // √(k/m). An implicit step moves it by at most e, so its speed is also at most e / step.
     const double rate = std::min(std::sqrt(spring.stiffness / masses[spring.particle]), 1 / step_);
     attachment.speed = std::max(attachment.speed, rate * (distance - spring.length));
     if (attachment.frame >= 0) move_to_frame(attachment, spring);
@@ -110,7 +110,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
 
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses) {
   for (Attachment& attachment : attachments_) {
-    // A longer, rejected attempt has tied the attachment, but this step ends before the attachment begins.
+    // A longer attempt, which was rejected, tied the attachment. This shorter step ends before the attachment begins.
     if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;
@@ -173,7 +173,7 @@ void Attachments::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force)
 
 void Attachments::add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const {
   for_each_tension(x_end, [&](const Attachment& attachment, const Spring& spring, const Tension& tension) {
-    // Positive semidefinite, because the spring is in tension.
+    // This matrix is positive semidefinite, because 0 < lateral <= spring.stiffness for a spring in tension.
     const double lateral = tension.force / tension.length;
     const Mat3 stiffness =
         end_rate *

@@ -14,42 +14,43 @@
 
 namespace weft::simulation {
 
-/// When an attachment begins, it ties each of its particles to the nearest point on its target. This point is a sum,
-/// with fixed weights, of the corners of a triangle or, on a body that forces move, of the four particles of its frame.
-/// If the distance l of particle and point exceeds L, a spring pulls with k (l − L), k = Spring::stiffness. L is the
-/// `length` of the model, or else the distance at which the particle was tied. A shorter distance causes no force:
-/// contact keeps surfaces apart.
+/// At its `begin` time, an attachment (model::Attachment) ties each of its particles to the nearest point on its
+/// target. The point moves with the target: it is a weighted sum, with constant weights, of the corners of a triangle
+/// or, if forces move the target body, of the four particles of its frame (mesh::RigidFrame).
 ///
-/// The spring forces follow from the positions at the end of the step, as contact forces do.
+/// If the distance l between the particle and its point exceeds the rest length L, a spring pulls with the force k (l −
+/// L), k = Spring::stiffness. Otherwise the spring is slack and exerts no force. L is model::Attachment::length or, if
+/// that is absent, l at the time of tying. The forces act at the positions at the end of the step, as those of contacts
+/// do.
 class Attachments {
  public:
-  /// `first_particle`: of each cloth; `first_of_frames`: first frame particle of each body, −1 for a body that forces
-  /// do not move. The model must outlive this object.
+  /// `first_particle`: of each cloth; `first_of_frames`: first frame particle of each body, −1 for a body without a
+  /// frame. The model must outlive this object.
   Attachments(const model::Model& model, std::span<const Index> first_particle, std::span<const Index> first_of_frames);
 
   bool empty() const { return attachments_.empty(); }
 
-  /// Begins a step from t0 to t1 [s] with particles at x [m] of these masses [kg]: selects the attachments
-  /// that hold in the step, ties new ones, and computes where their points on key-framed bodies are at t1.
+  /// Begins a step from t0 to t1 [s] with particles at x [m]: selects the attachments that hold in the step, ties new
+  /// ones, and computes where their points on key-framed bodies are at t1. `masses`: of all particles [kg].
   void begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses);
-  /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies are at the same
-  /// places.
+  /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies have the same
+  /// positions at both times.
   bool are_constant_between(double t0, double t1) const;
 
   /// Adds the spring forces to `force` [N]; `x_end`: all particles at the end of the step [m].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds the stiffness of the springs in tension, times `end_rate` (integrator::StagePoint), to the terms of the
-  /// system.
+  /// Adds the stiffness of the springs that are not slack, times `end_rate` (integrator::StagePoint), to `system`.
   void add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const;
   /// Energy of the springs [J].
   double energy(std::span<const Vec3> x_end) const;
 
-  /// Accepts the step that ends at x [m]: measures forces, and breaks attachments above their breaking load. Returns
-  /// warnings of attachments that were tied in this step and pull too fast for cloth to follow.
+  /// Accepts the step that ends at x [m]: computes the load of each attachment, and breaks those above their breaking
+  /// load. Returns a warning for each attachment that was tied in this step and pulls particles faster than
+  /// kMaxHoldSpeed (pins.hpp).
   std::vector<std::string> accept(std::span<const Vec3> x);
   std::vector<AttachmentLoad> measure() const;
 
-  /// Copies the state of attachments of the same name. `cloths[k]`: number in this object of cloth k of `there`.
+  /// Copies the state of attachments of the same name. `cloths[k]`: number, in this object, of cloth k of `there`.
   void copy_state_from(const Attachments& there, std::span<const std::size_t> cloths);
 
   template <class Archive>
@@ -77,7 +78,7 @@ class Attachments {
     std::vector<Spring> springs;
     State state = State::open;
     bool holds = false;  // in the current step
-    double speed = 0;    // at which it pulls newly tied particles [m/s]; accept() sets it to 0
+    double speed = 0;    // largest speed to which it can pull newly tied particles [m/s]; accept() sets it to 0
     double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };
   struct Tension {

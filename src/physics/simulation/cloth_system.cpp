@@ -52,8 +52,8 @@ double max_extension(const model::Material& m) {
   return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
 }
 
-/// A box of a lattice over the rest shape: indices along the normal, warp and weft of a grid, or along z, y and x for
-/// triangles.
+/// Indices of one box of a lattice over the rest shape, from which build_aggregates() makes aggregates: along normal,
+/// warp and weft of a grid, or along z, y and x for triangles.
 using Box = std::array<int, 3>;
 struct Lattice {
   std::vector<Box> boxes;       // of each particle, or of each box of the finer lattice
@@ -79,8 +79,8 @@ Lattice lattice_of(const model::Cloth& cloth) {
   return lattice;
 }
 
-// Doubles each side of the boxes that is at most √2 times the shortest one, so that sides become more equal; only axes
-// with several boxes count for the shortest. Cloth is stiffest between close particles, so these are merged first.
+// Doubles each side of the boxes that is at most √2 times the shortest one (of axes with several boxes), so that sides
+// become more equal. Cloth is stiffest between close particles, so these are merged first.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -264,9 +264,9 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
 }
 
-// Divides each part into ranges that threads evaluate in parallel; if there are more ranges than threads, each thread
-// gets the same number. Forces across the border of two ranges are evaluated twice: a tenth of all if a range has 1,024
-// particles in 16 rows.
+// Divides each part into ranges that threads evaluate in parallel. If a part has more ranges than there are threads,
+// their number is a multiple of the number of threads. Both ranges evaluate a force between their particles: a tenth of
+// all forces is evaluated twice if a range has 1,024 particles in 16 rows.
 void ClothSystem::divide_into_ranges() {
   const Index threads = thread_count();
   for (std::size_t c = 0; c < parts(); ++c) {
@@ -293,9 +293,9 @@ std::size_t ClothSystem::largest_range_count() const {
   return count;
 }
 
-// Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()), until at
-// most numerics.linear.coarsest_aggregates boxes are left, or one per cloth. Frame particles stay aggregates of their
-// own.
+// Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()). The last
+// level has at most `numerics.linear.coarsest_aggregates` boxes, or one per cloth if there are more cloths. Each frame
+// particle is an aggregate of its own at all levels.
 void ClothSystem::build_aggregates(const model::Model& model) {
   std::vector<Lattice> lattices;
   for (const model::Cloth& cloth : model.cloths) lattices.push_back(lattice_of(cloth));

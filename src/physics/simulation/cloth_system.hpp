@@ -27,9 +27,9 @@ struct LockLinearisation;
 namespace weft::simulation {
 
 /// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
-/// each body that forces move: its frame. A part is a cloth or such a frame. Besides their arguments, forces depend
-/// only on quantities that change with time: rest shapes of cloth that is being sewn, rope lengths, enclosed air, and
-/// which particles are held.
+/// each body that forces move: its frame (mesh::RigidFrame). A part is a cloth or such a frame. Besides their
+/// arguments, forces depend on rest shapes of cloth that is being sewn, rope lengths, enclosed air, and which particles
+/// are held. sew(), inflate() and hold() update these.
 class ClothSystem {
  public:
   explicit ClothSystem(const model::Model& model);
@@ -44,9 +44,10 @@ class ClothSystem {
   /// Smallest distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
-  /// Sets gravity for cancel_weight_of_sewn_cloth() in the following steps [m/s²].
+  /// Sets the gravity that cancel_weight_of_sewn_cloth() uses in the following steps [m/s²].
   void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
-  /// Cancels the weight of cloth that is being sewn, which would otherwise fall before it fits.
+  /// Subtracts the weight of cloth that is being sewn from `force` [N]. Otherwise the cloth would fall before its seams
+  /// are closed.
   void cancel_weight_of_sewn_cloth(std::span<Vec3> force) const;
 
   /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
@@ -60,18 +61,20 @@ class ClothSystem {
   /// Number of ranges if the number of threads were unlimited.
   std::size_t largest_range_count() const;
 
-  /// Adds the forces on one part, without its weight; `at` has positions, velocities and forces of all particles.
+  /// Adds the forces on the part with number `cloth`, without its weight. `at` has positions, velocities and forces of
+  /// all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
-  /// Where the thread locks (forces::StretchLimit) are linearised, per cloth; empty for cloths without a limit to
-  /// stretch.
+  /// Per cloth, the linearisation of the forces that limit its extension (thread locks, forces::StretchLimit); empty
+  /// for cloths without such a limit.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
-  /// Call StretchLimit::begin(), update() and add_lag() for all cloths with a limit to stretch.
+  /// These functions call StretchLimit::begin(), update() and add_lag() for all cloths with a limit.
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
 
-  /// Fills in rate² M and the constant part of the stiffness, which only hold() and sew() change.
+  /// Fills `assembly` with rate² M and the part of the stiffness that does not depend on positions. Only hold() and
+  /// sew() change that part.
   void fill_constant(double rate, solver::Assembly& assembly) const;
 
   /// An empty system with the sparsity pattern of these forces.
@@ -81,8 +84,8 @@ class ClothSystem {
   /// run]. Returns whether this changes the constant part of the stiffness.
   bool sew(double t);
 
-  /// Whether rope lengths, sewing, ties and the air that the model gives are the same at the scene times t0 and t1 [s],
-  /// which differ from those of sew().
+  /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1. Both are
+  /// scene times [s]; sew() takes the time since the start of the run.
   bool is_constant_between(double t0, double t1) const;
 
   /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
@@ -91,18 +94,18 @@ class ClothSystem {
   const Inflation& inflation() const { return inflation_; }
   Inflation& inflation() { return inflation_; }
 
-  /// Sets which particles pins hold. Returns whether this set has changed; the bending stiffness beside pins then
-  /// changes, too.
+  /// Sets which particles pins hold. Returns whether this set, and with it the bending stiffness beside pins, has
+  /// changed.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
-  /// Accepts a step that ends with particles at x [m]: seams may tear.
+  /// Accepts a step that ends with particles at x [m]: tears overloaded seams.
   void accept(std::span<const Vec3> x);
-  /// The pull of each seam that can tear [N].
+  /// The load of each seam that can tear.
   std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
-  /// Copies which ties of seams hold or are torn. `cloths[k]`: number in this object of cloth k of `there`.
+  /// Copies which ties of seams hold or are torn. `cloths[k]`: number, in this object, of cloth k of `there`.
   void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
 
-  /// Saves or restores what persists from frame to frame: progress of sewing, torn seams, and enclosed air.
+  /// Saves or restores the progress of sewing, torn seams, and enclosed air.
   template <class Archive>
   void serialize(Archive& archive);
 
@@ -113,7 +116,7 @@ class ClothSystem {
   /// Gravitational energy, zero at the origin [J].
   double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
   double max_strain(std::span<const Vec3> x) const;
-  /// The largest extension of threads, relative to the limit of their cloth.
+  /// The place with the largest extension of threads, relative to the limit of their cloth.
   struct Overstretch {
     double ratio = 0;       ///< extension / limit; 0 if no cloth has a limit
     std::size_t cloth = 0;  ///< number of the cloth
@@ -144,7 +147,7 @@ class ClothSystem {
   struct Sewing {
     std::size_t cloth;
     double begin, duration;  // [s]; begin: since the start of the run
-    double progress = -1;    // rest shape from the start (0) to flat panels (1); −1: not set yet
+    double progress = -1;    // of the rest shape: 0: start shape, 1: flat panels; −1: not set yet
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;                      // nullptr if the cloth has none
     forces::StretchLimit* limit;               // nullptr if the cloth has none
@@ -168,7 +171,7 @@ class ClothSystem {
   Vec3 gravity_;
   double begin_;  // start of the run [s]
   double spacing_ = std::numeric_limits<double>::infinity();
-  std::vector<solver::Aggregates> aggregate_levels_;  // aggregates of the preconditioner, finest first
+  std::vector<solver::Aggregates> aggregate_levels_;  // of the preconditioner, finest first
 };
 
 }  // namespace weft::simulation

@@ -25,8 +25,9 @@ bool moves_by_forces(const model::Body& body) {
   return body.dynamics != nullptr;
 }
 
-// Numbers of the colliding bodies; those that forces move come first. If none of these collides, one that does not
-// collide comes first, because the frame particles of all bodies belong to the first body.
+// Numbers of the colliding bodies; dynamic bodies (moved by forces) come first. The engine counts the frame particles
+// of all dynamic bodies as vertices of the first one. Therefore, if there are dynamic bodies but none collides, the
+// first of them is listed, too.
 std::vector<std::size_t> colliding_bodies(const model::Model& model) {
   std::vector<std::size_t> bodies;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
@@ -38,7 +39,7 @@ std::vector<std::size_t> colliding_bodies(const model::Model& model) {
   return bodies;
 }
 
-// Contact thickness of a body that forces move [m].
+// Contact thickness of a dynamic body [m].
 double thickness_of(const model::Dynamics& dynamics) {
   return std::min(numerics.bodies.thickness,
                   numerics.bodies.thickness_of_size * dynamics.frame.deviations().minCoeff());
@@ -123,7 +124,7 @@ collision::Bodies make_bodies(const model::Model& model, const ClothSystem& clot
   return bodies;
 }
 
-// Largest distance of a vertex from the origin of a moving obstacle [m]; 0 for other bodies.
+// Largest distance of a vertex from the origin of a body that moves without deforming [m]; 0 for other bodies.
 double radius_of(const model::Body& body) {
   double radius_sq = 0;
   if (body.moving && !body.deforms())
@@ -191,7 +192,7 @@ std::vector<IntersectionPlace> CollisionStage::find_intersections(const SystemSt
 }
 
 double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
-  constexpr int kMaxStackHeight = 32;  // bodies on top of each other; each round lifts one more
+  constexpr int kMaxStackHeight = 32;  // maximum number of bodies on top of each other; each round lifts one more
   const std::size_t cloths = model_.cloths.size();
   const collision::Bodies& bodies = engine_.bodies();
   const auto is_free = [&](std::size_t body) {
@@ -207,7 +208,7 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start)
     return body < cloths && model_.cloths[body].may_be_untangled();
   };
   const std::vector<Vec3> given = start.x;
-  // If surfaces still touch, tries again, and ignores cloth that untangle() may move.
+  // First considers all surfaces. If some still touch at the end, starts again without cloth that untangle() may move.
   for (const bool with_all : {true, false}) {
     const auto find_pairs = [&] {
       std::vector<std::array<std::size_t, 2>> pairs;
@@ -296,7 +297,7 @@ bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemStat
   const double max_sagitta = numerics.contact.margin * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= model_.bodies[bodies_[b]].dynamics->release)) continue;
-    // The angular velocity hardly changes between keys; a body stops at its last key.
+    // Three samples are enough: the angular velocity hardly changes between keys, and a body stops at its last key.
     double angle = 0;
     for (const double fraction : {0.0, 0.5, 1.0})
       angle = std::max(angle, h * model_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
@@ -331,8 +332,8 @@ bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemS
   return true;
 }
 
-// Whether a triangle of cloth, which keeps its velocity, meets the box that an obstacle sweeps as it turns by `angle`
-// [rad].
+// Whether the bounds of a cloth triangle that keeps its velocity overlap the bounds that an obstacle sweeps as it turns
+// by `angle` [rad].
 bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle,
                                       const SystemState& now) const {
   constexpr double kMaxPieceAngle = 0.25;  // [rad]
@@ -357,8 +358,7 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
   });
 }
 
-// Rigid motion of a body from t to t + h; the identity for still bodies, for characters, which deform, and for bodies
-// that forces move.
+// Rigid motion of a body from t to t + h; the identity for bodies that do not move, that deform, or that forces move.
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
   const model::Body& object = model_.bodies[body];

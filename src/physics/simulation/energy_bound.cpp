@@ -12,7 +12,7 @@
 namespace weft::simulation {
 namespace {
 
-// Whether pins alone drive the cloth, and their work is counted.
+// Whether pins alone drive the cloth, and StepWork has all their work.
 bool is_driven_by_pins_alone(const model::Model& model) {
   const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const model::Cloth& cloth : model.cloths) {
@@ -20,7 +20,7 @@ bool is_driven_by_pins_alone(const model::Model& model) {
     if (!cloth.over.empty()) return false;             // this cloth, with its energy, is added later
     if (cloth.pressure.keys.size() > 1) return false;  // pumping does work
     if (cloth.rope && cloth.rope->keys.size() > 1) return false;
-    // A pin with a strength is a spring, whose work is not counted.
+    // A pin with a strength is a spring, whose work is not measured.
     for (const model::Pin& pin : cloth.pins)
       if (pin.strength && (moves(pin.motion) || pin.body)) return false;
   }
@@ -31,7 +31,7 @@ bool is_driven_by_pins_alone(const model::Model& model) {
         (body.dynamics->velocity != Vec3::Zero() || body.dynamics->angular_velocity != Vec3::Zero()))
       return false;
   }
-  // The work of attachments is not counted if they contract to a given length, or if their target moves.
+  // Attachments that contract to a given length, or whose target moves, do work that is not measured.
   for (const model::Attachment& attachment : model.attachments)
     if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].moving)) return false;
   const std::vector<model::PhysicsKey>& keys = model.physics.keys;
@@ -97,7 +97,7 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
 }
 
 std::optional<std::string> EnergyBound::check_solver(int frame) {
-  const double in_play = energy_in_play() + highest_;  // adds highest_, because not only pins may drive the cloth
+  const double in_play = energy_in_play() + highest_;  // in this check, more than pins may drive the cloth
   if (warned_of_solver_ || solver_work_ <= numerics.energy.failing_gain * in_play + negligible_energy_) return {};
   warned_of_solver_ = true;
   return fmt::format(

@@ -1,5 +1,5 @@
-// Detects energy without a source, because an unstable run may stay finite for long. Detects large work of the solver's
-// residual, too.
+// Detects energy without a source, because an unstable run may stay finite for long. Also detects large work of the
+// solver's residual.
 #pragma once
 
 #include <optional>
@@ -13,19 +13,20 @@
 namespace weft::simulation {
 
 /// If nothing but pins drives a model (no moving body, no wind), its mechanical energy grows at most by the work of the
-/// pins, and by what inexact solves add. A run that gains more warns (numerics.energy.doubtful_gain); a run that gains
-/// much more fails (failing_gain). If cloth can touch something and the method damps, the run only warns: contacts at
-/// long steps can add energy, which the method then damps away. Any run warns if the work of the solver's
-/// residual is large: the motion stays finite but may be far off.
+/// pins and by the errors of the solver. A run that gains more warns (`numerics.energy.doubtful_gain`); a run that
+/// gains much more fails (`failing_gain`). If cloth can touch something and the method damps, the run only warns:
+/// contacts at long steps can add energy, which the method then damps. Any run warns if the work of the solver's
+/// residual is large: the motion stays finite but may be far from the exact one.
 class EnergyBound {
  public:
   /// `mass`: of all particles [kg].
   EnergyBound(const model::Model& model, double mass, const FrameReport& start);
 
-  /// Checks a frame. Returns warnings, each once in a run; throws Error(simulation_failed) if far too much is gained.
+  /// Checks a frame. Returns warnings, each once in a run. Throws Error(simulation_failed) if the gain exceeds
+  /// `failing_gain`.
   std::vector<std::string> check(const FrameReport& energies);
 
-  /// Ends the checks of gains, because something else drives the model from now on.
+  /// Ends the checks of gains: call it when something other than pins begins to drive the model.
   void exempt_gains() { is_exempt_ = true; }
 
   template <class Archive>
@@ -40,12 +41,12 @@ class EnergyBound {
   std::optional<std::string> check_solver(int frame);
 
   bool applies_, damped_contact_;  // whether pins alone drive the model; whether a gain only warns
-  // Whether gains are not checked any more: of exempt_gains(), or because pinned particles have lagged, as the work of
-  // the force that pulls these particles is not counted.
+  // Whether gains are not checked any more: exempt_gains() was called, or pinned particles have lagged. (The work of
+  // the force that pulls lagging particles is not measured.)
   bool is_exempt_ = false;
   bool warned_ = false, warned_of_solver_ = false;
   integrator::Method integrator_;
-  double negligible_energy_;               // smaller differences are no error [J]
+  double negligible_energy_;               // added to each bound, Numerics::Energy::negligible [J]
   double start_energy_;                    // mechanical energy at the start [J]
   double start_kinetic_, start_elastic_;   // at the start [J]
   double potential_low_, potential_high_;  // lowest and highest so far [J]

@@ -1,4 +1,4 @@
-// Data of a frame and its objects for statistics and plots.
+// Measured data of one frame, for statistics and plots.
 #pragma once
 
 #include <string>
@@ -15,20 +15,21 @@ struct EnclosedAir {
   double pressure = 0;  ///< gauge pressure: above that outside [Pa]
 };
 
-/// The force on an attachment, or on a seam that can tear.
+/// The load of an attachment, or of a seam that can tear.
 struct AttachmentLoad {
   std::string name;
   double load = 0;  ///< sum of the forces of its springs, at the end of the frame [N]
   bool holds = false;
 };
 
-/// Time and counts of the computation of one frame, and quantities measured in it.
+/// Computation time and counts of one frame, and quantities measured in it.
 struct FrameReport {
   int frame = 0;
   double time = 0;  ///< [s]
   StageTime simulate;
-  /// Parts of `simulate`. collide: contact detection and separation of surfaces. forces: forces and their matrix.
-  /// preconditioner: setting it up, and applying it outside of linear solves. linear: linear solves.
+  /// Parts of `simulate`. `collide`: contact detection and separation of surfaces. `forces`: evaluation of forces and
+  /// assembly of their matrix. `preconditioner`: its setup, and its application outside of linear solves. `linear`:
+  /// linear solves.
   StageTime collide, forces, preconditioner, linear;
   int steps = 0;              ///< accepted
   int rejected_steps = 0;     ///< repeated with shorter steps
@@ -39,19 +40,22 @@ struct FrameReport {
   int linear_iterations = 0;
   /// Number of near pairs of features (within the detection distance) at the predicted end of the last step.
   int proximities = 0;
-  int constraints = 0;                ///< contacts and held particles in the last step
-  double min_distance = 0;            ///< smallest distance of the near pairs [m]; infinite if there are none
-  double max_strain = 0;              ///< largest |length / rest length - 1| of weft and warp, in all steps
-  double stretch_ratio = 0;           ///< largest ratio of extension to material.max_stretch, in all steps
-  double kinetic_energy = 0;          ///< [J]
-  double potential_energy = 0;        ///< energy of gravity, zero at the origin [J]
-  double elastic_energy = 0;          ///< stretch, shear, bending, attachments [J]
-  double air_energy = 0;              ///< energy of enclosed air [J]
-  double pin_work = 0;                ///< work of pins on the cloth since the frame before [J]
-  double solver_work = 0;             ///< work of the residual of the equations of motion since the frame before [J]
-  int pinched_pairs = 0;              ///< largest number of pinched cloth triangles at once, each counted once per limb
-  int lagging_particles = 0;          ///< largest number of pinned particles at once that cannot reach their targets
-  std::vector<EnclosedAir> enclosed;  ///< one per cloth with pressure
+  int constraints = 0;          ///< number of contacts and held particles in the last step
+  double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
+  double max_strain = 0;        ///< largest |length / rest length - 1| of weft and warp, in all steps
+  double stretch_ratio = 0;     ///< largest ratio of extension to material.max_stretch, in all steps
+  double kinetic_energy = 0;    ///< [J]
+  double potential_energy = 0;  ///< energy of gravity, zero at the origin [J]
+  double elastic_energy = 0;    ///< stretch, shear, bending, attachments [J]
+  double air_energy = 0;        ///< energy of enclosed air [J]
+  double pin_work = 0;          ///< work of pins on the cloth since the frame before [J]
+  double solver_work = 0;       ///< work of the residual of the equations of motion since the frame before [J]
+  /// Largest number, in a step, of pinched cloth triangles: obstacles leave them no space. Each is counted once per
+  /// limb of an obstacle (model::Body::limbs).
+  int pinched_pairs = 0;
+  /// Largest number, in a step, of pinned particles that cannot reach their targets.
+  int lagging_particles = 0;
+  std::vector<EnclosedAir> enclosed;        ///< one per cloth with pressure
   std::vector<AttachmentLoad> attachments;  ///< one per attachment, then one per seam that can tear
   /// Warnings of this frame, such as "frame 37: 'sheet' has no room between ..., near (x, y, z) m".
   std::vector<std::string> warnings;

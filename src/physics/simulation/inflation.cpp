@@ -9,8 +9,9 @@
 namespace weft::simulation {
 namespace {
 
-// Smallest V / A (see the header) for the gas law; below it, the pressure continues as a straight line. 1/V has no
-// bound, and a line search may reach a volume of zero. At the end of a step, contacts keep the volume larger.
+// Smallest V / A (see the header) at which the gas law applies; below it, pressure is a linear function of V. Without
+// this limit, pressure would grow without bound when a line search reaches a volume of zero. At the end of a step,
+// contacts keep the volume larger.
 constexpr double kMinVolumeRatio = 1e-3;
 
 motion::Spline<1> air_track_of(const model::Pressure& pressure) {
@@ -73,7 +74,7 @@ double Inflation::Cloth::energy(double at_volume) const {
   const double amount = air(), min_volume = kMinVolumeRatio * amount;
   if (amount == 0) return kAmbientPressure * at_volume;
   const double v = std::max(at_volume, min_volume),
-               beyond = at_volume - v;  // beyond: negative on the straight line, else 0
+               beyond = at_volume - v;  // negative where pressure is linear, else 0
   return kAmbientPressure * (v - amount - amount * std::log(v / amount)) - pressure(v) * beyond +
          0.5 * stiffness(v) * beyond * beyond;
 }

@@ -13,27 +13,27 @@
 
 namespace weft::simulation {
 
-/// The gauge pressure p (above the pressure outside) of an enclosed volume V pushes with the force p ∂V/∂x. If the
-/// model gives p, the energy is −p V. If it gives an amount of air, as the volume A that the air has at the outside
-/// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A, with the energy p₀ (V − A − A ln(V / A)).
+/// Air in an enclosed volume V has the gauge pressure p, its pressure above that outside. It exerts the force p ∂V/∂x.
+/// If the model gives p, the energy is −p V. If the model gives an amount of air, as its volume A at the outside
+/// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A. Its energy is then p₀ (V − A − A ln(V / A)).
 ///
-/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ, but not −p ∂²V/∂x², which is indefinite and small against the stiffness
-/// of cloth under tension.
+/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ. It does not get −p ∂²V/∂x², which is indefinite and small against the
+/// stiffness of cloth under tension.
 class Inflation {
  public:
   /// Pressure outside [Pa]: standard atmosphere.
   static constexpr double kAmbientPressure = 101325;
 
   Inflation() = default;
-  /// Keeps the cloths whose pressure acts. `first_particle`: of each cloth of the model.
+  /// Selects the cloths for which Pressure::acts(). `first_particle`: of each cloth of the model.
   Inflation(const model::Model& model, std::span<const Index> first_particle);
 
   bool empty() const { return cloths_.empty(); }
 
-  /// Begins a step that ends at time t [s]. Cloth that is still open, for which is_closed(cloth) is false,
-  /// has no gauge pressure. In the first step in which it is closed, the volume that it encloses at x [m] becomes the
-  /// reference of its amount of air. Throws Error(scene_invalid) if the scene gives an amount of air, but the cloth
-  /// encloses no volume then.
+  /// Begins a step that ends at time t [s], with particles at x [m]. As long as is_closed(cloth) is false, the cloth
+  /// has no gauge pressure. In the first step in which the cloth is closed, the volume that it encloses at x becomes
+  /// the reference for amounts of air. If it then encloses no volume although the model gives an amount of air, throws
+  /// Error(scene_invalid).
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
   /// Whether the model gives the same pressures or amounts of air at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;
@@ -46,7 +46,7 @@ class Inflation {
   double energy(std::span<const Vec3> x) const;
   std::vector<EnclosedAir> measure(std::span<const Vec3> x) const;
 
-  /// Copies the enclosed air from another simulation. `numbers[k]`: number in this model of cloth k of `there`.
+  /// Copies the enclosed air from another simulation. `numbers[k]`: number, in this model, of cloth k of `there`.
   void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
 
   template <class Archive>
@@ -62,7 +62,7 @@ class Inflation {
     forces::EnclosedVolume volume;
     model::PressureControl control;
     motion::Spline<1> track;
-    double value = 0;                      // of the track in the current step; for the unit, see PressureControl
+    double value = 0;                      // of `track` at the end of the step; for the unit, see PressureControl
     double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch
 

@@ -21,7 +21,7 @@ constexpr std::size_t kMaxNamedPlaces = 6;
 std::vector<IntersectionPlace> group_intersections(std::span<const collision::CornerPair> pairs,
                                                    const collision::Bodies& bodies, std::span<const std::string> names,
                                                    std::span<const Vec3> x) {
-  // Groups the pairs of each two objects separately, because pairs with other objects may share their vertices.
+  // Handles each combination of two objects separately, because pairs with a third object may share their vertices.
   std::map<std::pair<std::size_t, std::size_t>, std::vector<collision::CornerPair>> by_bodies;
   for (const collision::CornerPair& pair : pairs)
     by_bodies[{bodies.body_of(pair.a[0]), bodies.body_of(pair.b[0])}].push_back(pair);

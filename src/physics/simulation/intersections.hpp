@@ -12,8 +12,9 @@
 
 namespace weft::simulation {
 
-/// Groups pairs that meet into places, the place with most pairs first. `x`: the vertices [m]. Pairs of the same two
-/// objects belong to one place if their triangles share vertices. `names`: of the bodies.
+/// Groups pairs of triangles that touch or cross into places; the place with most pairs comes first. Pairs of the same
+/// two objects belong to one place if their triangles share vertices. `x`: all vertices [m]; `names`: of all cloths and
+/// bodies.
 std::vector<IntersectionPlace> group_intersections(std::span<const collision::CornerPair> pairs,
                                                    const collision::Bodies& bodies, std::span<const std::string> names,
                                                    std::span<const Vec3> x);

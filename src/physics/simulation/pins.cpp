@@ -13,14 +13,14 @@ struct MovingPoint {
   Vec3 x, v;
 };
 
-/// Unit vector along u and its rate of change, for u that changes at u_rate.
+/// Unit vector along u and its rate of change, if u changes at u_rate.
 MovingPoint unit(const Vec3& u, const Vec3& u_rate) {
   const double length = u.norm();
   const Vec3 along = u / length;
   return {along, (u_rate - along.dot(u_rate) * along) / length};
 }
 
-/// Axes of a triangle with their rates of change: its first side, its normal, and their vector product.
+/// Orthonormal axes of a triangle and their rates of change: its first side, its normal, and their vector product.
 struct TriangleAxes {
   Mat3 axes, rates;
 
@@ -34,8 +34,8 @@ struct TriangleAxes {
 
 }  // namespace
 
-// Takes time linear in the particles of all pins. A later pin has a particle only if it is released after all pins
-// before it.
+// Takes time linear in the number of particles of all pins. A later pin becomes an owner of a particle only if it is
+// released after all earlier owners.
 std::vector<std::vector<Pins::Owner>> Pins::owners(const model::Model& model,
                                                    const std::vector<Index>& first_particle) {
   std::size_t count = 0;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kParticles = mesh::RigidFrame::kParticles;
 
-// Adds a weight of a particle to a term, which has `count` particles so far.
+// Adds `weight` to the weight of a particle in a term that has `count` particles so far.
 void add_weight(Index particle, double weight, std::size_t& count, solver::WideTerm& term) {
   std::size_t k = 0;
   while (k < count && term.particles[k] != particle) ++k;

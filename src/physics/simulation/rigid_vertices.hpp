@@ -11,8 +11,8 @@
 
 namespace weft::simulation {
 
-/// In arrays of positions, the vertices of dynamic bodies come after all particles. Contacts act on them as on
-/// particles; this class passes the resulting forces and terms on to the frames.
+/// In arrays of positions, the vertices of dynamic bodies come after all particles. Contacts act on these vertices as
+/// on particles; this class distributes the resulting forces and terms to the frame particles.
 class RigidVertices {
  public:
   /// `first`: index of the first vertex, equal to the count of particles.
@@ -31,10 +31,10 @@ class RigidVertices {
   void gather(std::span<const Vec3> of_all, std::span<Vec3> force) const;
   /// The same for bounds of forces, with absolute weights.
   void gather(std::span<const double> of_all, std::span<double> limit) const;
-  /// Mass of the whole body of a vertex [kg]; `masses`: of the particles. Contacts use it for their stiffness
-  /// (measured: with the effective mass of a corner, a stack of ten boxes sways for ten seconds).
+  /// Mass of the whole body of a vertex [kg]; `masses`: of the particles. Contacts derive their stiffness from it.
+  /// (Measured: with the effective mass of a corner instead, a stack of ten boxes sways for ten seconds.)
   double mass_of(Index vertex, std::span<const double> masses) const;
-  /// Replaces terms on vertices by wide terms on frame particles, and appends these to the existing wide terms.
+  /// Replaces the terms of `system` that involve vertices by wide terms (solver::WideTerm) on frame particles.
   void spread(solver::LinearSystem& system) const;
 
  private:

@@ -45,7 +45,7 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// What to do about these places: the advice of the model, and that of the first body that has any and is in one.
+// What to do about these places: the advice of the model, and that of the first body with advice in one of them.
 std::string advice_of(const model::Model& model, const std::vector<IntersectionPlace>& places) {
   const auto is_in_one = [&](const auto& object) {
     return std::ranges::any_of(
@@ -90,13 +90,13 @@ struct Simulation::Impl {
 
   model::Model model;
   std::size_t layer = 0;                       // number of the last layer that is put on
-  std::unique_ptr<model::Model> dressed_part;  // with the cloths that are put on; null if all are
+  std::unique_ptr<model::Model> dressed_part;  // model of the cloths that are put on; null if all are
   int frame;                                   // negative during the preroll
   std::uint64_t changes = 0;
   std::unique_ptr<StepLoop> steps;
   FrameReport start_report;  // of frame 0
   std::optional<EnergyBound> energy_bound;
-  // Bodies of allow_drive(), with the two keys of their last drive(), if there was one.
+  // Bodies of allow_drive(), each with the two keys of its last drive(), if there was one.
   std::map<std::size_t, std::optional<std::array<motion::PoseKey, 2>>> driven;
 };
 
@@ -108,8 +108,8 @@ Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.tim
     std::iota(all.cloths.begin(), all.cloths.end(), std::size_t{0});
     all.dressed = all.cloths;
   }
-  // Checks each later layer alone against the bodies where they start, so that a layer that does not fit is refused
-  // before anything is simulated.
+  // Checks each later layer alone against the bodies at their start positions, so that a layer that does not fit is
+  // refused before anything is simulated.
   for (std::size_t later = 1; later < model.layers.size(); ++later) {
     const model::Model alone = model.with_cloths(model.layers[later].cloths);
     StepLoop trial(alone, time());
@@ -126,7 +126,7 @@ Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.tim
   energy_bound.emplace(model, std::accumulate(masses.begin(), masses.end(), 0.0), start_report);
 }
 
-// Makes the step loop of all cloths up to this layer, with all of them at their start.
+// Makes the step loop of all cloths up to this layer, each at its start position.
 void Simulation::Impl::begin_layer(std::size_t number) {
   layer = number;
   dressed_part =
@@ -134,7 +134,7 @@ void Simulation::Impl::begin_layer(std::size_t number) {
   steps = std::make_unique<StepLoop>(dressed(), time());
 }
 
-// Puts on each layer whose first frame has come, outside of the cloths that are already dressed.
+// Puts on each layer whose first frame is not later than the current one, outside of the cloths that are already on.
 void Simulation::Impl::put_on_next() {
   while (!all_dressed() && model.layers[layer + 1].first_frame <= frame) {
     const std::unique_ptr<model::Model> inner_part = std::move(dressed_part);  // the step loop refers to it
@@ -149,8 +149,8 @@ void Simulation::Impl::put_on_next() {
   }
 }
 
-// Untangles cloth at the start of a layer, if the model allows it; for the first layer, lifts bodies before. Throws
-// Error(scene_invalid) if surfaces still touch or cross.
+// Untangles cloth at the start of a layer, if the model allows it. For the first layer, lifts bodies before that.
+// Throws Error(scene_invalid) if surfaces still touch or cross.
 void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::note(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
@@ -162,7 +162,7 @@ FrameReport Simulation::Impl::advance() {
   if (!all_dressed()) put_on_next();
   FrameReport report;
   report.frame = frame + 1;
-  // Frame k is at exactly k / fps, whatever the steps in between.
+  // Frame k is at exactly k / fps: a sum of step lengths would have rounding errors.
   report.time = report.frame / model.time.fps;
   {
     const Stopwatch watch(report.simulate);
@@ -250,7 +250,7 @@ void Simulation::Impl::serialize(Archive& archive) {
   if constexpr (Archive::kReads) {
     require(saved_frame >= -model.time.preroll_frames && saved_frame < kMaxFrames, "a frame of the model");
     require(last < model.layers.size(), "a layer of the model");
-    // Pins refer to where bodies are at the start of the run, by the motions of the model.
+    // Makes the step loop before set_motion(): its pins need the start poses of the bodies by the motions of the model.
     if (last != layer) begin_layer(last);
     frame = saved_frame;
     for (const auto& [body, keys] : driven)

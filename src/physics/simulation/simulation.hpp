@@ -18,7 +18,7 @@ namespace weft::simulation {
 /// FrameReport::stretch_ratio above which a run warns.
 inline constexpr double kMaxStretchRatio = 1.1;
 
-/// All particles of the cloths that are put on, cloth by cloth in the order of the model.
+/// All particles of the cloths that are put on (see Simulation), cloth by cloth in the order of the model.
 struct ParticleState {
   std::span<const Vec3> positions, velocities;  ///< [m], [m/s]
   std::span<const double> masses;               ///< [kg]
@@ -30,21 +30,21 @@ struct ClothMotion {
   std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
 };
 
-/// A place where two objects, or one object and itself, touch or cross at the start.
+/// A place where two objects touch or cross at the start, or one object touches or crosses itself.
 struct IntersectionPlace {
   std::string a, b;                            ///< the objects
   std::size_t pairs = 0;                       ///< number of pairs of triangles
   Vec3 centre = Vec3::Zero();                  ///< [m]
   double size = 0;                             ///< longest side of the bounding box [m]
-  std::vector<std::array<Vec3, 3>> triangles;  ///< corners of the triangles that meet there [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< corners of the triangles of these pairs [m]
 };
 
 /// "12 pairs of triangles that touch or cross in 2 places: 'sheet' and 'ball' (8 pairs) around (0, 0, 1) m, ...".
 std::string describe(std::span<const IntersectionPlace> places);
 
 /// Finds the places where surfaces touch or cross at the start of the preroll, before bodies are lifted and cloth is
-/// untangled. Checks each layer alone against the bodies, not against other layers. Lists the places layer by layer, in
-/// each layer those with most pairs first.
+/// untangled. Checks each layer (model::Layer) against the bodies, not against other layers. Lists the places layer by
+/// layer, in each layer those with most pairs first.
 std::vector<IntersectionPlace> find_start_intersections(const model::Model& model);
 
 /// Size of the matrix of one Newton iteration, without contacts.
@@ -53,6 +53,8 @@ struct MatrixSize {
   std::size_t isotropic_blocks = 0;  ///< multiples of the identity, one number each
 };
 
+/// The cloths of a model form layers (model::Layer). The cloths of a layer are put on at the layer's first frame; until
+/// then, they are not simulated.
 class Simulation {
  public:
   /// Builds only what the model needs. At the start, lifts dynamic bodies off what they touch, and untangles cloth if
@@ -66,7 +68,7 @@ class Simulation {
   /// Number of the current frame, negative in the preroll, and its time [s].
   int frame() const;
   double time() const;
-  /// Number of changes of the state so far: frames advanced plus states restored.
+  /// Number of changes of the state so far: calls of advance() and restore() that succeeded.
   std::uint64_t changes() const;
 
   /// Simulates the next frame. If that fails, keeps the state of the current one and throws Error(simulation_failed)
@@ -74,7 +76,7 @@ class Simulation {
   FrameReport advance();
 
   /// The report of frame 0. If there is a preroll that run_preroll() has not simulated, the report has the energies and
-  /// distances at its start instead.
+  /// distances at the start of the preroll.
   FrameReport initial_report() const;
 
   /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
@@ -99,20 +101,20 @@ class Simulation {
   /// Announces that drive() may move this rigid body (number in the model), which must be `moving`. Only allowed before
   /// the first advance().
   void allow_drive(std::size_t body);
-  /// Moves such a body to `end` at constant velocity during the next frame, whatever its own motion; it then stays
-  /// there.
+  /// Moves such a body to `end` at constant velocity during the next frame, in place of its motion in the model. The
+  /// body then stays there.
   void drive(std::size_t body, const motion::Pose& end);
 
   /// Sets gravity [m/s²] and wind [m/s] from the next frame on, in place of those of the model and their keys. Gusts
-  /// and fans stay. A saved state does not have them: set them before restore(), too.
+  /// and fans stay. A saved state does not include these values: set them before restore(), too.
   void set_weather(const Vec3& gravity, const Vec3& wind);
 
-  /// Appends everything that later frames depend on. Only the same version of the program on a machine of the same kind
+  /// Appends the state that later frames depend on. Only the same version of the program on the same CPU architecture
   /// can read it. Not allowed after a failed advance().
   void save(std::string& bytes) const;
-  /// Restores what a simulation of the same model has saved; the frames that follow have the same bits. Only allowed
-  /// before the first advance() and drive(), and after the same calls of allow_drive(). Throws std::runtime_error if
-  /// the bytes do not fit this model; the simulation is then unusable.
+  /// Restores what a simulation of the same model has saved; the following frames have the same bits as in that
+  /// simulation. Only allowed before the first advance() and drive(), and after the same calls of allow_drive(). If the
+  /// bytes do not fit this model, throws std::runtime_error; the simulation is then unusable.
   void restore(std::string_view bytes);
 
  private:

@@ -1,4 +1,4 @@
-// One attempt at a step: StepLoop::attempt and what it consists of.
+// One attempt at a step: StepLoop::attempt and the functions that it calls.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace weft::simulation {
 
-// If obstacles or other cloth keep pinned particles from their targets, repeats the attempt with these particles
-// released; after numerics.repair.max_retries tries, lets push_apart() move pinned particles.
+// Attempts the step. If obstacles or other cloth keep pinned particles from their targets, repeats it with these
+// particles released. After `numerics.repair.max_retries` tries, allows push_apart() to move pinned particles.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
   for (int tries = 1;; ++tries) {
     const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.max_retries};
@@ -36,13 +36,13 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(model_, cloth_, t + h, held_);
-  // If a longer attempt has released something and was rejected, this step may end before that release.
+  // A longer attempt, which was rejected, released a pin or body. Undo it: this step may end before the release.
   if (before_release_) {
     progress_.now.v = std::move(before_release_->v);
     stepper_.return_to(std::move(before_release_->history));
     before_release_.reset();
   }
-  // The acceleration of released particles jumps, so the stepper's history does not predict the motion that follows.
+  // The acceleration of released particles jumps, so the stepper's history does not predict their motion.
   if (any_frame_is_released(model_, t, h) || pins_.release_between(t, t + h)) {
     before_release_ = {progress_.now.v, stepper_.history()};
     release_frames(model_, cloth_, t, h, progress_.now.v);
@@ -60,8 +60,8 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   return start;
 }
 
-// Sets gravity and the air velocity at the time of the step's stage. The air velocity is that at the positions which
-// the particles reach by then with unchanged velocities.
+// Sets gravity and the air velocity at the time of the step's stage (integrator::Stepper). Evaluates the air velocity
+// at the positions that the particles reach until then with unchanged velocities.
 void StepLoop::update_weather(double t, double h) {
   const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   gravity_ = weather_.gravity(t + until_stage);
@@ -76,17 +76,17 @@ void StepLoop::update_weather(double t, double h) {
   problem_.set_air_velocity(std::move(air));
 }
 
-// Solves the step and checks it. If pairs would meet, pushes particles apart. If the solve had ended and this adds
-// little energy and strain, accepts the result. Otherwise continues the solve from the corrected positions, with
-// contacts found anew, until every candidate pair has a separating plane. After numerics.newton.slow_after
-// continuations, or if the last one has led back to where it began, only pushes.
+// Solves the step, and checks whether every candidate pair has a separating plane. If a pair has none, pushes particles
+// apart. If the solve was complete and the push adds little energy and strain, accepts the result. Otherwise continues
+// the solve from the pushed positions, with contacts found anew. After `numerics.newton.slow_after` continuations, or
+// if one ends where it began, completes the solve and only pushes.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
   bool is_separated = false;
   for (bool is_first = true;; is_first = false, start = Start::next) {
     const bool may_continue = continuations < numerics.newton.slow_after;
-    // An iterate that is separated already is solved to the end; others are checked early.
+    // If the last iterate was separated, the solve runs to its end; otherwise it pauses early for another check.
     const bool check_early = !is_separated && (is_first || may_continue);
     bool solved = false;
     if (Rejection rejection = solve_contacts(attempt, start, is_first, check_early, solved, report)) return rejection;
@@ -96,13 +96,14 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     if (!is_separated && !may_continue && solved) return push_apart(attempt);
     if (is_separated || !may_continue) continue;
 
-    // Pins may press cloth into cloth that a continued solve has not moved out of the way.
+    // A continued solve has not moved all cloth out of the way of other cloth: pins may press one into the other.
     if (continuations > 0 && may_release_pins(attempt) && collisions_->find_pins_between_cloths())
       return "pins press cloth into cloth";
     const double energy_before = solved ? energy(next_) : 0;
     const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
     if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
-      continuations = numerics.newton.slow_after;  // some pairs cannot be pushed apart: push_apart(attempt) decides
+      // Some pairs cannot be pushed apart: completes the solve; then push_apart(attempt) accepts or rejects.
+      continuations = numerics.newton.slow_after;
       continue;
     }
     if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.energy.doubtful_gain &&
@@ -114,8 +115,8 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
   }
 }
 
-// Solves the step if contact.response selects velocity constraints (Etzmuß et al. 2001). After each solve, the response
-// sets and releases constraints, and gets contacts for pairs without a separating plane.
+// Solves the step with velocity constraints (Etzmuß et al. 2001), if contact.response selects them. After each solve,
+// the response sets and releases constraints; if a pair has no separating plane, it gets contacts.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;
@@ -140,15 +141,16 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
   }
 }
 
-// Solves the step with the current contacts and constraints; writes the result into `next_`. `solved`: false if the
-// solve ended for an early check.
+// Solves the step with the current contacts and constraints; writes the result into `next_`. Sets `solved` to false if
+// the solve paused for an early check.
 StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
   collisions_->append_prescribed_particles(held_);
   integrator::StepReport step = solve(attempt.h, start, check_early, report);
-  // Normal forces and friction depend on each other, and can increase each other without end. With fixed normal forces,
-  // friction has a potential, and dissipates (measured without this: a sheet of 0.5 J with friction 10 gains 1,300 J).
+  // Normal forces and friction depend on each other, and can increase each other without bound. If an unfinished solve
+  // has added much energy, solve again with fixed normal forces: friction then has a potential, and dissipates.
+  // (Measured without this: a sheet of 0.5 J with friction 10 gains 1,300 J.)
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.diverged_energy_ratio) {
     problem_.fix_normal_forces();
@@ -162,7 +164,8 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
   return std::nullopt;
 }
 
-// `check_early`: the solve ends unfinished after a few iterations, so that contacts that it reveals are found soon.
+// `check_early`: the solve pauses after `numerics.newton.check_after` iterations, so that contacts that it reveals are
+// found early.
 integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, FrameReport& report) {
   stepper_.set_method(method());
   const integrator::StepReport step =
@@ -179,8 +182,8 @@ integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, 
   return step;
 }
 
-// The midpoint rule has no damping, and contacts that switch on and off would excite cloth: BDF2 replaces it in steps
-// with contacts.
+// Returns the method of the current step. The midpoint rule has no damping, so contacts that switch on and off would
+// excite cloth. Therefore BDF2 replaces it in steps with contacts.
 integrator::Method StepLoop::method() const {
   const integrator::Method chosen = model_.time.integrator;
   const bool needs_damping =
@@ -188,8 +191,8 @@ integrator::Method StepLoop::method() const {
   return needs_damping ? integrator::Method::bdf2 : chosen;
 }
 
-// Pushes particles of `next_` apart without solving again. Rejects the step if some pairs stay stuck, or if this adds
-// much energy and the step may still be shortened.
+// Pushes particles of `next_` apart without solving again. Rejects the step if some pair cannot be pushed apart. Also
+// rejects it if the push adds much energy, unless this is the last attempt or `max_retries` longer ones were rejected.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double energy_before = energy(next_);
   const bool may_pinch = is_short_enough(attempt);
@@ -205,26 +208,28 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
       ratio);
 }
 
-// Whether pinned particles that find no space may lag. Before a fast obstacle, a shorter step may find space for them.
+// Whether pinned particles that find no space may be released. In front of a fast obstacle they may not: a shorter step
+// may find space for them.
 bool StepLoop::may_release_pins(const Attempt& attempt) const {
   return !attempt.may_move_pins && (attempt.is_last || collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Whether a shorter step would find no more space for cloth than this one.
+// Whether cloth without space may become pinched: whether a shorter step would not find more space for it.
 bool StepLoop::is_short_enough(const Attempt& attempt) const {
   return attempt.is_last || (attempt.rejections >= numerics.repair.max_retries &&
                              collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Mechanical energy at `moment`, with the gravity of the current step [J].
+// Mechanical energy of a state, with the gravity of the current step [J].
 double StepLoop::energy(const SystemState& moment) const {
   return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
          attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
          cloth_.potential_energy(moment.particles(), gravity_);
 }
 
-// Energy of `next_` beyond `before` [J], relative to the kinetic and elastic energy at the start of the step. The
-// kinetic energy counts as at least that of a free fall over h [s], so that cloth at rest has a scale.
+// Difference between the energy of `next_` and `before` [J], relative to the kinetic and elastic energy at the start of
+// the step. The kinetic energy counts as at least that of a free fall from rest over h [s], so that the ratio is
+// bounded for cloth at rest.
 double StepLoop::added_energy_ratio(double before, double h) const {
   double mass = 0;
   for (const double m : cloth_.masses()) mass += m;

@@ -14,7 +14,7 @@
 namespace weft::simulation {
 namespace {
 
-// A cloth is reported again only if its stretch is at least this many times the last reported one.
+// A cloth is reported again only if its stretch is at least this multiple of the last reported one.
 constexpr double kReportAgainRatio = 1.5;
 
 }  // namespace
@@ -106,8 +106,8 @@ void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
   progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, report);
 }
 
-// Divides the frame into equal steps, or takes one step if everything rests. Computes times from the number of
-// preceding steps, so that they have the same bits at any frame rate.
+// Divides the frame into equal steps, or takes one step if everything rests. Computes the start of each step from the
+// number of steps since time 0, so that it has the same bits at any frame rate.
 void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   const double fps = model_.time.fps;
   const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * model_.time.step) - 1e-9)));
@@ -117,13 +117,13 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
 }
 
-// Whether one long step may replace the next `steps` steps of length h [s]. It may if the method is implicit Euler,
-// contacts are springs, all cloth is slow and has settled in its last step, and no rejection forbids the length. In
-// addition, everything that keys move or set must be the same at t and at the end of each step: a long step that fails
-// would leave its contacts to later steps.
+// Whether one long step may replace the next `steps` steps of length h [s]. Conditions: the method is implicit Euler;
+// contacts are springs; all cloth is slow and has settled in its last step; no earlier rejection limits the length;
+// everything that keys move or set is the same at t and at the end of each step. The last condition is tested before
+// the attempt, because a long step that fails would leave its contacts to later steps.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
-  // Velocity constraints release and stick again from step to step.
+  // With velocity constraints, contacts release and stick again from step to step.
   const bool needs_steps = model_.contact.response == model::Response::velocity_constraints;
   if (model_.time.integrator != integrator::Method::implicit_euler || needs_steps || whole > progress_.longest ||
       !is_slow(progress_.now) || !has_settled())
@@ -156,8 +156,8 @@ bool StepLoop::is_slow(const SystemState& moment) {
   });
 }
 
-// Takes one step in place of several. Returns false if the step is rejected or something begins to move; the step is
-// then discarded, and not counted.
+// Takes one step in place of several. If the step is rejected or something begins to move in it, discards the step,
+// does not count it, and returns false.
 bool StepLoop::rest(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
   if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
@@ -165,10 +165,10 @@ bool StepLoop::rest(double t, double h, FrameReport& report) {
   return true;
 }
 
-// Advances from t to t + h. Takes two halves if the step is rejected or too long to follow the last one, or if an
-// obstacle turns too far in it. `rejections`: number of rejected steps that contain this one. Earlier rejections count,
-// too, while steps are still short because of them (measured without this rule: pinched cloth takes 75,202 steps
-// instead of 160).
+// Advances from t to t + h. If the step is rejected or too long after the last one, or if an obstacle turns too far in
+// it, divides it into two halves. `rejections`: number of rejected steps that contain this one. A step that is divided
+// without an attempt, because an earlier rejection still limits the length, counts as rejected. (Measured without this
+// rule: pinched cloth takes 75,202 steps instead of 160.)
 void StepLoop::advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report) {
   const bool after_rejection = h > (1 + 1e-9) * progress_.longest;
   const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || obstacle_turns_too_far(t, h);
@@ -184,9 +184,9 @@ void StepLoop::advance_over(double t, double h, int rejections, int halvings_lef
   advance_over(t + 0.5 * h, 0.5 * h, rejections, halvings_left, report);
 }
 
-// Takes steps whose local error is at most time.tolerance, as far as their minimum length allows. The remainder of the
-// frame is divided into equal steps no longer than `control` wants. So no step is much shorter than those before it,
-// and lengths change rarely.
+// Takes steps whose local error is at most time.tolerance; the last attempt at a step and steps of the minimum length
+// are accepted with a larger error. Divides the remainder of the frame into equal steps that are at most as long as
+// `control` proposes, so that no step is much shorter than the one before, and lengths change rarely.
 void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
   integrator::StepControl& control = *progress_.control;
   double t = t_t0, h = 0;
@@ -202,7 +202,7 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
     const bool is_last = rejections == model_.solver.halvings || h < numerics.steps.min_step;
     const Rejection rejection = attempt(t, h, rejections, is_last, report);
     if (rejection && is_last) fail(report.frame, t, h, *rejection);
-    // In an impact, the error may require ever shorter steps, so the last attempt is accepted with any error.
+    // In an impact, even very short steps may exceed the tolerance, so the last attempt is accepted with any error.
     if (rejection || !(is_last || control.accepts(h, local_error_))) {
       ++report.rejected_steps, ++rejections;
       rejection ? control.record_unsolved_step(h) : control.record_rejected_step(h, local_error_);
@@ -243,9 +243,9 @@ void StepLoop::accept(double h, FrameReport& report) {
   report.solver_error += solver_error_;
 }
 
-// Measures the accepted step, whose start is in `next_`. Warns when the largest stretch rises above kMaxStretchRatio.
-// If that cloth was reported before, warns only if the ratio exceeds the last report by half: otherwise a tight waist
-// would be reported with every breath of its wearer.
+// Measures the stretch at the end of the accepted step; the start of the step is in `next_`. Warns when the largest
+// stretch rises above kMaxStretchRatio. If the same cloth was reported before, warns only at kReportAgainRatio times
+// the last report: otherwise a tight waist would be reported with every breath of its wearer.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());

@@ -18,8 +18,8 @@
 
 namespace weft::simulation {
 
-/// Parts that a model does not need are not built: there is no collision stage if nothing collides, and no force of
-/// zero stiffness.
+/// Builds only the members that the model needs: no collision stage if nothing collides, and no force whose stiffness
+/// is zero.
 class StepLoop {
  public:
   /// `start`: time of the first step [s]. The model must outlive the loop.
@@ -28,21 +28,22 @@ class StepLoop {
   StepLoop(const StepLoop&) = delete;  // members refer to each other
   StepLoop& operator=(const StepLoop&) = delete;
 
-  /// Before the first advance(): takes over the cloths of `before`, a loop that this one replaces. `cloths[k]`: number
-  /// in this loop of cloth k of `before`.
+  /// Before the first advance(): takes over the state of the cloths of `before`, a loop that this one replaces.
+  /// `cloths[k]`: number, in this loop, of cloth k of `before`.
   void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
   /// Before the first advance(): untangles cloths that touch or intersect at the start, if the model allows it.
   /// Cloths that were taken over stay as they are.
   void untangle();
   /// Before the first advance(): lifts dynamic bodies off what they touch. Returns the largest lift [m].
   double lift_bodies();
-  /// Before the first advance(): places where surfaces touch or intersect at the start.
+  /// Before the first advance(): finds the places where surfaces touch or intersect at the start.
   std::vector<IntersectionPlace> find_intersections() {
     return collisions_ ? collisions_->find_intersections(progress_.now) : std::vector<IntersectionPlace>{};
   }
 
-  /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], whose number is report.frame, and
-  /// adds counts to `report`. Throws Error(simulation_failed) if a step is rejected at every length.
+  /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], which has the number report.frame.
+  /// Adds counts to `report`. Throws Error(simulation_failed) if a step is rejected even at its shortest allowed
+  /// length.
   void advance(double t_t0, double t_t1, FrameReport& report);
 
   /// State from which the next step begins.
@@ -72,21 +73,21 @@ class StepLoop {
   const StepProblem& problem() const { return problem_; }
   /// Number of particles that pins, keys or velocity constraints hold.
   std::size_t held() const { return held_.size(); }
-  /// Contact forces with friction on all particles at the end of the last step [N]; zeros before the first step.
+  /// Contact forces, including friction, on all particles at the end of the last step [N]; zero before the first step.
   std::vector<Vec3> contact_forces() const;
-  /// Vertex positions of a dynamic body [m]; empty for other bodies.
+  /// Vertex positions of a dynamic body (moved by forces) [m]; empty for other bodies.
   std::vector<Vec3> vertices_of(std::size_t body) const;
   /// nullptr if nothing collides.
   const CollisionStage* collisions() const { return collisions_ ? &*collisions_ : nullptr; }
-  /// Pinched cloth in the frame that ends now.
+  /// Pinched cloth in the frame that has just ended.
   CollisionStage::Pinches take_pinches() {
     return collisions_ ? collisions_->take_pinches(next_) : CollisionStage::Pinches{};
   }
-  /// Pins that lagged in that frame.
+  /// Lagging pins (YieldingPins) in the frame that has just ended.
   YieldingPins::Lags take_lags() { return pins_.take_lags(); }
 
-  /// Save or restore the state that later frames depend on. Call serialize() first, for everything except contacts;
-  /// then serialize_contacts() at the time t [s] of a frame.
+  /// Save or restore the state that later frames depend on. Call serialize() first: it handles everything except
+  /// contacts. Then call serialize_contacts(); t: time of the frame [s].
   template <class Archive>
   void serialize(Archive& archive);
   template <class Archive>
@@ -101,12 +102,12 @@ class StepLoop {
   /// One attempt at a step.
   struct Attempt {
     double t, h;         // start and length [s]
-    int rejections;      // number of rejected steps that contain this one
-    bool is_last;        // the run fails if it is rejected
-    bool may_move_pins;  // true: pinned particles move if nothing else helps; false: they are only listed
+    int rejections;      // number of rejected, longer steps that contain this one
+    bool is_last;        // the run fails if this attempt is rejected
+    bool may_move_pins;  // as in CollisionStage::push_apart()
   };
 
-  // From frames to steps: step_loop.cpp.
+  // Division of frames into steps: step_loop.cpp.
   void advance_equally(double t_t0, FrameReport& report);
   void advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report);
   void advance_controlled(double t_t0, double t_t1, FrameReport& report);
@@ -125,7 +126,7 @@ class StepLoop {
   void measure_stretch(FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
-  // One step into `next_`: step_attempt.cpp.
+  // One attempt at a step, which writes `next_`: step_attempt.cpp.
   Rejection attempt(double t, double h, int rejections, bool is_last, FrameReport& report);
   Start begin_attempt(const Attempt& attempt, FrameReport& report);
   void update_weather(double t, double h);
@@ -144,7 +145,7 @@ class StepLoop {
 
   const model::Model& model_;
   double start_;                      // time at which the simulation starts [s]
-  std::vector<std::size_t> dressed_;  // cloths that were taken over
+  std::vector<std::size_t> dressed_;  // numbers of the cloths that copy_state_from() took over
   ClothSystem cloth_;
   StepProblem problem_;
   YieldingPins pins_;
@@ -154,8 +155,8 @@ class StepLoop {
     std::vector<Vec3> v;  // of all particles [m/s]
     integrator::Stepper::History history;
   };
-  std::optional<BeforeRelease> before_release_;  // start of a step that releases something, until it is accepted
-  SystemState next_;                             // end of the current step; its start once the step is accepted
+  std::optional<BeforeRelease> before_release_;  // start of a step that releases a pin or body, until it is accepted
+  SystemState next_;                             // end of the current step; once the step is accepted, its start
   double local_error_ = 0, solver_error_ = 0;    // of the step to `next_`, estimated [m]
   std::vector<double> reported_overstretch_;     // last reported ratio of stretch to limit, per cloth; 0: none
   std::vector<integrator::HeldParticle> held_;

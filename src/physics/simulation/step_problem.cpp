@@ -25,7 +25,8 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
   reset_memory();
 }
 
-// A step depends only on the state at its start, so that equal steps have the same bits in frames of any length.
+// Called at the start of each step: the step then depends only on its start state, and equal steps have the same bits
+// at any frame rate.
 void StepProblem::reset_memory() {
   memory_.linearised_at.clear();
   const double nowhere = std::numeric_limits<double>::quiet_NaN();  // unequal to any number
@@ -57,7 +58,7 @@ void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force
   });
 }
 
-// Positions or velocities of the particles, followed by those of the vertices of bodies.
+// The given positions or velocities of the particles, followed by those of the vertices of dynamic bodies.
 std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> of_particles) const {
   std::vector<Vec3> of_all(static_cast<std::size_t>(vertices_->end()));
   std::ranges::copy(of_particles.first(masses().size()), of_all.begin());
@@ -65,7 +66,8 @@ std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> of_particles)
   return of_all;
 }
 
-// Calls add(x, force) for particles and vertices, and passes forces on vertices on to the frames of their bodies.
+// Calls add(x, force) with the positions of particles and vertices of dynamic bodies, and distributes the forces on
+// vertices to the frame particles.
 template <class Add>
 void StepProblem::add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add) {
   if (vertices_ == nullptr) return add(x_end, force);
@@ -177,7 +179,7 @@ void StepProblem::use_rate(double rate) {
   memory_.rate = rate;
 }
 
-// Updates the remembered positions and velocities of a part. Returns whether any of them has changed.
+// Copies the positions and velocities of a part into the memory. Returns whether any of them has changed.
 bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoint& at) {
   const solver::DiagonalBlock& part = memory_.system.parts[cloth];
   return parallel_sum(size_of(part), kGrainSize, [&](std::size_t begin, std::size_t end) {
@@ -194,10 +196,11 @@ bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoi
          }) > 0;
 }
 
-// Evaluates forces within the active parts at the remembered positions; with `assemble`, also their matrix rows.
+// Evaluates forces within the active parts at the positions in the memory; with `assemble`, also their matrix rows.
 void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   const auto ranges = cloth_.ranges();
-  // Counts chunks as on many threads: loops are counted on one thread, which has one range for each part.
+  // Loops are counted on one thread, where each part is one range (LoopCounts). Count as many chunks as there are
+  // ranges on many threads.
   const CountedLoop counted(cloth_.largest_range_count());
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
     const auto& [cloth, begin, end, number] = ranges[r];
@@ -217,7 +220,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   });
 }
 
-// Whether a part has moved too far from where its rows of the matrix were assembled.
+// Whether a particle of a part has moved too far from where the part's rows of the matrix were assembled.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   const solver::DiagonalBlock& part = memory_.system.parts[cloth];
   const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();

@@ -1,5 +1,5 @@
-// The equation of one step for the integrator: forces of cloth, contacts and attachments, and their state between
-// evaluations.
+// The physical system of one step as the integrator uses it (integrator::System): forces of cloths, contacts and
+// attachments, and what these keep between evaluations.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@
 
 namespace weft::simulation {
 
-/// State that one evaluation of forces leaves for later ones. Evaluations with equal memory and equal arguments give
-/// the same bits.
+/// State that evaluations of forces keep for later evaluations. Two evaluations with equal memory and equal arguments
+/// give the same bits.
 struct SolveMemory {
-  // Linearisations change the following members. A cloth that has hardly moved since its rows of the matrix were
-  // assembled keeps these rows.
+  // Of all evaluations, only linearisations change the members of this group. A cloth that has hardly moved since its
+  // rows of the matrix were assembled keeps these rows.
   solver::LinearSystem system;
   solver::Assembly assembly;        ///< of the matrix in `system`
   double rate = 0;                  ///< StagePoint::rate for which system and assembly were filled [1/s]; 0: not set
@@ -27,7 +27,7 @@ struct SolveMemory {
   collision::ContactLag contacts;
   ClothSystem::LockLinearisations locks;  ///< empty before the first step
 
-  // Internal forces of cloths, kept to save time: in a solve, most cloths stop moving before the last cloth does.
+  // Internal forces of cloths, kept to save time: in a solve, most cloths converge before the last one does.
   using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
   PaddedVec3s x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
   PaddedVec3s force;  ///< the forces there [N]
@@ -41,7 +41,8 @@ struct PinSpring {
   double damping;    ///< [N·s/m]
 };
 
-/// Combines ClothSystem, Attachments and ContactResponse, and keeps their memory between evaluations.
+/// Sums the forces of ClothSystem, Attachments, ContactResponse and pin springs; keeps their memory between
+/// evaluations.
 class StepProblem final : public integrator::System {
  public:
   /// The cloth must outlive this object.
@@ -56,18 +57,20 @@ class StepProblem final : public integrator::System {
   /// Sets the springs between cloths and to bodies. They must outlive the steps.
   void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
 
-  /// Begins a step that ends at time t [s since the start of the run], before its first solve. `pinned`: particles that
-  /// pins or keys hold in the step. Updates rest shapes and enclosed air. Friction starts from the normal forces at the
-  /// particles' start positions x [m], and thread locks from the tensions there. The next linearisation assembles the
-  /// matrix anew. `pulls` must outlive the step.
+  /// Begins a step that ends at time t [s since the start of the run], before its first solve. Updates rest shapes and
+  /// enclosed air. Resets the memory: thread locks start from the tensions at the start positions x [m], and the next
+  /// linearisation assembles the whole matrix. `pinned`: particles that pins or keys hold in the step. `pulls` must
+  /// outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const PinSpring> pulls = {});
 
-  /// Sets the air velocity at each particle in the step that begins [m/s]. Without it, the air velocity is uniform.
+  /// Sets the air velocity at each particle in the step that begins [m/s]. Without this call, the air velocity is
+  /// `Physics::wind` everywhere.
   void set_air_velocity(SolveMemory::PaddedVec3s air);
 
-  /// Call it within a step if contacts have changed. Friction then follows the normal forces for the rest of the
-  /// numerics.newton.slow_after updates of the step, but for at least half of that number.
+  /// Call it within a step if contacts have changed: discards what is kept per contact. In a step, friction follows the
+  /// normal forces during the first `numerics.newton.slow_after` updates. After this call, it does so for at least half
+  /// as many further updates.
   void limit_friction_updates() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.slow_after / 2)};
   }

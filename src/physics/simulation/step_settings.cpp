@@ -13,7 +13,8 @@ integrator::NewtonParameters newton_of(const model::Model& model) {
 
 std::optional<integrator::StepControl> step_control_of(const model::Model& model) {
   if (!model.time.tolerance) return std::nullopt;
-  // Without a history, the error in free fall is estimated as that of implicit Euler: ½ h² g (BDF2: 3/2 of it).
+  // The first step has no history, so its error is estimated as that of implicit Euler (BDF2: 3/2 of it). In free fall,
+  // this is ½ h² g; it equals the tolerance for h = `first`.
   const double first = std::sqrt(2 * *model.time.tolerance / std::max(model.physics.largest_gravity(), 1.0));
   return integrator::StepControl(model.time.integrator, *model.time.tolerance, first);
 }
@@ -40,8 +41,7 @@ bool is_released(const model::Body& body, double t, double h) {
 
 using FrameVelocities = std::array<Vec3, mesh::RigidFrame::kParticles>;
 
-// Velocities of the frame particles of a body in this pose, with the velocity of the pose; if the body is free, plus
-// its own velocity and spin.
+// Velocities of the frame particles of a body that moves as `pose`. If it is free, adds those of model::Dynamics.
 FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::PoseSample& pose, bool is_free) {
   FrameVelocities velocities;
   for (std::size_t k = 0; k < velocities.size(); ++k) {
@@ -53,8 +53,8 @@ FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::P
   return velocities;
 }
 
-// Pose of a body that keys move. Where they end, its track rests; if the body is released there, it keeps the velocity
-// with which they have moved it.
+// Pose of a body that keys move. The track has zero velocity from its last key on. If the body is released at the last
+// key, its velocity is that just before the key.
 motion::PoseSample pose_of_frame(const model::Model& model, std::size_t body, double t) {
   motion::PoseSample pose = model.pose(body, t);
   const bool rests = pose.velocity == Vec3::Zero() && pose.angular_velocity == Vec3::Zero();

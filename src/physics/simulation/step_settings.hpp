@@ -1,4 +1,4 @@
-// What the step loop derives from a model: parameters, the state at the start, and which bodies keys hold.
+// Functions that derive from a model: parameters of the step loop, the start state, and which dynamic bodies keys hold.
 #pragma once
 
 #include <optional>
@@ -13,28 +13,28 @@
 namespace weft::simulation {
 
 integrator::NewtonParameters newton_of(const model::Model& model);
-/// None if the model has a fixed step instead of a tolerance.
+/// Returns nothing if the model has a fixed step instead of a tolerance.
 std::optional<integrator::StepControl> step_control_of(const model::Model& model);
 
 /// First particle of each cloth.
 std::vector<Index> first_particles(const ClothSystem& cloth);
 
-/// Positions of all particles at the start, and their velocities as the model gives them, at time t [s].
+/// Start state at time t [s]: positions and velocities of all particles as the model gives them.
 SystemState start_of(const model::Model& model, const ClothSystem& cloth, double t);
 
-/// For a step that ends at t [s]: appends the frame particles (mesh::RigidFrame) of bodies that keys still hold at t,
-/// with the positions and velocities that the keys give.
+/// For a step that ends at t [s]: appends the frame particles (mesh::RigidFrame) of dynamic bodies that are not yet
+/// released at t, with the positions and velocities of their keys.
 void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
-/// Whether a body is released in the step from t to t + h [s].
+/// Whether a dynamic body is released in the step from t to t + h [s]: forces move it from then on.
 bool any_frame_is_released(const model::Model& model, double t, double h);
 
-/// Sets the velocities of the frame particles of the bodies that are released in this step: the velocities of their
-/// keys at t, plus the body's own velocity and spin.
+/// Sets the velocities of the frame particles of the bodies that are released in this step: those of their keys at t,
+/// plus Dynamics::velocity and Dynamics::angular_velocity.
 void release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
 
-/// Whether all dynamic bodies that keys hold at t0 [s] stay held and still until t1 [s].
+/// Whether all dynamic bodies that are held at t0 [s] stay held and do not move until t1 [s].
 bool frames_are_constant(const model::Model& model, double t0, double t1);
 
 }  // namespace weft::simulation

@@ -6,8 +6,8 @@ namespace weft::simulation {
 
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end) {
-  // The force of a constraint is the residual of the equation of motion. On a free particle, this residual is the
-  // solver's error.
+  // Work of the residual of the equation of motion on particle i. On a held particle, the residual is the force of the
+  // constraint; on a free particle, the solver's error.
   const auto missing_work = [&](std::size_t i) {
     return stepper.constraint_force(static_cast<Index>(i), masses[i]).dot(end.x[i] - start.x[i]);
   };
@@ -20,8 +20,8 @@ StepWork measure_work(const integrator::Stepper& stepper, std::span<const integr
   for (const integrator::HeldParticle& held : pinned) {
     const auto i = static_cast<std::size_t>(held.constraint.particle);
     work.solver -= missing_work(i);
-    // A held particle has the velocity of its pin, not the one that the method computes. Its kinetic energy is
-    // therefore counted from its velocities, not from its acceleration.
+    // A held particle has the velocity of its pin, not the one that the method computes. Therefore the change of its
+    // kinetic energy is computed from its velocities, and constraint_force() gets a mass of 0.
     work.pins += stepper.constraint_force(held.constraint.particle, 0).dot(end.x[i] - start.x[i]) +
                  0.5 * masses[i] * (end.v[i].squaredNorm() - start.v[i].squaredNorm());
   }

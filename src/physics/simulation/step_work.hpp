@@ -1,4 +1,4 @@
-// Work that one step does on the cloth: by pins, and by the residual of the equation of motion.
+// Work on the cloth in one step: that of pins, and that of the residual of the equation of motion.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@ namespace weft::simulation {
 /// Work in one step [J].
 struct StepWork {
   double pins = 0;    ///< by pins and keys; includes the change of the kinetic energy of held particles
-  double solver = 0;  ///< by the residual of the equation of motion of other particles; 0 if it is solved exactly
+  double solver = 0;  ///< by the residual of the equation of motion of other particles; 0 if solved exactly
 };
 
-/// Work of the last step of the stepper, from `start` to `end`. `pinned`: particles that pins or keys hold. Uses the
-/// forces of the stage, so the work is exact to the order of the method.
+/// Work in the last step of the stepper, from `start` to `end`. `pinned`: particles that pins or keys hold. Uses the
+/// forces of the stage, so the error of the work has the order of the method.
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end);
 

@@ -1,4 +1,4 @@
-// CollisionStage::untangle(): moves cloth apart before the first step.
+// CollisionStage::untangle(): moves cloth off the surfaces that it touches or crosses, before the first step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace weft::simulation {
 namespace {
 
-// Maximum ratio of border edges to all edges at which a body counts as closed: characters are open at eyes and soles.
+// Maximum ratio of border edges to all edges at which a body counts as closed. Characters are open at eyes and soles.
 constexpr double kClosedBorder = 0.02;
 
 untangle::Kind kind_of(const model::Body& body) {
@@ -23,7 +23,7 @@ untangle::Kind kind_of(const model::Body& body) {
   return closed && !edges.edges.empty() ? untangle::Kind::solid : untangle::Kind::open;
 }
 
-// Whether a cloth that is not dressed yet is worn over this one.
+// Whether a cloth that is not yet put on will be worn over this one.
 bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std::size_t> dressed) {
   for (std::size_t c = 0; c < model.cloths.size(); ++c)
     if (std::ranges::find(dressed, c) == dressed.end() &&
@@ -36,8 +36,8 @@ bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std:
 
 void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> dressed,
                               SystemState& start) {
-  // Dressed cloths stand still, like obstacles. They come last, so that cloth is moved out of bodies first, then out of
-  // dressed cloths.
+  // Cloths that are already put on (`dressed`) do not move, like obstacles. They come last, so that new cloth is moved
+  // out of bodies first, then out of them.
   std::vector<std::size_t> order;  // numbers of the engine's bodies
   const std::size_t cloths = model_.cloths.size();
   for (std::size_t c = 0; c < cloths; ++c)

@@ -1,4 +1,4 @@
-// Pins in one step: they hold particles exactly, or pull those that something obstructs.
+// Pins in one step: they hold particles exactly, or pull particles that an obstacle or cloth keeps from their targets.
 #pragma once
 
 #include <cstdint>
@@ -13,16 +13,16 @@
 
 namespace weft::simulation {
 
-/// A pin with a `strength` is always a damped spring. Any other pin holds its particles exactly at their targets, until
-/// something keeps one of them from its target. That particle then lags: a force of bounded size pulls it, until it
-/// arrives and is held again.
+/// A pin with a `strength` is always a damped spring. Any other pin holds its particles exactly at their targets. If an
+/// obstacle or cloth keeps a particle from its target, the particle lags: a bounded force pulls it until it reaches its
+/// target and is held again.
 class YieldingPins {
  public:
   /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The model and `masses` must outlive this object.
   YieldingPins(const model::Model& model, const std::vector<Index>& first_particle, std::span<const double> masses);
 
-  /// Begins a step from t to t + h [s] with particles at x [m]: finds which ones are held at t + h, and which are
-  /// pulled.
+  /// Begins a step from t to t + h [s] with particles at x [m]: determines which particles are held at t + h, and which
+  /// are pulled.
   void begin_step(double t, double h, std::span<const Vec3> x);
   const std::vector<integrator::HeldParticle>& held() const { return held_; }
   const std::vector<PinSpring>& pulls() const { return pulls_; }
@@ -30,40 +30,40 @@ class YieldingPins {
   /// Whether the pins hold the same particles at the same places at t0 and t1 [s], and no particle lags.
   bool are_constant_between(double t0, double t1);
 
-  /// Whether the model releases a pin at a time in [t0, t1) [s]. See also release_particle(), which is another release.
+  /// Whether the model releases a pin at a time in [t0, t1) [s]. Unrelated to release_particle().
   bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
 
-  /// Makes a held particle lag in the current step; the step must then begin again. `obstruction`: what is in its way
-  /// and where, as text.
+  /// Makes a held particle lag in the current step; begin_step() must be called again. `obstruction`: text that says
+  /// which object is in its way, and where.
   void release_particle(Index particle, const std::string& obstruction);
-  /// Accepts the step: particles that lag in it lag in the next one too, until they arrive.
+  /// Accepts the step: particles that lag in it also lag in the next steps, until they reach their targets.
   void accept();
 
   /// Lagging pins of the steps of a frame. take_lags() also begins the next frame.
   struct Lags {
-    int particles = 0;               ///< largest number that lagged at once
-    std::vector<std::string> turns;  ///< pins that began to lag or are held again: "pin 0 of 'a' gives way to 'b' ..."
+    int particles = 0;               ///< largest number of particles that lagged in one step
+    std::vector<std::string> turns;  ///< one text per pin that began to lag or is at its target again
   };
   Lags take_lags();
 
-  /// Between two frames: copies which particles of one cloth lag. The cloth has `count` particles, from `first_there`
-  /// on in `there`, from `first` on in this object. Pins that `there` has reported are not reported again.
+  /// Between two frames: copies which particles of one cloth lag. The cloth has `count` particles, which begin at
+  /// `first_there` in `there` and at `first` in this object. Pins that `there` has reported are not reported again.
   void copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count);
 
-  /// Saves or restores which particles lag, and which pins were reported.
+  /// Saves or restores which particles lag, and which pins have been reported.
   template <class Archive>
   void serialize(Archive& archive);
 
  private:
   void pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x);
-  // As in Pins, at the end of the step.
+  // The functions of Pins, at the end of the step.
   std::size_t pin_of(Index particle) const { return pins_.pin_of(particle, forced_t_ + forced_h_); }
   double strength_fraction(Index particle) const { return pins_.strength_fraction(particle, forced_t_ + forced_h_); }
 
   Pins pins_;
   const model::Model& model_;
   std::span<const double> masses_;
-  std::vector<double> pull_force_;  // per pin: W of Numerics::Pins [N]
+  std::vector<double> pull_force_;  // per pin: W in the maximum force of Numerics::Pins [N]
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one

@@ -9,11 +9,11 @@
 
 namespace weft::solver {
 
-/// What assembling a BlockMatrix needs beside it: a symmetric matrix of forces that do not change if all particles
-/// translate together. Forces add block (i, j) of each pair of particles i < j, and the own block of each particle
-/// (drag of air), which the diagonal holds meanwhile. Block (j, i) is the transpose. The diagonal block follows from
-/// the condition that each row sums to its particle's own block. Forces between particles therefore add no diagonal
-/// blocks: a triangle adds three blocks instead of nine.
+/// Assembles a symmetric BlockMatrix of forces that do not change if all particles translate together. Forces add the
+/// block (i, j) of each pair of particles i < j, and the own block of each particle (for the drag of air), which the
+/// diagonal block holds until complete_rows(). Block (j, i) is the transpose of block (i, j). The diagonal block
+/// follows from the condition that each row sums to its particle's own block. Forces between particles therefore add no
+/// diagonal blocks: a triangle adds three blocks instead of nine.
 ///
 /// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {
@@ -22,7 +22,7 @@ class Assembly {
   /// For matrices with the layout of `matrix`.
   explicit Assembly(const BlockMatrix& matrix);
 
-  /// Index of block (i, j), i < j. The pattern must hold it as a full block.
+  /// Index of block (i, j), i < j. The pattern must contain it as a full block.
   Index block(Index i, Index j) const;
   /// Index of a pair's scalar, in either order.
   Index scalar(Index i, Index j) const;
@@ -50,16 +50,16 @@ class Assembly {
   BlockMatrix::Pattern pairs_;   // all pairs
   std::vector<double> scalars_;  // per pair
   std::vector<double> constant_scalars_;
-  std::vector<double> constant_own_;   // per row, a multiple of the identity
-  std::vector<Index> scalar_of_pair_;  // of each full block above the diagonal, row by row
-  std::vector<Index> pair_of_;         // of each full block below the diagonal, row by row: its transpose
-  std::vector<Index> first_of_row_;    // index into pair_of_
-  std::vector<Index> scalar_of_isotropic_;
+  std::vector<double> constant_own_;        // per row, a multiple of the identity
+  std::vector<Index> scalar_of_pair_;       // of each full block above the diagonal, row by row
+  std::vector<Index> pair_of_;              // of each full block below the diagonal, row by row: its transpose
+  std::vector<Index> first_of_row_;         // index into pair_of_
+  std::vector<Index> scalar_of_isotropic_;  // of each isotropic block, row by row
 };
 
-/// The rows [begin, end) of a matrix that is assembled, and the pairs whose smaller index is in this range. Ignores
-/// values added to other rows. If each thread owns a range of rows and adds all elements in the same order, the sums
-/// have the same bits as with one thread. A default-constructed object holds no rows.
+/// Adds to the rows [begin, end) of a matrix during its assembly, and to the pairs whose smaller index is in this
+/// range. Ignores values for other rows. If each thread owns a range of rows and adds all elements in the same order,
+/// the sums have the same bits as with one thread. A default-constructed object holds no rows.
 class AssemblyRows {
  public:
   AssemblyRows() = default;

@@ -64,7 +64,7 @@ class BlockMatrix {
   Index rows() const { return static_cast<Index>(layout_->diagonal.size()); }
   std::size_t blocks() const { return full().columns.size() + isotropic().columns.size(); }
 
-  /// Slot of block (row, column), which the pattern must hold.
+  /// Slot of block (row, column), which the pattern must contain.
   Slot slot(Index row, Index column) const;
   Slot diagonal(Index row) const { return layout_->diagonal[row]; }
 
@@ -123,14 +123,14 @@ class BlockMatrix {
   template <class Vector>
   void multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const;
 
-  /// Positions of the blocks, in compressed rows.
+  /// Positions of blocks in the compressed sparse row format.
   struct Pattern {
     std::vector<Index> start;    ///< rows + 1 entries into columns
     std::vector<Index> columns;  ///< ascending within a row
 
     /// `pairs` must be sorted and must not repeat.
     static Pattern of(Index rows, const Couplings& pairs);
-    /// Index of (row, column); −1 if the pattern does not hold it.
+    /// Index of (row, column); −1 if the pattern does not contain it.
     Index find(Index row, Index column) const;
   };
   /// Which blocks a matrix has.
@@ -138,7 +138,7 @@ class BlockMatrix {
     Pattern full, isotropic;     ///< of the full blocks, and of the multiples of the identity
     std::vector<Slot> diagonal;  ///< per row
   };
-  /// Shared by the matrix, its copies, and what reads or assembles it.
+  /// Shared by the matrix, its copies, and the objects that read or assemble it.
   const std::shared_ptr<const Layout>& layout() const { return layout_; }
   /// Pattern of the full blocks. values() holds nine numbers for each, column by column, and three more after the last,
   /// so that every column can be loaded as four numbers.

@@ -9,7 +9,7 @@
 namespace weft::solver {
 namespace {
 
-// Smallest fraction of a motion's energy that must be independent of the directions before it; else it is skipped.
+// A motion is skipped if less than this fraction of its energy is independent of the directions before it.
 constexpr double kMinIndependentEnergy = 1e-4;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
@@ -99,7 +99,7 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
       if (!motions[m].empty()) result.row(3 + m) = vec3_of(motions[m][static_cast<std::size_t>(particle)]);
     return result;
   };
-  // Threads sum chunks of terms, which are then added in a fixed order.
+  // Threads sum chunks of terms; the sums of chunks are then added in a fixed order.
   const std::size_t count = term_count(system);
   std::vector<TermBlocks> of_chunks((count + kFineGrainSize - 1) / kFineGrainSize, TermBlocks(selected.size()));
   parallel_for(count, kFineGrainSize, [&](std::size_t begin, std::size_t end) {

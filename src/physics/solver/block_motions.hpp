@@ -1,5 +1,5 @@
-// Galerkin correction along a few directions per diagonal block (particles that the matrix couples): three translations
-// of all its particles together, and up to two motions that the caller gives.
+// Galerkin correction along a few directions per diagonal block: three translations of all its particles together, and
+// up to two motions that the caller gives.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -12,15 +12,15 @@
 
 namespace weft::solver {
 
-/// Largest number of motions that the caller gives.
+/// Maximum number of motions that the caller gives.
 inline constexpr int kMaxMotions = 2;
 /// Directions of one diagonal block: three translations, then the motions.
 inline constexpr int kDirections = 3 + kMaxMotions;
 /// Coefficients of these directions in a displacement of one diagonal block, or the work of forces along them.
 using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 
-/// The linear system, projected on these directions. A diagonal block has translations if no constraint acts on any of
-/// its particles. A motion is skipped if it is nearly a combination of the directions before it
+/// The linear system, projected on these directions. Uses the translations of a diagonal block only if no constraint
+/// acts on its particles. Skips a motion that is nearly a combination of the directions before it
 /// (kMinIndependentEnergy).
 class BlockMotions {
  public:
@@ -29,7 +29,7 @@ class BlockMotions {
 
   /// Builds and factorises the projected system. `motions`: one entry per row, filtered by the constraints, zero
   /// outside of the selected diagonal blocks; empty if absent. `row_sums`: per selected diagonal block, the sum of all
-  /// its 3×3 entries, without terms (= the matrix projected on the translations). `products`: per selected diagonal
+  /// its 3×3 blocks without terms, which is the matrix projected on the translations. `products`: per selected diagonal
   /// block.
   template <class Real>
   void prepare(const LinearSystem& system, std::span<const std::size_t> selected,

@@ -10,13 +10,14 @@
 namespace weft::solver {
 namespace {
 
-// Largest stiffness of a particle (trace of its 3×3 block), relative to its norm weight rate² m, for single precision,
-// which rounds stiffness by 6e-8. (Measured: sheets that swing on threads with ratios of 8e5, 8e6 and 8e7 take 361,
-// 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
+// Maximum stiffness of a particle (trace of its 3×3 block) for single precision, relative to its norm weight rate² m.
+// Single precision rounds stiffness by 6e-8. (Measured: swinging sheets whose threads have ratios of 8e5, 8e6 and 8e7
+// take 361, 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
 constexpr double kMaxSingleStiffness = 1e7;
 
-// The memory of a precision that so many solves have not used is freed. Making it anew costs a few iterations
-// (measured: a ring that cloth is pulled through uses double precision in 40 of 356 iterations, of 95 solves).
+// Number of AggregateSums::recompute after which ConjugateGradient frees the memory of an unused precision. To allocate
+// it again takes the time of a few iterations. (Measured: if cloth is pulled through a ring, 40 of 356 iterations, in
+// 95 solves, use double precision.)
 constexpr int kSolvesUnused = 16;
 
 // Whether no particle exceeds kMaxSingleStiffness. False without a mass-weighted norm.
@@ -120,7 +121,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
     copy_as_vec3(double_.recurrence->residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
-  // Without an iteration, or with a residual of zero, there is no error to estimate.
+  // Without iterations, or with a residual of zero, the error counts as zero.
   for (const Progress::OfPart& part : progress.parts)
     report.errors.push_back(
         part.gains.empty() || progress.is_exact ? 0 : std::sqrt(part.error_energy() * part.error_norm_ratio()));

@@ -22,23 +22,24 @@ struct LinearReport {
 ///
 /// solve() uses single precision if LinearGoal::relative is at least kSmallestSingleGoal, the system has
 /// `norm_weights`, and no particle's relative stiffness exceeds kMaxSingleStiffness (conjugate_gradient.cpp). Single
-/// precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects errors
-/// of rounding. If it meets a direction without positive curvature, solve() goes on in double.
+/// precision is safe because Newton's method evaluates its residual in double, so that the next solve corrects rounding
+/// errors. If a direction has no positive curvature in single precision, solve() continues in double.
 class ConjugateGradient {
  public:
-  /// Sets the system of the following calls, which must outlive them unchanged: the preconditioner is made in the first
-  /// of them. With AggregateSums::reuse, sums over aggregates are reused if they have been made since the last call
-  /// with AggregateSums::recompute. Frees the memory of a precision that no call has used for some solves.
+  /// Sets the system of the following calls. It must not change until the last of them: the first of them that needs
+  /// the preconditioner prepares it. With AggregateSums::reuse, the preconditioner reuses sums over aggregates that
+  /// have been computed since the last call with AggregateSums::recompute. Frees the memory of a precision that has not
+  /// been used for some time.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// Returns P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
 
-  /// Iterates from zero (ignores the content of x) until the error meets `goal`, or for `max_iterations`.
+  /// Iterates from zero (ignores the content of x) until the estimated error meets `goal`, or for `max_iterations`.
   ///
-  /// The iteration itself gives the error e: a step of length α along a search direction, from the residual r, reduces
-  /// ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these steps
-  /// (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
+  /// The steps of the iteration estimate the error e. A step of length α along a search direction, from the residual r,
+  /// reduces ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these
+  /// steps (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
   /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is this
   /// estimate times q, at most 1. q is the largest ratio of a step's squared mass-weighted norm to its gain, over these
   /// steps. √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and flat sheets would
@@ -57,13 +58,13 @@ class ConjugateGradient {
  private:
   const LinearSystem* system_ = nullptr;
   bool allows_single_ = false;  // for the prepared system
-  /// Recurrence in one precision, if it is in use, and whether it is prepared.
+  /// The recurrence in one precision, if it is in use.
   template <class Real>
   struct PrecisionState {
     std::optional<Recurrence<Real>> recurrence;
-    bool has_aggregate_sums = false;  // made since the last AggregateSums::recompute
+    bool has_aggregate_sums = false;  // computed since the last AggregateSums::recompute
     bool is_prepared = false;         // for the current system
-    int unused = 0;                   // number of times that sums were made anew since it was used
+    int unused = 0;                   // number of AggregateSums::recompute since its last use
     void begin_sums();
   };
   template <class Real>

@@ -19,15 +19,17 @@ struct ParticleConstraint {
   Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
 };
 
-/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring that resists the weighted sum of the
-/// displacements. Contacts change with every step, so they are not part of the fixed pattern.
+/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring against the sum of the particles' displacements
+/// with the weights w. Contacts change with every step; therefore the sparsity pattern of the matrix does not contain
+/// them.
 struct StencilTerm {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for unused entries
   Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
 };
 
-/// A StencilTerm for points of rigid bodies, which follow four frame particles each: up to eight particles.
+/// A StencilTerm for contacts of rigid bodies: a contact point on a body is a weighted sum of the body's four
+/// particles.
 struct WideTerm {
   std::array<Index, 8> particles{};
   std::array<double, 8> weights{};
@@ -49,32 +51,33 @@ struct RankOneTerm {
   double stiffness = 0;         ///< at least 0
 };
 
-/// Partition into aggregates, of particles or of the aggregates of the next finer level.
+/// Partition of particles, or of the aggregates of the next finer level, into aggregates.
 struct Aggregates {
   std::vector<Index> of;  ///< aggregate of each member, 0 to count − 1
   Index count = 0;
 };
 
-/// A diagonal block: rows [begin, end) that the matrix does not couple with other rows. Terms may couple different
-/// blocks.
+/// A diagonal block: rows [begin, end), such as the particles of one cloth, that the matrix does not couple with other
+/// rows. Contact terms may couple different diagonal blocks.
 struct DiagonalBlock {
   Index begin = 0, end = 0;
   std::uint64_t version = 1;  ///< changes whenever the values of these rows change
-  /// Few rows with stiff forces between them, such as those of a rigid body. On every level of the preconditioner each
-  /// of these particles is an aggregate of its own, so that the coarsest level solves the block exactly.
+  /// Few rows with stiff forces between them, such as the four particles of a rigid body. On every level of the
+  /// preconditioner, each of these particles is an aggregate of its own, so that the coarsest level solves the block
+  /// exactly.
   bool is_small = false;
 };
 
 struct LinearSystem {
   BlockMatrix matrix;                ///< positive definite on the free directions
-  std::vector<DiagonalBlock> parts;  ///< all rows, in order; empty: one diagonal block
+  std::vector<DiagonalBlock> parts;  ///< of all rows, ascending; empty: one diagonal block
   std::vector<StencilTerm> terms;
   std::vector<WideTerm> wide_terms;
   std::vector<DiagonalTerm> diagonal_terms;
   std::vector<RankOneTerm> rank_one_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
-  /// Weights of the mass-weighted norm in which errors are measured, rate² m, one per row. As a diagonal matrix they
-  /// must not exceed the system's matrix, rate² M + K. Empty: the energy norm is used instead.
+  /// Weights of the mass-weighted norm of errors, rate² m, one per row. As a diagonal matrix they must not exceed the
+  /// system's matrix, rate² M + K. Empty: errors are measured in the energy norm.
   std::vector<double> norm_weights;
   /// Multigrid levels of the preconditioner, finest first: aggregates of particles, aggregates of those, and so on. The
   /// coarsest level must be small enough for a dense factorisation. No aggregate spans two diagonal blocks, and the
@@ -101,7 +104,7 @@ inline std::size_t term_count(const LinearSystem& system) {
   return system.diagonal_terms.size() + system.terms.size() + system.wide_terms.size();
 }
 
-/// The term with this number. Diagonal terms come first, then those in the order of for_each_term().
+/// The term with this number: diagonal terms come first, then the others in the order of for_each_term().
 inline AnyTerm term_at(const LinearSystem& system, std::size_t number) {
   static constexpr double kWeightOfOne = 1;
   const std::size_t diagonal = system.diagonal_terms.size(), small = diagonal + system.terms.size();

@@ -12,15 +12,15 @@
 namespace weft::solver {
 namespace {
 
-// Largest number of levels, the coarsest included.
+// Maximum number of levels, the coarsest included.
 constexpr std::size_t kMaxLevels = 16;
-// If constraints hold all particles of an aggregate, its block is singular and its residual zero. A shift by this
-// fraction of the block's own trace makes the block definite. The fraction must be below the ratio of masses to stiff
-// threads (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations).
+// If constraints hold all particles of an aggregate, its residual is zero and its block singular. A shift by this
+// fraction of the block's trace makes it definite. The fraction must be below the ratio of mass part to thread
+// stiffness (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m take twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
-// Fraction of a member's motion that comes from neighbouring aggregates. Values above 1/2 reverse the shortest waves.
+// Total weight of the neighbours' aggregates in a member's motion. Values above 1/2 reverse the shortest waves.
 constexpr double kInterpolation = 0.5;
-constexpr double kLevelStiffness = 0.5;  // factor per level; see Preconditioner
+constexpr double kLevelStiffness = 0.5;  // factor of the stiffness per level; see Preconditioner
 
 Mat3 singular_shift(const Mat3& block) {
   const double trace = block.trace();
@@ -118,7 +118,6 @@ bool Preconditioner<Real>::has_stiff_threads() const {
   });
 }
 
-// Assigns particles to the aggregates of all levels, and allocates the levels.
 template <class Real>
 void Preconditioner<Real>::allocate_levels() {
   const std::size_t rows = at(system_->matrix.rows());
@@ -156,7 +155,7 @@ void Preconditioner<Real>::allocate_levels() {
   find_common_levels();
 }
 
-// Neighbours are particles that share a full block, and aggregates with neighbouring members.
+// Particles with a common full block are neighbours; so are aggregates with neighbouring members.
 template <class Real>
 void Preconditioner<Real>::compute_weights() {
   const double smoothing = interpolates_ ? kInterpolation : 0;
@@ -194,7 +193,7 @@ void Preconditioner<Real>::find_common_levels() {
   find(system_->matrix.isotropic(), common_level_isotropic_);
 }
 
-// Marks the particles that terms act on: their blocks change with the terms, other blocks only with the matrix.
+// Marks the particles on which contact terms act: their blocks change whenever the terms change.
 template <class Real>
 void Preconditioner<Real>::mark_touched_particles() {
   touched_before_ = touched_;
@@ -234,8 +233,8 @@ void Preconditioner<Real>::invert_particles() {
     });
 }
 
-// Sums the stiffness of one diagonal block (its matrix without the mass part): each 3×3 block into the finest aggregate
-// that contains both its row and its column, and from there into coarser ones. If none does: into the coarsest matrix.
+// Sums the stiffness of one diagonal block (its matrix without the mass part). A 3×3 block enters the finest aggregate
+// that contains its row and its column, and thus all coarser ones. If there is none, it enters the coarsest matrix.
 template <class Real>
 void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   const std::size_t depth = levels_.size();
@@ -308,7 +307,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
     const Mat3 free = constraints_[at(constraint_of_[i])].free, held = Mat3::Identity() - free;
     return free * unscaled * free + held * own_block(i) * held;
   };
-  std::vector<Mat3> unscaled;  // on coarser levels: per member, from the first one of this diagonal block on
+  std::vector<Mat3> unscaled;  // of the previous level: per aggregate of this diagonal block
   double stiffness_fraction = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
@@ -331,7 +330,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         coarsest.of_matrix[g];
 }
 
-// Returns zero blocks, for touched particles only: terms act on few particles of a large cloth.
+// Returns zero blocks for touched particles only: contact terms act on few particles of a large cloth.
 template <class Real>
 typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_blocks() const {
   TouchedBlocks all{std::vector<Index>(touched_.size(), -1), {}};
@@ -343,7 +342,7 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_
   return all;
 }
 
-// Stiffness of terms for each particle if all particles on its side of a term (weights of the same sign) move with it.
+// Contact stiffness of each touched particle if all particles with weights of the same sign move with it.
 template <class Real>
 typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() const {
   TouchedBlocks lumped = make_touched_blocks();
@@ -360,15 +359,15 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() 
   return lumped;
 }
 
-// An aggregate gets the terms of all particles that interpolate from it, by their weights. With the terms of its own
-// particles alone, aggregates between scattered contacts would count as free.
+// An aggregate gets the contact terms of all particles that interpolate from it, by their weights. If it got only those
+// of its own particles, aggregates between scattered contacts would count as free.
 template <class Real>
 void Preconditioner<Real>::invert_aggregates() {
   const TouchedBlocks of_particles = lump_terms();
-  std::vector<Mat3> of_members;  // on coarser levels: per member
+  std::vector<Mat3> of_members;  // of the previous level: contact stiffness per aggregate
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
-    // Aggregates of changed diagonal blocks, and those with terms now or at the last call.
+    // True for aggregates of changed diagonal blocks, and for those with contact terms now or at the last call.
     std::vector<char> needs_inverse = level.touched;
     std::ranges::fill(level.touched, 0);
     std::vector<Mat3> of_groups(needs_inverse.size(), Mat3::Zero());
@@ -397,11 +396,11 @@ void Preconditioner<Real>::invert_aggregates() {
   }
 }
 
-// Adds the terms, exactly, to the coarsest level and factorises it.
+// Adds the contact terms exactly to the matrix of the coarsest level, and factorises it.
 template <class Real>
 void Preconditioner<Real>::factorise_coarsest() {
   coarse_matrix_ = coarse_matrix_without_terms_;
-  // Coarsest aggregates from which particles of a term interpolate, with weights.
+  // The coarsest aggregates from which particles of a term interpolate, and their weights.
   using CoarseWeights = std::vector<std::pair<Index, double>>;
   const auto add_coarse_weights = [&](Index i, double weight, CoarseWeights& weights_of_end) {
     for (Index s = coarse_weights_.start[i]; weight != 0 && s < coarse_weights_.start[i + 1]; ++s) {
@@ -423,7 +422,7 @@ void Preconditioner<Real>::factorise_coarsest() {
     add(of[0], filtered(term.particle, term.stiffness, term.particle), of[0]);
   }
   for_each_term(*system_, [&](const auto& term) {
-    // If all particles are free, their weights are added up first; if one is constrained, each is filtered by itself.
+    // If all particles are free, sums their weights first. If one is constrained, filters the term for each particle.
     const std::size_t count = term.particles.size();
     const bool free = std::ranges::all_of(term.particles, [&](Index i) { return is_free(i); });
     for (CoarseWeights& weights_of_end : of) weights_of_end.clear();
@@ -438,7 +437,7 @@ void Preconditioner<Real>::factorise_coarsest() {
   coarse_factor_ = coarse_matrix_.template cast<Real>();
 }
 
-// Sums the residual, by interpolation weights, from particles into the finest aggregates, then into coarser ones.
+// Sums the residual with the interpolation weights: from particles to the finest aggregates, then to coarser ones.
 template <class Real>
 void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
@@ -450,7 +449,8 @@ void Preconditioner<Real>::restrict_residual(std::span<const PaddedVec3<Real>> r
   }
 }
 
-// From coarsest to finest level: each aggregate adds what it interpolates from coarser ones to its own correction.
+// From the coarsest level to the finest: the correction of an aggregate is its inverse times its residual, plus the
+// correction interpolated from the next coarser level.
 template <class Real>
 void Preconditioner<Real>::correct_aggregates() {
   Level& coarsest = levels_.back();

@@ -12,31 +12,34 @@
 
 namespace weft::solver {
 
-/// Whether sums over aggregates are made from the current matrix, or kept from an earlier matrix with the same
-/// constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are current in either case.
+/// Whether the sums over aggregates are computed from the current matrix, or reused from an earlier matrix with the
+/// same constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are current in either
+/// case.
 enum class AggregateSums { recompute, reuse };
 
 /// P⁻¹ = S Σ_l T_l A_l⁻¹ T_lᵀ S, where T_l interpolates from level l to particles and S is the projection on the free
 /// directions. T_0 is the identity, and A_0 the diagonal of 3×3 blocks of S A S + (I − S) (prefiltered, Tamstorf, Jones
 /// & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation", 2015). Each further level reduces errors whose
 /// wavelength is about the width of its aggregates (Bramble, Pasciak & Xu, "Parallel Multilevel Preconditioners",
-/// 1990). T_l = Q_1 Q_2 … Q_l, where Q_k gives each member a weighted mean of the values of its own aggregate and of
-/// the aggregates of its neighbours. Q_k is one step of damped Jacobi on the graph of the matrix, applied to
-/// interpolation by constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+/// 1990). T_l = Q_1 Q_2 … Q_l. Q_k interpolates from the aggregates of level k to their members (aggregates of level k
+/// − 1, or particles): each member gets a weighted mean of the values of its own aggregate and of the aggregates of its
+/// neighbours. Q_k is one step of damped Jacobi on the graph of the matrix, applied to piecewise constant interpolation
+/// (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
 ///
-/// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or all of it on the last level. Both are expensive, so A_l
-/// is built from R_l A R_lᵀ, where R_l sums over each aggregate. If each aggregate moves as a whole, all strain is at
-/// the boundaries of aggregates. Aggregates double in width per level, and the same motion spread over twice the
-/// width meets half of the stiffness. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters
-/// with the factor 1/2 per level (1 in a DiagonalBlock that is_small), the mass part with factor 1. Contact terms are
-/// not part of the matrix. Their stiffness at each particle is added to the aggregates from which the particle
-/// interpolates, by its weights; this is an upper bound of the contact part of the diagonal of T_lᵀ A T_l. The last
-/// level has T_lᵀ A T_l of the contact terms exactly.
+/// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or on the last level all of T_lᵀ A T_l. Both are expensive,
+/// so A_l is built from R_l A R_lᵀ, where R_l sums over each aggregate. R_l A R_lᵀ is the stiffness against motion of
+/// aggregates as wholes, with all strain at their boundaries. Interpolated motion has its strain over the whole width
+/// of the aggregates. This width doubles per level, and strain over twice the width meets half of the stiffness.
+/// Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters A_l with the factor 1/2 per level
+/// (1 in a DiagonalBlock that is_small), and the mass part with the factor 1. Contact terms are not part of the matrix.
+/// Their stiffness at each particle is added to the aggregates from which the particle interpolates, by its weights;
+/// this is an upper bound of the contact part of the diagonal of T_lᵀ A T_l. The last level contains T_lᵀ A T_l of the
+/// contact terms exactly.
 ///
 /// If threads are so stiff that the trace of a particle's 3×3 block exceeds `stiff_particle` times the sum of
 /// `norm_weights` over its DiagonalBlock (not tested where is_small), no level interpolates: T_l = R_lᵀ, and the factor
-/// per level is 1. Interpolated motion would stretch threads across folds; R_l A R_lᵀ contains only threads across the
-/// boundaries of aggregates, not those inside.
+/// per level is 1. Interpolated motion would stretch threads inside of aggregates where cloth is folded, and R_l A R_lᵀ
+/// contains only the threads across their boundaries.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>
@@ -50,7 +53,6 @@ class Preconditioner {
   void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> parts);
 
  private:
-  /// One level of aggregates.
   struct Level {
     std::vector<Index> aggregate_of;        // per particle
     std::vector<Index> parent;              // per aggregate: its aggregate on the next level
@@ -58,8 +60,8 @@ class Preconditioner {
     Weights<Real> restriction;              // per aggregate
     std::vector<RowRange> of_part;          // aggregates of each diagonal block
     RowChunks chunks;                       // of aggregates, in the selected blocks
-    std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no terms
-    std::vector<char> touched;              // per aggregate: its `inverse` contains terms
+    std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no contact terms
+    std::vector<char> touched;              // per aggregate: its `inverse` contains contact terms
     std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with contact terms
     std::vector<PaddedVec3<Real>> residual, correction;
   };
@@ -71,7 +73,7 @@ class Preconditioner {
   void scale_sums(std::size_t part);
   void mark_touched_particles();
   void invert_particles();
-  /// A 3×3 block for each particle that terms act on.
+  /// A 3×3 block for each particle on which contact terms act.
   struct TouchedBlocks {
     std::vector<Index> place;  // per particle, −1 for none
     std::vector<Mat3> blocks;
@@ -93,7 +95,7 @@ class Preconditioner {
   bool interpolates_ = true;                       // false if threads are very stiff
   std::vector<DiagonalBlock> parts_;               // at the last call of prepare()
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
-  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: new matrix, new sums over aggregates
+  std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: whether its rows, or its sums, are new
   std::vector<ParticleConstraint> constraints_;    // when the sums were made
   std::vector<Index> constraint_of_;               // per particle, −1 for none
   struct Filter {
@@ -101,11 +103,12 @@ class Preconditioner {
     PaddedMat3<Real> free;
   };
   std::vector<std::vector<Filter>> filters_;    // per diagonal block
-  std::vector<char> touched_, touched_before_;  // per particle: terms act on it
+  std::vector<char> touched_, touched_before_;  // per particle: contact terms act on it
   std::vector<PaddedMat3<Real>> inverse_;       // per particle: S A_0⁻¹ S
   std::vector<Level> levels_;                   // the last one is the coarsest
   Weights<Real> coarse_weights_;                // per particle, from the coarsest aggregates
-  // Per block of the matrix: first level that has row and column in one aggregate, or the number of levels.
+  // Per 3×3 block of the matrix: first level on which one aggregate contains its row and its column; the number of
+  // levels if there is none.
   std::vector<std::uint8_t> common_level_full_, common_level_isotropic_;
   std::vector<std::vector<Index>> members_of_coarse_;  // particles
   std::vector<std::size_t> selected_;                  // diagonal blocks of the last apply()

@@ -9,7 +9,6 @@
 namespace weft::solver {
 namespace {
 
-// The pattern without its diagonal.
 BlockMatrix::Pattern without_diagonal(const BlockMatrix::Pattern& pattern) {
   BlockMatrix::Pattern result;
   result.start.reserve(pattern.start.size());
@@ -30,7 +29,7 @@ Octet to_octet(const PaddedVec3<double>& low, const PaddedVec3<double>& high) {
                                  __builtin_convertvector(high, PaddedVec3<float>), 0, 1, 2, 3, 4, 5, 6, 7);
 }
 
-// The factor of each of the first eight entries of a block in its product with v.
+// For each of the first eight entries of a block: the entry of v by which a product with v multiplies it.
 Octet repeat_per_column(const PaddedVec3<float>& v) {
   return __builtin_shufflevector(v, v, 0, 0, 0, 1, 1, 1, 2, 2);
 }

@@ -11,8 +11,8 @@
 namespace weft::solver {
 
 /// A block matrix A in single precision, which halves the memory to read. Its product is y_i = D_i x_i + Σ_j A_ij (x_j
-/// − x_i). The sum D_i of a row's blocks is computed in double. Thus rounding affects only the stiffness of relative
-/// motion; the much smaller mass is not lost.
+/// − x_i), where the sum D_i of a row's blocks is computed in double. Thus rounding affects only the stiffness against
+/// relative motion; the much smaller mass part is not lost.
 class DifferenceMatrix {
  public:
   void copy_pattern(const BlockMatrix& matrix);
@@ -26,7 +26,7 @@ class DifferenceMatrix {
  private:
   std::shared_ptr<const BlockMatrix::Layout> layout_;
   BlockMatrix::Pattern full_;  // without the diagonal
-  /// The first eight numbers of a block, column by column, which load at once; the ninth is stored apart.
+  /// The first eight numbers of a block, column by column, for one vector register; `ninths_` hold the last numbers.
   using Octet = float __attribute__((vector_size(32)));
   std::vector<Octet> octets_;  // of full blocks
   std::vector<float> ninths_;
@@ -35,7 +35,8 @@ class DifferenceMatrix {
   std::vector<float> scalars_;
 };
 
-/// q = S A p, where A is the matrix with all terms but outer products, and S the projection on the free directions.
+/// The product q = S A p, where A is the matrix with all terms but outer products (RankOneTerm), and S is the
+/// projection on the free directions.
 template <class Real>
 class Product {
  public:

@@ -1,4 +1,4 @@
-// Outer products beside a system's matrix: their contribution to products and to the preconditioner.
+// Outer products beside a system's matrix (RankOneTerm): their contribution to products and to the preconditioner.
 #pragma once
 
 #include <functional>

@@ -25,7 +25,8 @@ void convert_to_padded(std::span<const Vec3> from, std::span<PaddedVec3<Real>> t
 
 }  // namespace
 
-// Sums absolute values: terms and the coarsest level couple diagonal blocks, so the gain of one block may be negative.
+// Sums absolute values: contact terms and the coarsest level couple diagonal blocks, so the gain of one may be
+// negative.
 double Progress::OfPart::error_energy() const {
   return std::accumulate(gains.end() - count_recent(), gains.end(), 0.0,
                          [](double sum, double gain) { return sum + std::abs(gain); });
@@ -50,8 +51,8 @@ bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> select
   });
 }
 
-// If the step along `start` is the solution, the residual of rounding in single precision has at most this fraction of
-// the step's energy. Iterating on it would add uneven motion, of micrometres in a fall of 5 m.
+// If the step along `start` is the solution, only rounding remains in the residual: in single precision at most this
+// fraction of the step's energy. Iterations on this residual would add uneven motion, of micrometres in a fall of 5 m.
 constexpr double kRoundedEnergy = 1e-11;
 
 template <class Real>
@@ -81,7 +82,7 @@ std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const
   return z_;
 }
 
-// Prepares the outer products for the preconditioner of the selected blocks.
+// Prepares rank_one_ for the preconditioner on the selected blocks.
 template <class Real>
 void Recurrence<Real>::precondition_rank_one() {
   rank_one_.use([&](std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z) {
@@ -112,8 +113,8 @@ double Recurrence<Real>::apply_preconditioner(std::span<PaddedVec3<Real>> z) {
   return std::accumulate(rz_.begin(), rz_.end(), 0.0);
 }
 
-// Sets r = b − A x, and x_, the sum of the following steps, to zero. If the solve has no iterations yet, also takes the
-// step along `start`.
+// Sets r_ to b − A x, and x_, the sum of the following steps, to zero. If the solve has no iterations yet, also takes
+// the step along `start`.
 template <class Real>
 void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start,
                              Progress& progress) {
@@ -136,7 +137,7 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   }
 }
 
-// Takes a step along `start`. Keeps it apart from x_, in double, as start_multiple_ times start_.
+// Takes the step along `start`. Stores it in double outside of x_, as start_multiple_ times start_.
 template <class Real>
 void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   start_.assign(start.begin(), start.end());
@@ -219,8 +220,8 @@ std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const Padded
 }
 
 // Galerkin's condition: makes the residual orthogonal to the translations and motions of each diagonal block. Without
-// this correction, residual forces in stiff directions do work: a viscosity of 1e3 N·s/m gains energy, and cloth that
-// begins to slide is held back.
+// this correction, residual forces in stiff directions do work: cloth with a viscosity of 1e3 N·s/m gains energy, and
+// cloth that begins to slide is held back.
 template <class Real>
 void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) {
   const bool has_second = !directions.drift.empty();

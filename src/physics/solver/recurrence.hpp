@@ -13,8 +13,8 @@
 
 namespace weft::solver {
 
-/// Smallest relative residual that single precision distinguishes from rounding: in the energy norm, 6e-8
-/// √kMaxSingleStiffness, times a safety factor of five.
+/// Smallest LinearGoal::relative for which solves use single precision: five times the relative error that rounding can
+/// leave in the energy norm, 6e-8 √kMaxSingleStiffness.
 inline constexpr double kSmallestSingleGoal = 1e-3;
 
 /// Allowed error of the solution, per diagonal block. One of two bounds suffices. In the energy norm: `relative` times
@@ -30,8 +30,8 @@ struct Directions {
   /// The first step of a solve is along this direction, of the length that is best in the energy norm. It costs one
   /// product with the matrix.
   std::span<const Vec3> start = {};
-  /// Motion to which the solution is added. At the end of a solve with at least one iteration, the residual does no
-  /// work along the sum of both, and the residual sums to zero over each diagonal block that no constraint holds
+  /// Motion to which the caller adds the solution. At the end of a solve with at least one iteration, the residual does
+  /// no work along the sum of motion and solution, and it sums to zero over each diagonal block without constraints
   /// (Galerkin's condition for these directions of each diagonal block).
   std::span<const Vec3> motion = {};
   /// Second motion along which the residual does no work at the end; ignored without `motion`.
@@ -44,16 +44,16 @@ struct Progress {
   struct OfPart {
     double energy = 0;  ///< ‖x‖²_A of the solution x without its step along Directions::start
     std::vector<double> gains,
-        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step per decrease
-    double error_energy() const;  ///< estimate of ‖e‖²_A, where e is the error
-    double error_norm_ratio() const;
+        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, divided by it
+    double error_energy() const;      ///< estimate of ‖e‖²_A, where e is the error
+    double error_norm_ratio() const;  ///< largest of the recent `norm_ratios`
 
    private:
     std::ptrdiff_t count_recent() const;
   };
-  std::vector<OfPart> parts;  ///< of the whole system
+  std::vector<OfPart> parts;  ///< all diagonal blocks of the system
   int iterations = 0;
-  bool is_exact = false;  ///< the residual is zero, or only rounding
+  bool is_exact = false;  ///< the residual is zero up to rounding
 
   bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
@@ -61,7 +61,7 @@ struct Progress {
 enum class End {
   converged,
   out_of_iterations,
-  indefinite,    ///< a direction without positive curvature
+  indefinite,    ///< the matrix has a direction without positive curvature
   needs_double,  ///< single precision only: the caller must continue in double, with a new direction
 };
 
@@ -74,8 +74,8 @@ class Recurrence {
   /// Returns P⁻¹ b. Valid until the next call.
   std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
 
-  /// Solves A x = b on these diagonal blocks; all others are held. At the call, x must be zero or, if `progress` has
-  /// iterations already, their result.
+  /// Solves A x = b on these diagonal blocks; the particles of all others count as held. At the call, x must be zero
+  /// or, if `progress` already has iterations, their result.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
             const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
 
@@ -108,7 +108,7 @@ class Recurrence {
   std::vector<PaddedVec3<Real>> x_, r_, z_, p_, q_;
   std::vector<Vec3> start_;            // filtered by the constraints
   double start_multiple_ = 0;          // the solution is x_ plus this multiple of start_
-  double start_gain_ = 0;              // decrease of ‖e‖²_A by that multiple
+  double start_gain_ = 0;              // decrease of ‖e‖²_A by that step
   std::vector<double> norms_sq_, rz_;  // per selected block: Σ norm_weights ‖p‖², r·z
 };
 

@@ -10,7 +10,8 @@
 
 namespace weft::solver {
 
-/// Rows of weights: per member the weights of its aggregates, or the transpose.
+/// A sparse matrix of weights, with one row per member (particle, or aggregate of the finer level) and one column per
+/// aggregate; or its transpose.
 template <class Real>
 struct Weights {
   std::vector<Index> start;  // rows + 1 entries into columns
@@ -22,9 +23,9 @@ struct Weights {
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
     return result;
   }
-  /// Interpolation from aggregates to their members. The neighbours of a member share the weight `smoothing` equally,
-  /// each for its aggregate; the member's own aggregate gets the rest in addition. Without neighbours, its weight is 1.
-  /// Replaces `neighbours`, those of each member, by those of each aggregate.
+  /// Interpolation from aggregates to their members. If a member has n neighbours, the aggregate of each neighbour gets
+  /// the weight `smoothing` / n, and the member's own aggregate 1 − `smoothing`; an aggregate's weights add up. Without
+  /// neighbours, the own aggregate has the weight 1. Replaces `neighbours` of each member by those of each aggregate.
   static Weights make_interpolation(const Aggregates& grouping, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows: the number of columns of this matrix.

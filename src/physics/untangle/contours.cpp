@@ -14,11 +14,11 @@
 namespace weft::untangle {
 namespace {
 
-// Slope of a folded island on the surface that it crossed: sine and cosine of 15 degrees.
+// Sine and cosine of the angle between a folded island and the surface that it crossed: 15 degrees.
 constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
 
-// Returns the number of the island of each particle. An island is a maximal set of particles that are connected without
-// the `cut` edges.
+// Returns the number of the island of each particle. An island is a connected component of the mesh without the edges
+// in `cut`.
 std::vector<Index> label_islands(const Fabric& fabric, const std::set<std::array<Index, 2>>& cut) {
   std::vector<Index> island(static_cast<std::size_t>(fabric.particles()), -1);
   std::vector<Index> open;
@@ -41,18 +41,18 @@ std::vector<Index> label_islands(const Fabric& fabric, const std::set<std::array
   return island;
 }
 
-/// A point of the line of crossing, and the normal of the other surface there; for an island, the normal points towards
-/// the rest of the cloth.
+/// A point of the line of crossing, and the normal of the crossed surface there. In Island::line, the normal points to
+/// the side of the rest of the cloth.
 struct CutPoint {
   Vec3 place, normal;
 };
 
 struct Island {
   std::vector<Index> particles;
-  std::set<Index> beside;  // particles of other islands across the line
-  std::vector<CutPoint> line;
-  std::set<Index> through;           // corners of the triangles that cut it off
-  std::optional<std::size_t> other;  // the crossed body; empty if there are several, or if it is the island's own
+  std::set<Index> beside;            // particles of other islands at the other ends of cut edges
+  std::vector<CutPoint> line;        // its line of crossing
+  std::set<Index> through;           // corners of the crossed triangles
+  std::optional<std::size_t> other;  // the crossed body; none if there are several, or if it is the island's own cloth
 };
 
 const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {
@@ -64,8 +64,8 @@ CrossedPair crossed_pair_of(const Fabric& fabric, const Crossing& c) {
           fabric.bodies.body_of(fabric.bodies.triangles()[c.triangle][0])};
 }
 
-// Extends a cut: adds the edges of a cloth that cross another surface extended beyond its border. The plane of the
-// crossed triangle nearest to a particle decides on which side the particle is.
+// Adds to `cut` the edges of a cloth that would cross the other surface if that were extended beyond its border. A
+// particle is on the side given by the plane of the crossed triangle nearest to it.
 void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::size_t cloth, std::span<const Vec3> x,
                 std::set<std::array<Index, 2>>& cut) {
   std::vector<CutPoint> line;
@@ -87,9 +87,9 @@ void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::
   }
 }
 
-// Raises the island's particles along `up` to `height` above the plane that is perpendicular to `up` and contains the
-// nearest point of the line. If the island has a single other surface, then raises them along the normal of that
-// surface to `height` above it.
+// Moves that raise each particle of the island along `up` to `height` above the plane perpendicular to `up` through the
+// nearest point of the line. If the island crosses a single other surface, they also raise each particle along the
+// normal of that surface to `height` above it.
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;
@@ -109,8 +109,8 @@ std::vector<Move> flatten(const Island& island, const Vec3& up, double height, c
   return moves;
 }
 
-// Rotates each particle around the line, keeping its distance from it, until the particle is 15 degrees above the
-// direction `away`; then raises it by `height` along `up`.
+// Moves that rotate each particle around the line, at constant distance from it, until the particle is 15 degrees above
+// the direction `away`; then raise it by `height` along `up`.
 std::vector<Move> fold(const Island& island, const Vec3& up, const Vec3& away, double height, std::span<const Vec3> x) {
   std::vector<Move> moves;
   const Vec3 along = up.cross(away);
@@ -136,11 +136,13 @@ Vec3 direction_of(std::span<const CutPoint> line) {
   return along;
 }
 
+// The cheapest moves to the side of the rest of the cloth: flattened, or folded to one of two sides. A later candidate
+// must cost a tenth less than the best one so far.
 std::vector<Move> best_moves(const Fabric& fabric, const Island& island, double height,
                              const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
   Vec3 up = Vec3::Zero();
   for (const CutPoint& c : island.line) up += c.normal;
-  if (up.norm() < 0.1 * static_cast<double>(island.line.size())) return {};  // crossed from all sides: no way is better
+  if (up.norm() < 0.1 * static_cast<double>(island.line.size())) return {};  // the normals cancel: no clear direction
   up.normalize();
   std::vector<Move> best = flatten(island, up, height, surfaces, x);
   double min_cost = stretch_cost(fabric, best, x);
@@ -243,7 +245,7 @@ void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings,
     const Vec3 n = collision::face_normal(t, x), e = (x[j] - x[i]).stableNormalized();
     const double across = e.dot(n);
     if (std::abs(across) < 1e-3) continue;
-    // Volino & Magnenat-Thalmann (2006), Eq. (2): r points from the edge into each of its triangles, along the line.
+    // Volino & Magnenat-Thalmann (2006), Eq. (2). r: direction of the line, from the edge into each of its triangles.
     Vec3 gradient = Vec3::Zero();
     for (const Index triangle : edge.triangles) {
       if (triangle < 0) continue;
@@ -256,7 +258,7 @@ void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings,
       if (r.dot(arm - arm.dot(e) * e) < 0) r = -r;
       gradient += r - 2 * e.dot(r) / across * n;
     }
-    // Nearly a unit vector; shorter if the gradient is small and therefore uncertain.
+    // A unit vector, except if the gradient is small: its direction is then uncertain, so `direction` is shorter.
     const Vec3 direction = gradient / std::sqrt(gradient.squaredNorm() + 0.01);
     const auto add = [&](Index v, double fraction, double sign) {
       push[v] += sign * fraction * direction;
@@ -297,8 +299,8 @@ void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossing
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
         raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
     } else {
-      // Raise the crossing point farther than `above`: by the length of the shorter part of the edge, but at most by
-      // half the longest side of the triangle.
+      // An edge of the body crosses a triangle of cloth. Raise the crossing point higher than `above`: by the length of
+      // the shorter part of the edge, but at most by half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =
           std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});

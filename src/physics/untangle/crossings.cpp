@@ -12,7 +12,7 @@ struct SegmentHit {
   std::array<double, 3> weights;
 };
 
-// Where the segment from p to q crosses a triangle. Empty also if it lies in the plane of the triangle.
+// Where the segment from p to q crosses a triangle. Nothing if it does not, or if it lies in the triangle's plane.
 std::optional<SegmentHit> intersect_segment(const Vec3& p, const Vec3& q, const collision::Triangle& t,
                                             std::span<const Vec3> x) {
   const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
@@ -59,7 +59,8 @@ std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Ve
   return candidates_.apart.view();
 }
 
-// Tests the edges of one triangle against another. Skips edges that end in `without`, the vertex that both share.
+// Tests the edges of triangle `of_edge` against `triangle`. `without`: vertex that both share, or −1; edges that end in
+// it are skipped. Returns whether any edge crosses.
 bool CrossingFinder::test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x) {
   bool any = false;
   for (const Index e : fabric_.edges.of_triangle[of_edge]) {

@@ -10,29 +10,30 @@
 
 namespace weft::untangle {
 
+/// An edge that crosses a triangle.
 struct Crossing {
   Index edge;                     ///< index into Fabric::edges.edges
   Index triangle;                 ///< index into Bodies::triangles()
   double fraction;                ///< position on the edge, from its first vertex (0) to its second (1)
-  std::array<double, 3> weights;  ///< of the corners of the triangle
+  std::array<double, 3> weights;  ///< barycentric, of the crossing point in the triangle
 };
 
 /// Whether the edge or the triangle belongs to a solid, a floor or a layer.
 bool involves_solid(const Fabric& fabric, const Crossing& crossing);
 
-/// Crossings between surfaces of which at least one is cloth.
+/// Finds crossings between surfaces of which at least one is Kind::cloth.
 class CrossingFinder {
  public:
   /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive the finder.
   CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles);
 
-  /// All crossings at x [m], sorted by edge and triangle, each once. Touching counts, except if the edge lies in the
-  /// plane of the triangle.
+  /// All crossings at x [m], sorted by edge and triangle, each once. An edge that touches a triangle also crosses it,
+  /// except if it lies in the triangle's plane.
   std::span<const Crossing> find(std::span<const Vec3> x);
   /// Number of crossing pairs of triangles in the last find().
   int pairs() const { return pairs_; }
 
-  /// Pairs of triangles without a common vertex whose bounding boxes are within `distance` [m] of each other.
+  /// Pairs of triangles without a common vertex whose bounding boxes, enlarged by `distance` / 2 [m], overlap.
   std::span<const collision::TrianglePair> near(std::span<const Vec3> x, double distance);
 
   const collision::BroadPhase& surfaces() const { return broad_phase_; }

@@ -6,7 +6,7 @@
 namespace weft::untangle {
 namespace {
 
-// Threads may be compressed to this fraction of the smaller of their lengths at the start and at rest; such threads
+// Minimum length of a thread, relative to the smaller of its lengths at the start and at rest. Compressed threads
 // buckle when the run begins.
 constexpr double kMinLengthRatio = 0.6;
 

@@ -1,4 +1,4 @@
-// Input of untangling: surfaces in one numbering, which vertices may move, and how cloth is connected.
+// Input of untangling: all surfaces in one numbering, which vertices may move, and the connectivity of cloth.
 #pragma once
 
 #include <array>
@@ -12,19 +12,20 @@
 
 namespace weft::untangle {
 
-/// On which sides of a body cloth may be.
+/// Kinds of surfaces, by the sides on which other cloth may be.
 enum class Kind : std::uint8_t {
-  cloth,  ///< to be untangled; has two sides, both allowed
-  solid,  ///< has an inside, where cloth may not be
+  cloth,  ///< cloth to be untangled; other cloth may be on both sides
+  solid,  ///< closed body; cloth may not be inside
   floor,  ///< cloth may not be below it
-  open,   ///< has two sides, both allowed
-  layer,  ///< worn cloth; other cloth may only be on its outer side
+  open,   ///< any other obstacle; cloth may be on both sides
+  layer,  ///< cloth that does not move, over which other cloth is worn: on its outer side only
 };
 
-/// Connectivity of surfaces and allowed lengths of threads (links between neighbours); constant.
+/// Constant input: connectivity of surfaces, and allowed lengths of threads. A thread is a link along an edge.
 struct Fabric {
-  /// `x`: positions of all vertices as given; `rest`: stress-free positions of particles [m]. `may_move`: per vertex.
-  /// `of_bodies` and `may_move` must outlive this object.
+  /// `x`: start positions of all vertices [m]. Those of Kind::cloth must come first: they are the particles. `rest`:
+  /// stress-free positions of the particles [m]. `may_move`: per vertex. `of_bodies` and `may_move` must outlive this
+  /// object.
   Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
          std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
 
@@ -36,8 +37,8 @@ struct Fabric {
   };
 
   const collision::Bodies& bodies;
-  std::vector<Kind> kinds;  ///< per body
-  std::span<const std::uint8_t> movable;
+  std::vector<Kind> kinds;                     ///< per body
+  std::span<const std::uint8_t> movable;       ///< per vertex
   mesh::EdgeSet edges;                         ///< of all triangles, with global numbers
   std::vector<Link> links;                     ///< of cloth
   std::vector<std::vector<Index>> neighbours;  ///< per particle
@@ -55,9 +56,8 @@ struct Move {
   Vec3 target;  ///< [m]
 };
 
-/// Cost of these moves: mean squared strain of the threads of the moved particles. Strain is the relative excess over
-/// the maximum length, or the relative shortfall below the minimum length. Excess or shortfall before the moves does
-/// not count.
+/// Cost of moves: mean squared strain of the threads of the moved particles. Strain is the relative excess over the
+/// maximum length, or the relative deficit below the minimum length. Excess or deficit before the moves does not count.
 double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x);
 
 }  // namespace weft::untangle

@@ -9,7 +9,7 @@ namespace weft::untangle {
 namespace {
 
 constexpr int kSweepsPerRaise = 5;
-// Fraction of the error by which a link between opposite corners is corrected.
+// Fraction of its error by which a bending link (Fabric::Link::is_bend) is corrected.
 constexpr double kBendFraction = 0.2;
 constexpr std::size_t kParticlesPerTask = 256;
 
@@ -66,7 +66,6 @@ void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, i
   for (int time = 0; time < times; ++time) {
     for (const Index i : region) {
       if (!fabric.movable[i]) continue;
-      // Move border particles only along the border.
       Vec3 sum = Vec3::Zero();
       int count = 0;
       for (const Index j : fabric.neighbours[i]) {

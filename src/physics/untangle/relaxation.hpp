@@ -1,5 +1,5 @@
-// Relaxation: the rest of the cloth follows moved particles, so that links along edges (threads) and across them
-// (bending) regain allowed lengths.
+// Relaxation: after some particles were moved, moves cloth until links along edges (threads) and across edges (bending)
+// have allowed lengths again.
 #pragma once
 
 #include <span>
@@ -9,18 +9,19 @@
 
 namespace weft::untangle {
 
-/// Sweeps over all links in order and corrects each before the next one is read, links of bending only in part
-/// (position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). After every few sweeps and
-/// after the last one, calls raise(). `above`: minimum height over solids [m], per body.
+/// Sweeps `sweeps` times over all links in order, and corrects the length of each before it reads the next one
+/// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). Corrects links
+/// of bending only in part. After every few sweeps and after the last one, calls raise(). `above`: minimum height over
+/// solids [m], per body.
 void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
            std::span<Vec3> x);
 
-/// Raises movable particles that are lower than `above` over a solid to the height `above`, in the direction of the
-/// nearest exit.
+/// Moves movable particles that are lower than `above` over a solid to the height `above` over their nearest exit
+/// (Solid::Exit).
 void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
 
 /// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times. For
-/// a particle on the border, only neighbours on the border count.
+/// a particle on the border, only neighbours on the border are used, so that it stays on the border.
 void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -9,11 +9,13 @@
 namespace weft::untangle {
 namespace {
 
-// Offset at which a face's outside is probed, relative to the size of the body: below any detail, above rounding.
+// Offset from a face at which the constructor tests whether its front is inside another shell, relative to the size of
+// the body: below any detail, above rounding.
 constexpr double kProbeOffset = 1e-6;
-// Corner weight below which the nearest point of a face counts as on the opposite edge.
+// Weight of a corner below which the nearest point of a face counts as on the opposite edge.
 constexpr double kMaxZeroWeight = 1e-9;
-// Direction of rays: nearly along an axis, so that boxes around them are thin, but along no edge that a modeller draws.
+// Direction of rays that count windings: nearly along an axis, so that bounding boxes of rays are thin, but not along
+// an axis or diagonal, because edges of models often are.
 const Vec3 kRayDirection(1, 0.00137, 0.00211);
 
 }  // namespace
@@ -60,7 +62,7 @@ bool Solid::is_near(const Vec3& p, double distance) const {
   return box_.squaredExteriorDistance(p) <= distance * distance;
 }
 
-// Where the segment from p to p + `way` crosses faces, in order.
+// Where the segment from p to p + `way` crosses faces, in the order along the segment.
 std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
   const collision::Surface& surface = surfaces_.surface(number_);
   std::vector<Index> numbers;
@@ -92,8 +94,8 @@ bool Solid::inside(const Vec3& p) const {
   return turns < 0;
 }
 
-// Points whose nearest point is on the border lie beside the cloth, neither in front of it nor behind it; they count as
-// outside.
+// If the nearest point of the layer is on its border, p is beside the cloth, neither in front of it nor behind it, and
+// counts as outside.
 Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
   const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
   const Vec3 place = p - point.height * point.normal;
@@ -125,7 +127,7 @@ Solid::Exit Solid::exit(const Vec3& p) const {
   for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
   collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
   const Vec3 place = p - point.height * point.normal;
-  // Where shells cross, the sign at the nearest point may be wrong.
+  // Where shells cross, the sign of `point.height` may be wrong.
   const double side = inside(p) ? -1 : 1;
   if (side * point.height < 0) point.normal = -point.normal;
   return {place, point.normal, side * std::abs(point.height)};
@@ -145,7 +147,7 @@ double Solid::distance_out(const Vec3& p, const Vec3& d) const {
     return std::numeric_limits<double>::infinity();
   }
   for (const Hit& hit : found) shells -= hit.winding;
-  depth = shells;  // number of shells around p: the ray leaves that many more than it enters
+  depth = shells;  // number of shells that contain p: the ray leaves that many more shells than it enters
   for (const Hit& hit : found) {
     depth += hit.winding;
     if (depth <= 0) return length * hit.fraction;

@@ -1,4 +1,4 @@
-// The inside of an obstacle, and exits from it.
+// Regions where cloth may not be, and exits from them.
 #pragma once
 
 #include <cstdint>
@@ -11,37 +11,37 @@
 
 namespace weft::untangle {
 
-/// The region where cloth may not be: inside a body of closed shells, which may cross each other; below a floor; or
-/// behind worn cloth (a layer). Points whose nearest point of the layer is on its border are not behind it. Does not
-/// move.
+/// A region where cloth may not be; it does not move. There are three kinds: the inside of a body, whose closed shells
+/// may cross each other; the space below a floor; the space behind a layer (Kind::layer). A point is not behind a layer
+/// if the nearest point of the layer is on its border.
 class Solid {
  public:
-  /// Body `number` of the broad phase at x [m]; both must outlive it.
+  /// A body or floor with this number in the broad phase at x [m]. `surfaces` and x must outlive this object.
   Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x);
-  /// A layer: cloth that is worn over the bodies `below`, or around its own centre if there are none. Its outer side is
-  /// the one that mostly faces away from them. `on_border`: per vertex; must outlive it.
+  /// A layer. Its outer side is the one that mostly faces away from the nearest body of `below` or, if there are none,
+  /// from the layer's own centre. `on_border`: per vertex. `surfaces`, x and `on_border` must outlive this object.
   Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
         std::span<const std::uint8_t> on_border, std::span<const Solid> below);
 
   std::size_t number() const { return number_; }
-  /// Whether p lies in the bounds of the solid or within `distance` [m] of them.
+  /// Whether p is less than `distance` [m] outside of the bounds of the solid. False: p is certainly farther outside.
   bool is_near(const Vec3& p, double distance) const;
-  /// Whether p is inside. For a body by the winding number, so points where its shells overlap are inside.
+  /// Whether p is inside. Uses the winding number for a body, so that points in several of its shells are inside.
   bool inside(const Vec3& p) const;
 
-  /// The nearest point of the outer surface. Faces buried in another shell do not count.
+  /// The nearest point of the outer surface to a point p. Faces inside of another shell do not belong to it.
   struct Exit {
-    Vec3 place, normal;  ///< the point [m], and the unit normal there, outward
-    double height;       ///< signed distance of p [m], negative inside
+    Vec3 place, normal;  ///< the nearest point [m], and the outward unit normal there
+    double height;       ///< signed distance of p from it [m], negative inside
   };
   Exit exit(const Vec3& p) const;
-  /// Distance from p, which is inside, along the unit direction d to the end of the solid [m]; infinite if the ray
-  /// stays in a floor or layer.
+  /// Distance from p, which is inside, along the unit direction d to where the ray leaves the solid [m]; infinite if it
+  /// does not leave a floor or layer.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }
-  /// Depth of the segment's midpoint inside the solid, divided by the length of the segment; 0 outside. For a chord of
-  /// a circle: 0.21 if it spans a quarter turn, 0.5 if it spans half a turn.
+  /// Depth of the midpoint of the segment from p to q inside the solid, divided by the length of the segment; 0 if it
+  /// is outside. Examples: 0.21 for a chord of a quarter circle, 0.5 for the diameter of a circle.
   double midpoint_depth(const Vec3& p, const Vec3& q) const;
 
  private:
@@ -58,7 +58,7 @@ class Solid {
   std::span<const Vec3> x_;
   Box3 box_;
   Vec3 normal_ = Vec3::UnitZ(), place_ = Vec3::Zero();  // of a floor
-  std::vector<std::uint8_t> buried_;                    // per triangle: inside another shell
+  std::vector<std::uint8_t> buried_;                    // per triangle: whether it is inside another shell
   std::span<const std::uint8_t> on_border_;             // of a layer, per vertex
   int outer_sign_ = 1;                                  // of a layer: −1 if its back is its outer side
 };

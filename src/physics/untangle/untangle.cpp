@@ -12,35 +12,35 @@
 namespace weft::untangle {
 namespace {
 
-// Height above the surface of an obstacle or other cloth to which cloth is moved, in thicknesses of this cloth.
+// Height over an obstacle or other cloth to which cloth is moved, relative to the thickness of the moved cloth.
 constexpr double kHeightInThicknesses = 0.75;
-// Minimum gap between surfaces, in thicknesses: far above Numerics::Separation::least_gap.
+// Minimum gap between surfaces, relative to the larger thickness of the two: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
-// Cloth closer than this to other cloth is on neither side of it [m].
+// Distance below which two surfaces coincide: neither is on a side of the other [m].
 constexpr double kTouchDistance = 1e-9;
 constexpr int kMaxRounds = 400;
-// After kPatience rounds without fewer crossings, the cloth around the remaining ones is smoothed, each time over a
-// larger area, at most kMaxSmoothings times.
+// After kPatience rounds in which the number of crossings does not reach a new minimum, the cloth around the remaining
+// crossings is smoothed, each time over a larger area, at most kMaxSmoothings times.
 constexpr int kPatience = 12, kMaxSmoothings = 12;
-// Maximum number of islands of a crossed pair that are tried one by one.
+// Maximum number of islands of a CrossedPair that are tried one by one.
 constexpr std::size_t kMaxSingleIslands = 12;
 constexpr int kSweepsAfterMove = 120, kSweeps = 8;
-// Maximum displacement of a region inside a body, relative to the region's size. Beyond it, the region is locked: it
-// has no way out.
+// Maximum displacement that takes a region (InsideRegion) out of a body, relative to the region's size. If it needs
+// more, the region is locked: it has no way out.
 constexpr double kMaxDisplacementRatio = 1.5;
-// Maximum number of passes: a region that leaves one body may enter another.
+// Maximum number of passes over all bodies: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
-// A region whose way out is shorter than this multiple of kHeightInThicknesses always takes it: then only strain after
-// the move locks the region.
+// A region is shallow if its displacement is less than this multiple of the height to which cloth is moved
+// (kHeightInThicknesses). Shallow regions always move; only strain after the move can lock them.
 constexpr double kShallowDepth = 4;
-// Maximum strain of a thread after the move. Above, the body counts as going through the cloth, and the region is
-// locked (measured: 0.44, the largest in valid starts, for a tube 4 cm too small; 4.9 for trousers with a leg through
-// the seat).
+// Maximum strain of a thread after the move. If it is larger, the body probably goes through the cloth, and the region
+// is locked. (Measured: the largest strain of a valid start is 0.44, of a tube 4 cm too small; trousers with a leg
+// through the seat have 4.9.)
 constexpr double kMaxStrain = 1.5;
-// Maximum fraction of a region's threads that may still go through the body after the move: relax() frees those at the
-// region's border.
+// Maximum fraction of a region's threads that may still go through the body after the move. It is not 0, because
+// relax() frees threads at the region's border.
 constexpr double kMaxBlockedFraction = 0.2;
-// Step that shortens lines of crossing, in mean lengths of the threads.
+// Maximum displacement per round by shorten_contours(), relative to the mean length of threads.
 constexpr double kStep = 0.12;
 constexpr int kMaxGapRounds = 60;
 
@@ -79,7 +79,7 @@ class Untangling {
   }
 
  private:
-  // Moves cloth out of bodies, region by region. If a region has no way out, restores the start and returns false.
+  // Moves the regions of cloth inside solids out of these. If a region is locked, restores the start and returns false.
   bool move_out_of_solids() {
     for (int pass = 0; pass < kMaxPasses && report_.locked.empty(); ++pass) {
       std::vector<InsideRegion> regions;
@@ -122,9 +122,10 @@ class Untangling {
     return any;
   }
 
-  // Separates coincident surfaces, where neither is on a side of the other: moves the later cloth to the front of the
-  // earlier one, and the earlier one back from held particles of the later one. If the later surface cannot move (an
-  // obstacle), moves the earlier cloth to the front of it. A rope has no front: moves the cloth back.
+  // Separates coincident surfaces, because neither is on a side of the other. Of two cloths, moves the later one in the
+  // model to the front of the earlier one; if some of its particles are held, also moves the earlier one back. If the
+  // later surface cannot move (an obstacle), moves the cloth to the front of it. If that surface has no front (a rope),
+  // moves the cloth back, against its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {
@@ -151,7 +152,8 @@ class Untangling {
         x_[i] += 1.1 * kGapInThicknesses * fabric_.thickness[fabric_.bodies.body_of(i)] * normals[i].stableNormalized();
   }
 
-  // Moves islands, shortens contours and smooths until nothing crosses or improves; then restores the best state.
+  // Moves islands, shortens lines of crossing and smooths, until nothing crosses or kMaxSmoothings or kMaxRounds is
+  // reached. Then restores the best state.
   void reduce_crossings() {
     find();
     best_x_.assign(x_.begin(), x_.end());
@@ -172,9 +174,9 @@ class Untangling {
     report_.pairs_after = fewest_pairs_;
   }
 
-  // Tries to move cut-off islands: first all at once; then, for each cloth and each surface that it crosses, those of
-  // this pair at once, then up to kMaxSingleIslands of them one by one. Stops at the first try after which fewer pairs
-  // of triangles cross than ever before. Returns whether there was one; if not, nothing has changed.
+  // Tries to move cut-off islands: first all at once; then, for each CrossedPair, all islands of the pair at once, then
+  // up to kMaxSingleIslands of them one by one. Keeps the first try after which fewer pairs of triangles cross than
+  // ever before, and returns true. If there is none, changes nothing and returns false.
   bool move_islands() {
     const std::vector<Vec3> before(x_.begin(), x_.end());
     const auto try_moves = [&](std::span<const std::vector<Move>> islands) {
@@ -201,8 +203,8 @@ class Untangling {
     return false;
   }
 
-  // Smooths cloth around its crossings with cloth, over an area that grows with `smoothings`. Leaves out crossings with
-  // solids, because smoothing would move cloth back inside.
+  // Smooths cloth around its crossings, over an area that grows with `smoothings`. Ignores crossings with solids,
+  // because smoothing would move cloth back inside.
   void smooth_around(int smoothings) {
     std::vector<Index> around;
     for (const Crossing& c : crossings_) {
@@ -221,7 +223,7 @@ class Untangling {
     const std::span<const Crossing> found = finder_.find(x_);
     crossings_.assign(found.begin(), found.end());
   }
-  // Stores the present state as the best one if fewer pairs cross than ever before.
+  // If fewer pairs cross than ever before, stores the present state as the best one, and returns true.
   bool keep_if_better() {
     if (finder_.pairs() >= fewest_pairs_) return false;
     fewest_pairs_ = finder_.pairs();
@@ -230,7 +232,8 @@ class Untangling {
   }
   void return_to_best() { std::ranges::copy(best_x_, x_.begin()); }
 
-  // Call if nothing crosses, but surfaces may touch: pushes close pairs apart until none is left or some would cross.
+  // Call if nothing crosses, but gaps may be too small: pushes close pairs apart until all gaps are large enough. Stops
+  // at the last state without crossings.
   void restore_gaps() {
     std::vector<Vec3> good(x_.begin(), x_.end());
     double max_gap = 0;
@@ -249,6 +252,7 @@ class Untangling {
     std::ranges::copy(good, x_.begin());
   }
 
+  // Pushes two triangles apart to slightly more than the minimum gap. Returns whether any particle has moved.
   bool push(const collision::CornerPair& pair) {
     const double wanted = kGapInThicknesses * std::max(fabric_.thickness[fabric_.bodies.body_of(pair.a[0])],
                                                        fabric_.thickness[fabric_.bodies.body_of(pair.b[0])]);
@@ -281,8 +285,8 @@ class Untangling {
   std::vector<Vec3> start_;
   CrossingFinder finder_;
   std::vector<Solid> solids_;
-  std::vector<double> above_;  // per body [m]
-  double step_ = 0;            // [m]
+  std::vector<double> above_;  // per body: height over other surfaces to which it is moved [m]
+  double step_ = 0;            // maximum displacement by shorten_contours() [m]
   std::vector<Crossing> crossings_;
   std::vector<Vec3> best_x_;  // state with the fewest crossing pairs
   int fewest_pairs_ = 0;      // number of these pairs

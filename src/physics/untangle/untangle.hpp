@@ -1,10 +1,10 @@
 // Separates surfaces that touch or cross at the start, before the simulation.
 //
-//   Solid             the inside of an obstacle, and exits from it
-//   find_inside       regions of cloth inside an obstacle, and one way out for each
-//   CrossingFinder    edges that cross triangles
-//   contours          cloth through cloth: islands change sides, lines of crossing are shortened
-//   relax             the rest of the cloth follows
+//   Solid             a region where cloth may not be, such as the inside of an obstacle, and exits from it
+//   find_inside       finds connected regions of cloth inside a Solid, and one way out for each
+//   CrossingFinder    finds edges that cross triangles
+//   contours.hpp      cloth through cloth: takes islands to the other side, shortens lines of crossing
+//   relax             moves the rest of the cloth so that threads have allowed lengths again
 #pragma once
 
 #include <cstdint>
@@ -26,12 +26,13 @@ struct Report {
   int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
   int rounds = 0;
   double farthest = 0;               ///< largest displacement of a particle [m]
-  double stretch = 0;                ///< largest strain of a thread beyond its maximum length
-  std::vector<InsideRegion> locked;  ///< regions without a way out; if any, nothing was moved
+  double stretch = 0;                ///< largest strain of a thread, relative to its maximum length
+  std::vector<InsideRegion> locked;  ///< regions without a way out; if there are any, nothing was moved
 };
 
-/// Moves particles in x [m] until no triangle of cloth crosses another one or an obstacle, or is closer to it than a
-/// tenth of the larger thickness of the two. The number of rounds is bounded; the best state is kept. Deterministic.
+/// Moves particles in x [m] until no triangle of cloth crosses other cloth or an obstacle, and their gaps are at least
+/// a tenth of the larger thickness of the two. If that is not reached within a bounded number of rounds, keeps the
+/// state with the fewest crossings. The result is deterministic.
 Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -8,21 +8,21 @@
 namespace weft::untangle {
 namespace {
 
-// Cost of a thread that would still go through the body, in units of squared strain.
+// Cost of a thread that still goes through the body after the moves, comparable to squared strain in stretch_cost().
 constexpr double kBlockedCost = 25;
 // Depth of a thread's midpoint in the body, relative to the length of the thread. Above kBlockedDepth, the thread goes
-// through the body and does not just cut a corner. Below kFreeDepth, it certainly does not go through.
+// through the body; between the two values, it may only cut a corner; below kFreeDepth, it does not go through.
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
-// Cost of a displacement as long as the region, so that the shorter of two ways with equal stretch is chosen.
+// Cost of a displacement by the size of the region, so that the shorter of two ways with equal stretch is chosen.
 constexpr double kDisplacementCost = 0.05;
-// Cost of moving a whole mesh, high enough that the mesh stays if the region can get out by itself; and the longest
-// such move, in sizes of the region.
+// Cost of moving a whole mesh, high enough that the region moves alone if it can; and the longest such move, relative
+// to the size of the region.
 constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
-// Maximum fraction of the particles that may pass through the body in such a move: more would pull cloth off a body
-// that wears it.
+// Maximum fraction of a mesh's particles that pass through the body's surface in such a move. A move of more would take
+// cloth off a body that wears it.
 constexpr double kMaxThroughFraction = 0.1;
 
-// The 26 directions to the neighbours in a cubic grid, nearest first.
+// The 26 directions from a cell of a cubic grid to its neighbours, nearest first.
 std::vector<Vec3> directions() {
   std::vector<Vec3> all;
   for (const int steps : {1, 2, 3})
@@ -33,10 +33,10 @@ std::vector<Vec3> directions() {
   return all;
 }
 
-/// State, after a move, of the threads of the moved particles.
+/// State of the threads of the moved particles after a move.
 struct Threads {
-  double blocked = 0;  // fraction that the body blocks
-  bool free = true;    // none goes through the body
+  double blocked = 0;  // fraction deeper than kBlockedDepth
+  bool free = true;    // whether all are less deep than kFreeDepth
 };
 Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const Move> moves,
                       const std::vector<Index>& move_of, std::span<const Vec3> x) {
@@ -55,7 +55,7 @@ Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const 
   return threads;
 }
 
-// Mean normal of the triangles around these particles.
+// Mean normal of the triangles around the moved particles.
 Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move_of, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (const collision::Triangle& t : cloth.triangles)
@@ -64,7 +64,7 @@ Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move
   return sum.stableNormalized();
 }
 
-// All particles of the mesh that contains this one.
+// All particles that are connected to this one.
 std::vector<Index> mesh_of(const Fabric& fabric, Index first) {
   std::vector<Index> mesh{first};
   std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric.particles()), 0);
@@ -103,7 +103,7 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
     region.cloth = fabric.bodies.body_of(first);
     region.body = solid.number();
     for (std::size_t m = 0; m < members.size(); ++m) move_of[members[m]] = static_cast<Index>(m);
-    // Extend the box half-way to neighbours, so that a single particle of a coarse mesh is as wide as its cells.
+    // Extend the box half-way to neighbours, so that a region of one particle has the size of a cell of the mesh.
     Box3 box;
     for (const Index i : members) {
       box.extend(x[i]);
@@ -138,8 +138,8 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       const Solid::Exit exit = solid.exit(p);
       return exit.place + height * exit.normal;
     });
-    // Considers moving the whole mesh of the region along d, if that takes the region out of the body and no other
-    // particle into it.
+    // Considers a move of the region's whole mesh along d, if it takes the region out of the body and no other particle
+    // into it.
     const auto consider_whole_mesh = [&](const Vec3& d) {
       double way = 0;
       for (const Index i : members) way = std::max(way, solid.distance_out(x[i], d) + height);

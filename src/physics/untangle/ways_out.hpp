@@ -1,4 +1,4 @@
-// Finds ways out of obstacles for cloth that starts inside, one for each connected region.
+// Finds ways out of solids for cloth that starts inside, one for each connected region of cloth.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +15,17 @@ namespace weft::untangle {
 struct InsideRegion {
   std::size_t cloth = 0, body = 0;
   Vec3 centre = Vec3::Zero();  ///< [m]
-  double size = 0;             ///< longest side of its box, extended half-way to neighbours [m]
+  double size = 0;             ///< longest side of its bounding box, which is extended half-way to neighbours [m]
   double farthest = 0;         ///< largest displacement of a particle [m]
-  double shortest = std::numeric_limits<double>::infinity();  ///< as `farthest`, on the shortest unblocked way [m]
+  double shortest = std::numeric_limits<double>::infinity();  ///< as `farthest`, for the shortest unblocked way [m]
   double cost = 0;                                            ///< see stretch_cost; 0 if the whole mesh moves
-  double blocked = 0;       ///< fraction of its threads that would still go through the body
-  std::vector<Move> moves;  ///< out of the body, to the height `above` over its surface
+  double blocked = 0;       ///< fraction of its threads that would still go through the solid after the moves
+  std::vector<Move> moves;  ///< out of the solid, to the height `above` over its surface
 };
 
-/// Finds all regions of movable cloth inside `solid` at x [m]. In each, either every particle takes its nearest way
-/// out, or all move in one direction, or the whole mesh moves; the way that costs least is chosen. For example, a sheet
-/// through a ball is moved to the side where its smaller part is, and a garment that is too small outward on all sides.
+/// Finds all regions of movable cloth inside `solid` at x [m], and chooses the cheapest way out of each: every particle
+/// takes its nearest way out, or all particles move in one direction, or the whole mesh moves. For example, a sheet
+/// through a ball moves to the side where its smaller part is; a garment that is too small moves outward on all sides.
 /// `above`: height over the surface, per body of cloth [m].
 std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
                                       std::span<const Vec3> x);

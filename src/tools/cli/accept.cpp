@@ -28,7 +28,7 @@ bool is_blank(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
 }
 
-// Reports references that have no counterpart in `test`. The command never removes a reference.
+// Reports references without a picture in `test`. They stay, since the command never removes a reference.
 void report_unmatched_references(const fs::path& references, const fs::path& test,
                                  const std::vector<std::string>& names) {
   if (!fs::is_directory(references)) return;
@@ -49,7 +49,7 @@ ExitCode accept(const AcceptOptions& options) {
     throw Error(ExitCode::usage, "{} files cannot all become {}: name the folder of references instead",
                 options.tests.size(), options.reference.string());
   }
-  // All files are checked before the first reference changes.
+  // Checks all files before it changes the first reference.
   std::vector<compare::Acceptance> plans;
   const auto add = [&](const fs::path& test, const std::string& name) {
     plans.push_back(compare::Acceptance::plan(options.reference, test, name));
@@ -73,7 +73,7 @@ ExitCode accept(const AcceptOptions& options) {
   for (const compare::Acceptance& plan : plans) paths.reads(plan.test, "a picture to accept");
   for (const compare::Acceptance& plan : plans) paths.writes("REFERENCE", plan.reference);
   if (!plans.empty()) paths.writes("the log", plans.front().log);
-  paths.check_absent(true);  // the user named them in order to replace them
+  paths.check_absent(true);  // may overwrite: the user names the references in order to replace them
   for (const compare::Acceptance& plan : plans) {
     const bool changed = plan.carry_out();
     log::info(log::without_controls(

@@ -52,7 +52,6 @@ bench::Table try_cases(const std::filesystem::path& folder, bench::Tally& count)
   return table;
 }
 
-/// Checks the output files before anything is measured.
 void check_outputs(PathLedger& paths, const BenchOptions& options, const std::filesystem::path& folder,
                    const std::vector<std::string>& names) {
   for (const std::string& name : names) paths.writes("-o", folder / name);
@@ -89,7 +88,7 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
-/// The scene that the options name, or else the built-in scene `text` under this name. `more`: additional overrides.
+/// Reads the scene that the options name, else the built-in scene `text` as file `name`. `more`: additional overrides.
 scene::Scene scene_of(const BenchOptions& options, const char* text, const char* name,
                       const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = options.overrides;
@@ -112,7 +111,7 @@ std::string title_of(const scene::Scene& scene) {
   return scene.title.empty() ? scene.name : scene.title;
 }
 
-// Reports each run and the remaining time.
+// Prints each run and the remaining time.
 class RunProgress {
  public:
   explicit RunProgress(std::string name) : name_(std::move(name)) {}
@@ -217,7 +216,7 @@ struct PlannedRun {
   scene::Scene scene;
 };
 
-/// Reads all scenes first, so that mistakes are reported before any run.
+/// Reads the scenes of all runs, so that mistakes are found before the first run.
 std::vector<PlannedRun> plan_speed(const BenchOptions& options, const scene::Scene& scene) {
   const std::vector<int> all_cores = thread_count() > 1 ? std::vector{1, thread_count()} : std::vector{1};
   const bool fixed_size = !bench::has_sizes(scene);
@@ -287,7 +286,7 @@ ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& f
     } catch (const Error&) {
       break;  // interrupted
     }
-    // The table is written after each run, so that an interruption loses no run.
+    // Writes the table after each run, so that an interruption loses no results.
     write_file(folder / (name + ".csv"), bench::csv(bench::speed_table(report.runs)));
     done += bench::expected_work(run.setting);
     progress(done / all_work, describe(report.runs.back()));

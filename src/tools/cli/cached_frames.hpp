@@ -1,4 +1,4 @@
-// Selection of the frames of a cache that a command uses.
+// Selects the frames of a cache that a command uses.
 #pragma once
 
 #include "film/cache/reader.hpp"
@@ -7,13 +7,13 @@
 
 namespace weft::cli {
 
-/// Returns the selected frames, or all frames of the scene if `selection` names none. Verifies each frame first, so
-/// that a damaged one is found before anything is written. If frames are missing or broken, throws
-/// Error(frames_missing) with their numbers. With `partial`, warns and returns the frames before the first missing or
-/// broken one, and throws only if there are none. Throws Error(usage) if the selection is empty or exceeds the scene.
+/// Returns the selected frames, or all frames of the scene if `selection` names none. Verifies each frame, so that the
+/// command finds a damaged one before it writes anything. If frames are missing or broken, throws Error(frames_missing)
+/// with their numbers. With `partial`, it warns instead, and returns the frames before the first missing or broken one;
+/// it throws only if there are none. Throws Error(usage) if the selection is empty or exceeds the scene.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
-/// Passes to the camera all frames of the cache that have the scene's current looks.
+/// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights).
 void show_frames(const cache::Reader& reader, render::CameraPath& camera);
 
 }  // namespace weft::cli

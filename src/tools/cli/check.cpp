@@ -60,7 +60,7 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
   }
 }
 
-/// Number of particles of all cloths. All but rectangles are built to count their particles; what fails is added to
+/// Number of particles of all cloths. Builds all cloths but rectangles to count their particles. Adds errors to
 /// `mistakes`.
 std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
@@ -75,7 +75,7 @@ std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes)
   return particles;
 }
 
-/// The effective scene that `against` names: that of a cache folder, a file of an effective scene, or a scene. Throws
+/// Text of the effective scene that `against` names: a cache folder, a file of an effective scene, or a scene. Throws
 /// Error(scene_invalid) or Error(asset_unreadable).
 std::string scene_text_of(const std::filesystem::path& against) {
   const bool is_cache = std::filesystem::is_directory(against);
@@ -103,7 +103,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     log::info(mistakes.lines);
     return mistakes.code;
   }
-  // Prepares the simulation as a run does; with --estimate, also simulates some frames.
+  // Prepares the simulation as a run does, to find more mistakes; with --estimate, also simulates some frames.
   std::optional<Estimate> estimate;
   if (options.estimate) estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
   const frame::SnapshotPtr start = estimate ? estimate->start : production::SceneSimulation(loaded.scene).snapshot();

@@ -21,14 +21,14 @@ struct Outputs {
   int out = -1, err = -1;
 };
 
-/// Executes the program, in the child process. If this fails, returns with the reason in errno. Calls only
+/// Replaces the child process by the program. If this fails, returns with the reason in errno. Calls only
 /// async-signal-safe functions, since another thread of the parent may have held a lock at the fork.
 void exec_program(const std::vector<char*>& argv, Outputs outputs, pid_t parent) {
-  // If the parent is killed, the child must end too: otherwise a resumed command and this child would write the same
-  // files. posix_spawn has no such option.
+  // If the parent is killed, the child must end too, since a resumed command would write the same files. posix_spawn()
+  // has no option for this.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
   if (::getppid() != parent) ::_exit(127);  // the parent has died before prctl()
-  int input[2];  // a closed pipe as empty input, since a container may lack /dev/null; exec closes the write end
+  int input[2];  // a pipe without a writer is empty input (a container may lack /dev/null); exec closes the write end
   if (::pipe2(input, O_CLOEXEC) != 0 || ::dup2(input[0], STDIN_FILENO) < 0) return;
   if (outputs.out >= 0 && ::dup2(outputs.out, STDOUT_FILENO) < 0) return;
   if (outputs.err >= 0 && ::dup2(outputs.err, STDERR_FILENO) < 0) return;
@@ -51,7 +51,7 @@ int start(std::vector<std::string> arguments, Outputs outputs, pid_t& process) {
     ::_exit(::write(exec_error_pipe[1], &problem, sizeof problem) < 0 ? 126 : 127);
   }
   ::close(exec_error_pipe[1]);
-  // If the program starts, the pipe is closed without data.
+  // If the program starts, exec closes the pipe, and read() returns 0.
   while (process > 0 && ::read(exec_error_pipe[0], &problem, sizeof problem) < 0 && errno == EINTR) continue;
   ::close(exec_error_pipe[0]);
   if (process > 0 && problem != 0) ::waitpid(process, nullptr, 0);
@@ -76,7 +76,7 @@ std::filesystem::path own_program() {
 pid_t start_process(const std::vector<std::string>& arguments, const std::filesystem::path& log) {
   Outputs outputs;
   if (!log.empty()) {
-    // Without O_NONBLOCK, opening a pipe would wait for a reader.
+    // If `log` is a named pipe, opening it without O_NONBLOCK would wait for a reader.
     outputs.out = outputs.err = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK, 0666);
     if (outputs.out < 0)
       throw Error(ExitCode::output_failed, "{}: cannot be written: {}", log.string(), std::strerror(errno));

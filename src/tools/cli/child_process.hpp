@@ -1,4 +1,4 @@
-// Starting other programs, or this one again.
+// Starts other programs, or this one again.
 #pragma once
 
 #include <sys/types.h>
@@ -9,23 +9,24 @@
 
 namespace weft::cli {
 
-/// File name of the tools program, which has all commands.
+/// File name of the tools program, which has the commands that `weft` does not have.
 inline constexpr const char* kToolsName = "weft-tools";
 
-/// Path of the program `weft`: the running one, or if this is the tools program, the one beside it.
+/// Path of the program `weft`: the running program or, if that is the tools program, `weft` beside it.
 std::filesystem::path own_program();
 
-/// Starts `arguments[0]`, searched as by a shell, with empty input. Its standard output and standard error go to the
-/// file `log`, or to this process's output if `log` is empty. The process is killed when the calling thread ends.
-/// Throws Error(output_failed) if it cannot be started or `log` cannot be written.
+/// Starts the program `arguments[0]`, which it looks for as a shell does, with empty standard input. Standard output
+/// and standard error of the program go to the file `log` or, if `log` is empty, to those of this process. The kernel
+/// kills the program when the calling thread ends. Throws Error(output_failed) if it cannot be started or `log` cannot
+/// be written.
 pid_t start_process(const std::vector<std::string>& arguments, const std::filesystem::path& log);
 
 struct ProcessResult {
-  int exit_code = 0;   ///< 127: program not started; 128 and above: ended by a signal
-  std::string output;  ///< of standard output; standard error goes to that of this process
+  int exit_code = 0;   ///< 127: not started; 128 + n: ended by signal n
+  std::string output;  ///< standard output; standard error goes to that of this process
 };
 
-/// Runs a program and waits for its end. Throws Error(output_failed) only if no pipe can be made for the output.
+/// Runs a program and waits for its end. Throws Error(output_failed) only if it cannot create a pipe for the output.
 ProcessResult run_process(const std::vector<std::string>& arguments);
 
 }  // namespace weft::cli

@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// Simulates, draws and writes a film concurrently. On SIGINT, SIGTERM or a failure it ends early and keeps the
-/// finished frames.
+/// Simulates a scene, and draws and writes its film at the same time. On SIGINT, SIGTERM or a failure, it ends early
+/// and keeps the finished frames.
 ExitCode run(const RunOptions& options);
 
 /// Simulates into a frame cache.
@@ -19,17 +19,17 @@ ExitCode render(const RenderOptions& options);
 /// Checks scenes. Mistakes go to standard error, valid scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 
-/// Draws one still of each scene: the requested frame, the most informative one, or the start.
+/// Draws one still of each scene: a given frame, the one with the highest saliency (render/saliency.hpp), or the start.
 ExitCode thumbnail(const ThumbnailOptions& options);
 
-/// Draws evenly spaced frames on one picture, with their numbers and times.
+/// Draws evenly spaced frames of a scene into one picture, with their numbers and times.
 ExitCode sheet(const SheetOptions& options);
 
 /// Joins the parts of a film to one video.
 ExitCode join(const JoinOptions& options);
 
-/// Runs a scene with many values. Returns the exit code of the first failed run in the order of the sweep, 0 if none
-/// failed, ExitCode::interrupted after a stop request.
+/// Runs one scene many times with different values. Returns ExitCode::interrupted after a stop request, else the exit
+/// code of the first failed run in the order of the sweep; 0 if none failed.
 ExitCode sweep(const SweepOptions& options);
 
 /// Submits runs and sweeps to a Slurm cluster, reports their progress, or cancels them.
@@ -47,18 +47,18 @@ ExitCode watch(const WatchOptions& options);
 /// Prints processor, libraries and OpenGL of this machine, and tests them.
 ExitCode doctor(const DoctorOptions& options);
 
-/// Measures the program and writes tables and plots. Without a scene, `bench stability` returns exit code 1 if any
-/// result is wrong (unbounded energy or not finite).
+/// Measures stability, accuracy, speed or fabrics, and writes tables and plots. Without a scene, `bench stability`
+/// returns exit code 1 if a simulation gains energy without bound or computes values that are not finite.
 ExitCode bench(const BenchOptions& options);
 
-/// Prints the difference of each pair. Exit code 4 if a file cannot be read, else 7 if a pair differs or a reference
-/// has no counterpart, else 8 if a picture has no reference.
+/// Prints the difference of each pair of a reference and a picture. Returns exit code 4 if a file cannot be read, else
+/// 7 if a pair differs or a reference has no picture, else 8 if a picture has no reference.
 ExitCode diff(const DiffOptions& options);
 
-/// Writes the reason to the log, then replaces references by the named files.
+/// Replaces references by the given files, and writes the reason to the log.
 ExitCode accept(const AcceptOptions& options);
 
-/// Writes the review page.
+/// Writes the review page: videos, pictures, plots and statistics of runs.
 ExitCode review(const ReviewOptions& options);
 
 /// Exports the frames of a frame cache to files for other programs.

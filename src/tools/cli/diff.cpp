@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
-// Metadata of a heat map, by which a later comparison of the folder around it recognises it.
+// Metadata of heat maps. If a later weft diff compares the folder with the heat maps, it recognises them by this entry.
 const image::Metadata kHeatMap{{"weft_picture", "heat map of weft diff"}};
 
 FileComparison only_one(const std::string& name, const fs::path& reference, const fs::path& test, Outcome outcome) {
@@ -60,8 +60,8 @@ struct Pair {
   }
 };
 
-// Whether a file is a heat map below the folder of --heatmap. Such a map is no picture to compare: an earlier call with
-// the same options has written it, and this call replaces it.
+// Whether a file is a heat map below the folder of --heatmap. It is not compared: an earlier call with the same options
+// has written it, and this call replaces it.
 bool is_earlier_heat_map(const DiffOptions& options, const fs::path& file) {
   if (options.heatmap.empty()) return false;
   const fs::path inside = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(options.heatmap));
@@ -75,7 +75,7 @@ bool is_earlier_heat_map(const DiffOptions& options, const fs::path& file) {
 
 std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
-  // Assumes that the pictures of one folder come from one machine.
+  // Takes the machine class of the first picture for all pictures of the folder.
   const std::string machine = names.empty() ? "" : compare::machine_class_of(options.test / names.front());
   const std::vector<std::string> references = compare::reference_names(options.reference, machine);
   names.insert(names.end(), references.begin(), references.end());
@@ -136,8 +136,8 @@ bool is_annotated(const DiffOptions& options) {
   return options.annotations || (actions != nullptr && std::string_view(actions) == "true");
 }
 
-// File for the heat map of a pair; empty if none is requested. If a picture or another video has the same name as a
-// video, the map of the video keeps the video's extension.
+// File for the heat map of a pair; empty if none is requested. The map of a.mp4 is a.png or, if another pair has the
+// name a.png or a.mov, a.mp4.png.
 fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
   if (options.heatmap.empty() || options.heatmap.extension() == ".png") return options.heatmap;
   const std::string picture = fs::path(name).replace_extension(".png").string();
@@ -200,7 +200,7 @@ ExitCode diff(const DiffOptions& options) {
         lines.back() += "; " + origin;
       }
     if (!options.html.empty()) page.add(result, lines.back());
-    // Frees the pictures, so that thousands of pairs fit into memory.
+    // Frees the pictures, so that the results of thousands of pairs fit into memory.
     result.worst.flip = {};
     result.reference_picture = result.test_picture = {};
     results.push_back(std::move(result));
@@ -209,7 +209,7 @@ ExitCode diff(const DiffOptions& options) {
   json["exit_code"] = static_cast<int>(code);
   if (!options.junit.empty()) write_file(options.junit, junit_xml(results, lines));
   if (!options.html.empty()) write_file(options.html, page.html(summary(results)));
-  std::string text;  // a line for each pair, even if its name contains a line feed
+  std::string text;  // one line per pair, even if a name contains a line feed
   for (const std::string& line : lines) text += log::without_controls(line, "") + "\n";
   if (results.size() > 1) text += summary(results) + "\n";
   std::string annotations;

@@ -15,18 +15,18 @@ class DiffLimits {
   /// The limits and mask of one picture.
   struct Rules {
     compare::Limits limits;
-    std::filesystem::path mask;  ///< a picture; white pixels are compared; empty: all are compared
+    std::filesystem::path mask;  ///< picture file; only its white pixels are compared; empty: all pixels are
   };
 
-  /// `all`: the limits of every picture. `file`: empty, or TOML with tables [[picture]], each with a name (wildcards *
-  /// and ?) and the limits or the mask that differ for it; mask paths are relative to the file. Throws
-  /// Error(asset_unreadable) with line and column.
+  /// `all`: the limits of all pictures, unless `file` changes them. `file`: TOML with tables [[picture]], each with a
+  /// name (with wildcards * and ?), and the limits and the mask of the pictures that match; paths of masks are relative
+  /// to this file. Empty: no changes. Throws Error(asset_unreadable) with line and column.
   DiffLimits(const compare::Limits& all, const std::filesystem::path& file);
 
-  /// The rules of a picture; later tables take precedence over earlier ones.
+  /// The rules of a picture. If several tables match, later ones take precedence.
   Rules of(const std::string& name) const;
-  /// Throws Error(asset_unreadable) with line and column if a table matches none of these pictures: its limits would
-  /// have no effect, and nobody would notice.
+  /// Throws Error(asset_unreadable) with line and column if a table matches none of these pictures, since its limits
+  /// would have no effect.
   void check_used(const std::vector<std::string>& names) const;
 
  private:

@@ -39,7 +39,7 @@ fs::path effective_scene_file(const fs::path& picture, const std::string& scene)
 }
 
 std::string join_some(const std::vector<std::string>& lines) {
-  constexpr std::size_t kMaxListedChanges = 4;  // all share one line with the figures
+  constexpr std::size_t kMaxListedChanges = 4;  // they are in one line, after the figures
   if (lines.size() <= kMaxListedChanges) return fmt::format("{}", fmt::join(lines, "; "));
   return fmt::format("{}; and {} more", fmt::join(lines.begin(), lines.begin() + kMaxListedChanges, "; "),
                      lines.size() - kMaxListedChanges);
@@ -62,7 +62,7 @@ std::string describe_origin_changes(const fs::path& reference, const fs::path& t
       return fmt::format("the scene has changed; {}", error.what());
     }
   }
-  // Same scene: compare the program and the drawing settings.
+  // The scene is the same, so compares program and drawing settings.
   KeyedValues old_program, new_program;
   for (const char* key : {"weft_version", "gl", "quality", "look", "camera", "motion_blur"})
     if (before[key] != after[key]) old_program[key] = before[key], new_program[key] = after[key];

@@ -17,8 +17,8 @@ namespace {
 
 using compare::FileComparison;
 
-// Limit on the pictures of a page: a browser opens a page of this size in some seconds. Further pairs are shown without
-// pictures.
+// Limit on the size of all pictures of a page [bytes]; a browser opens such a page in some seconds. Further pairs are
+// shown without pictures.
 constexpr std::size_t kMaxPagePictureBytes = 100'000'000;
 
 // Radio buttons select the view of a pair. The views are in the same place, so that arrow keys switch between reference

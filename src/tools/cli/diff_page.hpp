@@ -7,14 +7,15 @@
 
 namespace weft::cli {
 
-/// One self-contained HTML file without scripts. Of each pair that differs or lacks a readable file, it shows reference
-/// ("before"), test ("after") and, if they were compared, a map of the differences; of videos the worst frame. Beyond
-/// about 100 MB, it shows no pictures. Other pairs are only listed.
+/// Makes one self-contained HTML file without scripts. For each pair that differs or lacks a readable file, the page
+/// shows the reference ("before"), the test ("after") and, if they were compared, the map of differences; for videos,
+/// those of the worst frame. After about 100 MB of pictures, it shows further pairs without pictures. Pairs within
+/// their limits are only listed.
 class DiffPage {
  public:
-  /// `description`: the result as a line, which begins with "NAME: ".
+  /// `description`: the result in one line that begins with "NAME: ".
   void add(const compare::FileComparison& result, const std::string& description);
-  /// `title`: how many pairs are within their limits.
+  /// `title`: a sentence with the number of pairs within their limits.
   std::string html(const std::string& title) const;
 
  private:

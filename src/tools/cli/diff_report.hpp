@@ -12,11 +12,11 @@ namespace weft::cli {
 
 using Json = nlohmann::ordered_json;
 
-/// One line; marks each figure that exceeds its limit.
+/// Describes the result in one line; marks each figure that exceeds its limit.
 std::string describe(const compare::FileComparison& result, const compare::Limits& limits);
 
 Json describe_json(const compare::Limits& limits);
-/// `heatmap` may be empty.
+/// `heatmap`: file of the heat map; empty: none.
 Json describe_json(const compare::FileComparison& result, const compare::Limits& limits,
                    const std::filesystem::path& heatmap);
 

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 64, kHeight = 36;  // of the test picture [pixels]
+constexpr int kWidth = 64, kHeight = 36;  // size of the test picture [pixels]
 
 // A white square in front of the camera.
 frame::FrameSnapshot test_scene() {
@@ -57,8 +57,8 @@ std::string libraries() {
       NLOHMANN_JSON_VERSION_PATCH);
 }
 
-// The x86-64 psABI levels of the processor and of this build. Tests the features of each level, since clang before 16
-// does not know the levels by name.
+// The x86-64 psABI levels of the processor and of this build. Tests the main features of each level, since clang before
+// 16 does not know the names of the levels.
 std::string cpu_level() {
 #if defined(__x86_64__)
   const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
@@ -79,12 +79,12 @@ std::string cpu_level() {
 #endif
 }
 
-// Collects the findings for one table.
+// Runs tests, and collects their results for a table.
 class Examination {
  public:
   void note(const std::string& what, const std::string& finding) { rows_.push_back({"ok", what, finding}); }
 
-  /// Runs `test`, which returns its finding. Returns false if it threw.
+  /// Runs `test`, which returns its result as text. Returns false if `test` throws.
   bool test(const std::string& what, const std::function<std::string()>& test) {
     try {
       note(what, test());

@@ -24,7 +24,7 @@ double winding_number(const frame::Surface& surface, const std::vector<Vec3>& po
   return sum / (4 * std::numbers::pi);
 }
 
-/// Whether the cloth is inside the surface. Tests only three particles: cloth that is partly inside crosses the
+/// Whether the cloth is inside the surface. Tests only three particles, since cloth that is partly inside crosses the
 /// surface, and the simulation refuses such a start.
 bool is_inside(const std::vector<Vec3>& cloth, const frame::Surface& surface, const std::vector<Vec3>& positions) {
   constexpr double kSlack = 1e-6;  // rounding error of the sum over a million triangles

@@ -1,4 +1,4 @@
-// Detection of cloth that starts wholly inside a body. Such cloth touches nothing, so that the start is accepted, but
+// Finds cloth that starts wholly inside a body. Such cloth touches nothing, so the simulation accepts the start, but
 // contact then keeps the cloth inside.
 #pragma once
 

@@ -40,7 +40,7 @@ std::string remedy(ErrorSource source) {
   return {};
 }
 
-// Error of positions due to the random offsets at the start alone [mm]; "?" if it is not known.
+// Error of positions due to the random offsets of the start [mm]; "?" if it is not known.
 std::string start_text(const ErrorEstimate& estimate) {
   for (const ErrorPart& part : estimate.parts)
     if (part.source == ErrorSource::start && part.missing.empty())

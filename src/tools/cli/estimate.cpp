@@ -12,7 +12,7 @@
 namespace weft::cli {
 namespace {
 
-// Limit on simulated frames: more frames would hardly improve the estimate.
+// Limit on simulated frames; more frames hardly improve the estimate.
 constexpr int kMaxTrialFrames = 10;
 
 std::string duration_text(double seconds) {
@@ -38,7 +38,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   const auto enough = [&] {
     return estimate.tried > 0 && (wall.seconds() > seconds || estimate.tried >= kMaxTrialFrames);
   };
-  // run_preroll() calls the function before each frame, so at the first call no frame is done yet.
+  // run_preroll() calls the function before each frame, so at the first call no frame has been simulated.
   int asked = -1;
   const bool shown = simulation.run_preroll([&] {
     estimate.tried = ++asked;

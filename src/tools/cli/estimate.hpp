@@ -1,4 +1,4 @@
-// Cost of a run, predicted from its first frames.
+// Predicts time and memory of a run from its first frames.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,26 @@
 namespace weft::cli {
 
 struct Estimate {
-  int tried = 0;             ///< frames simulated for the estimate; at least one if the scene has one
-  double setup = 0;          ///< before the first frame [CPU s]
-  double simulate = 0;       ///< per frame, mean of those tried [CPU s]
-  double draw = 0;           ///< per picture [CPU s]
-  int simulated = 0;         ///< frames that the whole run simulates: those of the preroll, and all after frame 0
+  int tried = 0;             ///< frames simulated for the estimate; 0 only if the run simulates none
+  double setup = 0;          ///< set-up before the first frame [CPU s]
+  double simulate = 0;       ///< simulation per frame, mean of the frames tried [CPU s]
+  double draw = 0;           ///< drawing per picture [CPU s]
+  int simulated = 0;         ///< frames that the run simulates: the preroll, and those after frame 0
   int drawn = 0;             ///< pictures of the whole run
   std::int64_t peak = 0;     ///< peak memory of this process since its start [bytes]
-  frame::SnapshotPtr start;  ///< before the first frame
+  frame::SnapshotPtr start;  ///< state before any simulated frame
 
   double simulate_total() const { return setup + simulate * simulated; }
   double draw_total() const { return draw * drawn; }
 };
 
-/// Simulates frames until `seconds` of wall time [s] have passed since the start of the set-up, but at least one and at
-/// most ten (kMaxTrialFrames), and draws one, without motion blur if the time ends before frame 1. Frames before the
-/// first contact take less time than later ones: the true cost may be two to three times the estimate. Throws what a
-/// run throws.
+/// Simulates frames until `seconds` of wall time have passed since the start of the set-up, but at least one and at
+/// most ten (kMaxTrialFrames). Then draws one frame, with motion blur only if frame 1 was reached. Frames before the
+/// first contact take less time than later ones, so the true cost may be two to three times the estimate. Throws the
+/// same errors as a run.
 Estimate estimate_run(const scene::Scene& scene, const render::Settings& settings, double seconds = 5);
 
-/// One line, for people.
+/// Describes the estimate in one line.
 std::string describe(const Estimate& estimate);
 
 }  // namespace weft::cli

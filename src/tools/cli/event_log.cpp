@@ -18,8 +18,8 @@ EventLog::EventLog(std::string destination) : destination_(std::move(destination
     file_ = stdout;
     return;
   }
-  check_writable(destination_);  // creates the folder too
-  // Removes the file instead of truncating it: a hard link to it must keep its content.
+  check_writable(destination_);  // also creates the folder
+  // Removes the file instead of truncating it, so that hard links to it keep their content.
   if (may_replace(destination_)) std::remove(destination_.c_str());
   file_ = std::fopen(destination_.c_str(), "wbxe");
   if (file_ == nullptr) {
@@ -35,7 +35,7 @@ void EventLog::write(const char* event, Json fields) {
   if (file_ == nullptr) return;
   Json line{{"event", event}};
   line.update(fields);
-  // Text from outside, such as file names, may not be UTF-8; json_text() replaces what JSON cannot hold.
+  // Texts such as file names may not be UTF-8; json_text() replaces bytes that JSON cannot contain.
   const std::string text = json_text(line) + "\n";
   const std::lock_guard lock(mutex_);
   if (error_ != 0) return;

@@ -8,8 +8,8 @@
 
 namespace weft::cli {
 
-/// Writes one JSON object per line: `event`, then its fields. The file has its final name from the start, so that other
-/// programs can read it during the run; each line is a complete object. Thread-safe.
+/// Writes one JSON object per line: the name of the event, then its fields. The file has its final name from the start,
+/// so that other programs can read it during the run. Thread-safe.
 class EventLog {
  public:
   /// `destination`: a file, which is replaced; "-" for standard output; empty for none. Throws Error(output_failed).
@@ -18,7 +18,7 @@ class EventLog {
   EventLog(const EventLog&) = delete;
   EventLog& operator=(const EventLog&) = delete;
 
-  /// Does not throw: a failing log must not stop a long run. check() reports the failure.
+  /// Does not throw, since a failing log must not stop a long run. check() reports the failure.
   void write(const char* event, nlohmann::ordered_json fields);
 
   /// Throws Error(output_failed) if any line was lost.

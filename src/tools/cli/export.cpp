@@ -20,7 +20,7 @@ namespace weft::cli {
 
 namespace {
 
-/// Removes files of an earlier, longer film whose names have the same form.
+/// Removes meshes of frames outside of `frames` that an earlier export of a longer film has left.
 void remove_stale(const exporter::Request& request, const cache::Manifest& scene, const FrameRange& frames) {
   if (request.format != exporter::Format::ply && request.format != exporter::Format::obj) return;
   const char* ending = request.format == exporter::Format::ply ? ".ply" : ".obj";
@@ -34,7 +34,7 @@ bool places_cameras(exporter::Format format) {
          format == exporter::Format::blender;
 }
 
-/// All cameras of a scene; the camera of the pictures is the first. If the scene has none: the computed camera.
+/// All cameras of a scene, the camera of the pictures first. If the scene has no camera, the computed one.
 class Cameras {
  public:
   Cameras(const cache::Reader& reader, const frame::FrameSnapshot& first) {

@@ -14,8 +14,8 @@
 namespace weft::cli {
 namespace {
 
-// A word longer than kMaxWordBytes cannot be a path; it comes from an argument or a file. Messages show only its first
-// kShownWordBytes bytes.
+// Limit on words in messages [bytes]. Longer words cannot be paths; they are contents of arguments or files. Messages
+// show only their first kShownWordBytes bytes.
 constexpr std::size_t kMaxWordBytes = 4096, kShownWordBytes = 200;
 
 std::string shorten_words(std::string_view text) {
@@ -25,7 +25,7 @@ std::string shorten_words(std::string_view text) {
     std::string_view word = text.substr(0, size);
     if (size > kMaxWordBytes) {
       word = word.substr(0, kShownWordBytes);
-      while (!word.empty() && (word.back() & 0x80) != 0) word.remove_suffix(1);  // drop a truncated UTF-8 character
+      while (!word.empty() && (word.back() & 0x80) != 0) word.remove_suffix(1);  // drops a truncated UTF-8 character
       result += fmt::format("{}... ({} bytes)", word, size);
     } else {
       result += word;
@@ -46,7 +46,7 @@ Failure describe_failure(const std::exception_ptr& exception) {
   } catch (const std::bad_alloc&) {
     return {ExitCode::internal, "out of memory; a smaller scene or picture may fit"};
   } catch (const std::filesystem::filesystem_error& error) {
-    // The path was not checked beforehand. Possible causes: no such folder, name too long, no permission.
+    // A path that no check has refused before. Possible causes: no such folder, name too long, no permission.
     const bool too_long = error.code() == std::errc::filename_too_long;
     return {too_long ? ExitCode::usage : ExitCode::output_failed,
             fmt::format("{}: cannot be used: {}", error.path1().string().substr(0, 200), error.code().message())};
@@ -58,7 +58,7 @@ Failure describe_failure(const std::exception_ptr& exception) {
 }
 
 void report(const Failure& failure) {
-  // Mistakes of a scene start with the file name, as compiler messages do, so that editors can jump there.
+  // Mistakes of a scene begin with file and line, as compiler messages do, so that editors can jump there.
   log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
 }
 

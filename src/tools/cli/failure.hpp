@@ -7,14 +7,14 @@
 
 namespace weft::cli {
 
-/// Message and exit code for an exception.
+/// Message and exit code of an exception.
 struct Failure {
   ExitCode code = ExitCode::internal;
   std::string text;
 };
 
-/// Accepts any exception. An error of std::filesystem counts as output_failed, or as usage if a name is too long; other
-/// exceptions that are not an Error count as internal errors.
+/// Accepts any exception. An Error keeps its code. An error of std::filesystem gets output_failed, or usage if a file
+/// name is too long. Any other exception is an internal error.
 Failure describe_failure(const std::exception_ptr& exception);
 
 /// Prints the message on standard error.

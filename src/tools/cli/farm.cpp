@@ -1,5 +1,5 @@
-// weft farm: runs and sweeps as jobs of a Slurm cluster. Tasks are weft commands that resume where they were stopped.
-// Their whole state is in the folder of the sweep, which the machines share.
+// weft farm: runs a scene or a sweep as jobs of a Slurm cluster. Each task is a weft command that resumes where it was
+// stopped. All state of the tasks is in the folder of the sweep, which the machines share.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Requested time and memory, relative to those of a trial. Frames with contact take longer than the first ones. A task
-// that exceeds its time is resumed later; a task that exceeds its memory is killed.
+// Factors from the time and memory of a trial to those that tasks request. Frames with contact take longer than the
+// first frames. A task that exceeds its time is resumed later; one that exceeds its memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
 constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
@@ -39,7 +39,7 @@ void check_slurm_found(const char* program, const ProcessResult& result) {
                 program);
 }
 
-/// Numbers and names of submitted jobs, oldest first.
+/// Numbers and names of the submitted Slurm jobs, oldest first.
 std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> jobs;
   std::istringstream in(read_start(folder / "farm/jobs", kMaxTextBytes));
@@ -49,8 +49,8 @@ std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folde
   return jobs;
 }
 
-/// Numbers of the waiting or running jobs of this folder. Also counts their tasks by state, in `states`. Throws
-/// Error(output_failed) if jobs were submitted and Slurm does not answer.
+/// Numbers of the Slurm jobs of this folder that wait or run. Adds the number of their tasks in each state to `states`.
+/// Throws Error(output_failed) if jobs were submitted and Slurm does not answer.
 std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
   std::vector<std::string> numbers;
   for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
@@ -153,7 +153,7 @@ class Farm {
     try {
       active_jobs(folder_, states);
     } catch (const Error& error) {
-      log::warn(error.what());  // the files show the progress without Slurm, too
+      log::warn(error.what());  // the rows above show the progress without Slurm
     }
     std::string queue;
     for (const auto& [state, count] : states) queue += fmt::format(", {} {}", count, state);
@@ -189,7 +189,7 @@ class Farm {
     return index;
   }
 
-  /// The last message of the program, preceded by a line feed; empty if there is none.
+  /// The last message of weft in a log, on a line of its own; empty if there is none.
   static std::string last_error(const fs::path& log) {
     std::string last;
     std::istringstream in(read_end(log, kMaxTextBytes));
@@ -198,7 +198,7 @@ class Farm {
     return last;
   }
 
-  /// One line for each task that ended with an exit code other than 0, with its log.
+  /// One text for each task that ended with an exit code other than 0, with the path of its log.
   std::vector<std::string> failures() const {
     std::vector<std::string> lines;
     std::error_code none;
@@ -217,8 +217,8 @@ class Farm {
     return lines;
   }
 
-  // Estimates the resources from the first and the last submitted run, which usually have the smallest and the largest
-  // values of the sweep.
+  // Estimates the resources from trials of the first and the last submitted run, which usually have the smallest and
+  // the largest values of the sweep.
   void find_needs() {
     plan_.needs.simulate_minutes = plan_.needs.draw_minutes = options_.minutes.value_or(0);
     plan_.needs.memory = options_.memory.value_or(0);
@@ -257,7 +257,7 @@ class Farm {
     write_file(folder_ / "farm/jobs", "");
   }
 
-  // Writes the program archive, unless the file exists already or a task has already unpacked it.
+  // Writes the program archive, unless the file exists or a task has unpacked it already.
   void write_program() {
     plan_.archive = program_->fingerprint();
     const fs::path tar = folder_ / program_tar(plan_.archive);

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Maximum number of tasks in an array: the default MaxArraySize of Slurm, minus one.
+// Maximum number of tasks in a job array of Slurm: the default MaxArraySize minus one.
 constexpr std::size_t kArray = 1000;
 
 // Quotes a text as one word of the shell.
@@ -36,7 +36,7 @@ std::string quoted(const std::vector<std::string>& words) {
   return text;
 }
 
-// The options in `passed_on` that are in `names`, with their values.
+// The options of `passed_on` whose names are in `names`, with their values.
 std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::initializer_list<const char*> names) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < passed_on.size(); ++i) {
@@ -49,7 +49,7 @@ std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::
   return words;
 }
 
-// Arguments of the command that gathers the results of the tasks: the same sweep with --report.
+// Arguments of the command that reports the results of all tasks: the same sweep with --report.
 std::vector<std::string> report_words(const SweepOptions& sweep) {
   std::vector<std::string> words{"sweep", fs::absolute(sweep.scene).string()};
   for (const Axis& axis : sweep.axes)
@@ -65,7 +65,7 @@ std::string_view embedded(std::string_view name) {
   return std::ranges::find(kEmbeddedCli, name, &EmbeddedFile::name)->text;
 }
 
-/// Indices in Slurm's notation: 0-3,7.
+/// Indices in Slurm's notation, such as 0-3,7.
 std::string array_text(const std::vector<std::size_t>& indices) {
   std::string text;
   for (std::size_t i = 0; i < indices.size();) {
@@ -103,7 +103,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
     return words;
   };
   const std::string threads = std::to_string(options.threads);
-  // The simulation task gets size and camera too, since the cache stores them.
+  // The simulation task needs size and camera too, since the cache stores them.
   define("simulate", with({"simulate", fs::absolute(sweep.scene).string(), "--threads", threads},
                           chosen(passed_on, {"--size", "--camera", "--error"})));
   define("draw", with({"render", "--threads", threads}, chosen(passed_on, {"--size", "--camera", "--quality"})));
@@ -142,7 +142,7 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
     after = " --dependency=\"afterok:$unpack\"";
   }
-  // The simulations of up to kArray runs form one job, an array. The drawing of a run waits only for its own element.
+  // The simulations of up to kArray runs form one job array. The drawing of a run waits only for its own element.
   for (std::size_t at = 0; at < plan.submitted.size();) {
     const std::size_t base = plan.submitted[at];
     std::vector<std::size_t> offsets;

@@ -1,5 +1,5 @@
-// The scripts of a farm: one that performs any of the tasks, on any machine, one that submits the tasks to Slurm, and a
-// list of the tasks for other schedulers.
+// Files with which `weft farm` distributes the runs of a sweep to machines: a script that performs any one task, a
+// script that submits all tasks to Slurm, and a list of the tasks for other schedulers.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,10 @@ struct Needs {
   int simulate_minutes, draw_minutes;  ///< time limits [min]
 };
 
+/// What the scripts contain. A job is one run; tasks simulate it, draw parts of it and join them.
 struct FarmPlan {
-  std::vector<SweepJob> jobs;          ///< all runs
-  std::vector<std::size_t> submitted;  ///< indices of the jobs to do, ascending
+  std::vector<SweepJob> jobs;          ///< all runs of the sweep
+  std::vector<std::size_t> submitted;  ///< indices of the jobs that are not done yet, ascending
   int part = 50;                       ///< number of frames per drawing task
   std::string archive;  ///< fingerprint of the program archive that tasks unpack; empty: tasks run this program
   Needs needs;
@@ -27,17 +28,17 @@ struct FarmPlan {
   int parts(std::size_t job) const { return (jobs[job].drawn.count() + part - 1) / part; }
 };
 
-/// Path of the program archive, relative to the folder of the runs. The same path without the extension is the folder
-/// into which tasks unpack the archive.
+/// Path of the program archive with this fingerprint, relative to the folder of the runs. Without the extension, the
+/// path is that of the folder into which tasks unpack the archive.
 std::string program_tar(const std::string& archive);
 
-/// `farm/task.sh`; its paths are valid on all machines that share the folder.
+/// Text of `farm/task.sh`. Its paths are valid on all machines that share the folder.
 std::string task_script(const FarmOptions& options, const FarmPlan& plan);
 
-/// `farm/submit.sh`: calls sbatch with dependencies; writes numbers and names of jobs to `farm/jobs`.
+/// Text of `farm/submit.sh`, which calls sbatch, and writes numbers and names of the Slurm jobs to `farm/jobs`.
 std::string submit_script(const FarmOptions& options, const FarmPlan& plan);
 
-/// `farm/tasks.tsv`: name, names of the tasks to wait for, command.
+/// Text of `farm/tasks.tsv`. Columns: name, names of the tasks to wait for, command.
 std::string task_list(const FarmOptions& options, const FarmPlan& plan);
 
 }  // namespace weft::cli

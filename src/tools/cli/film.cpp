@@ -14,8 +14,8 @@
 namespace weft::cli {
 namespace {
 
-// Maximum number of frames in a queue. It lets a stage continue while another one processes a slow frame. A picture of
-// 1280×720 takes 2.7 MB.
+// Maximum number of frames in a queue. With several frames, a stage can continue while another one processes a slow
+// frame. A picture of 1280×720 pixels takes 2.7 MB.
 constexpr std::size_t kQueueLength = 4;
 
 struct MadePair {
@@ -50,7 +50,7 @@ class Film {
       try {
         drawing = std::jthread([this] { draw_frames(); });
       } catch (...) {
-        snapshots_.cancel();  // otherwise the simulation would wait for ever for a drawing thread
+        snapshots_.cancel();  // otherwise make_frames() waits forever for the drawing thread
         throw;
       }
       write_frames();
@@ -76,20 +76,20 @@ class Film {
     }
   }
 
-  /// Makes frames, and passes the wanted ones that are not drawn yet on to drawing. With `only_show`, passes all frames
-  /// to the camera instead.
+  /// Makes frames, and hands those that must be drawn to the drawing thread. With `only_show`, passes all frames to the
+  /// camera instead.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
-    // The first frame is made even after a stop request: it costs little, and gives the run a picture.
+    // Makes the first frame even after a stop request, so that the run has a picture; it costs little time.
     for (int frame = made_.begin; frame <= last; frame += made_.step) {
       if (frame > made_.begin && stop_) {
         result_.interrupted = true;
         break;
       }
-      MadeFrame made = source.next();  // simulated or read
+      MadeFrame made = source.next();
       if (frame == made_.begin) result_.cloth_size = run_error::cloth_size(*made.snapshot);
       if (parts_.on_frame) parts_.on_frame(made);
-      if (parts_.store) parts_.store->keep(made);  // so that it need not be simulated again
+      if (parts_.store) parts_.store->keep(made);  // so that --resume need not simulate it again
       for (const std::string& warning : made.report.warnings) log::warn(warning);
       record(frame).report = std::move(made.report);
       ++made_so_far_;
@@ -105,8 +105,8 @@ class Film {
     if (parts_.store) parts_.store->keep_last_state();
   }
 
-  /// Passes a frame to drawing, with the previous wanted frame if the painter needs it. Returns false if drawing has
-  /// ended.
+  /// Hands a frame to the drawing thread, with the previous wanted frame if the painter needs it. Returns false if that
+  /// thread has ended.
   bool hand_on(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;
     if (parts_.motion && !before_ && frame >= 0)
@@ -114,8 +114,8 @@ class Film {
     return snapshots_.push({snapshot, before_});
   }
 
-  /// Makes all frames and passes them to the camera, then passes the wanted ones from the store on to drawing. If
-  /// making fails, passes on the frames made so far.
+  /// Makes all frames and passes them to the camera. Then reads the wanted frames from the store, and hands them to the
+  /// drawing thread. If making frames fails, hands over those made so far.
   void make_then_hand_on(FrameSource& source) {
     std::exception_ptr failure;
     try {
@@ -212,9 +212,9 @@ class Film {
   EventLog& log_;
   BoundedQueue<MadePair> snapshots_{kQueueLength};
   BoundedQueue<DrawnFrame> pictures_{kQueueLength};
-  std::optional<render::CameraPath> camera_;  // moves from the making to the drawing thread before the first snapshot
+  std::optional<render::CameraPath> camera_;  // the making thread computes it; then the drawing thread takes it
   frame::SnapshotPtr before_;                 // making thread: the previous wanted frame
-  int made_so_far_ = 0;                       // written by the making thread; read after it has ended
+  int made_so_far_ = 0;                       // written by the making thread; read after this thread has ended
   FilmResult result_;
 };
 

@@ -1,5 +1,5 @@
-// The pipeline of a film. Three threads run concurrently: one makes and stores frames, one draws them, one writes and
-// reports them. Bounded queues between the threads limit memory.
+// The pipeline of a film. Three threads run concurrently: one makes frames (simulates or reads them) and stores them,
+// one draws them, one writes and reports them. Bounded queues between the threads limit memory.
 #pragma once
 
 #include <atomic>
@@ -22,41 +22,42 @@
 
 namespace weft::cli {
 
-/// The stages of a film. Each stage is opened, used and destroyed in its own thread, since an OpenGL context belongs to
-/// one thread. The writer is opened at the first picture, when the painter's description is known.
+/// What make_film() combines. Each stage is opened, used and destroyed in its own thread, since an OpenGL context
+/// belongs to one thread. The writer is opened at the first picture, when the painter's description is known.
 struct FilmParts {
   std::function<std::unique_ptr<FrameSource>()> open_source;
   std::function<std::unique_ptr<FramePainter>()> open_painter;  ///< empty: nothing is drawn
   std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< empty: nothing
                                                                                                     ///< is written
   Store* store = nullptr;  ///< keeps simulated frames
-  /// Set if the scene does not place the camera: the camera path is then computed from all frames. Unless the source
-  /// can show all frames beforehand, drawing waits until the last frame is made, and then reads frames from the store.
+  /// Set if the camera path must be computed from all frames. If FrameSource::show_all() returns false, drawing waits
+  /// until the last frame is made, and the frames to draw come from the store.
   std::optional<render::CameraPath> camera = std::nullopt;
-  std::filesystem::path meshes;      ///< folder; empty: none
+  std::filesystem::path meshes;      ///< folder for meshes; empty: none are written
   std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already
-  bool keeps_partial_output = true;  ///< if source or painter fails, the output is finished with the earlier frames
-  bool motion = false;               ///< the painter also gets the previous wanted frame, for motion blur or layers
+  bool keeps_partial_output = true;  ///< if source or painter fails, finish the output with the earlier frames
+  bool motion = false;  ///< whether the painter also gets the previous wanted frame, for motion blur or layers
   std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
 };
 
 struct FilmResult {
   std::vector<frame::ObjectInfo> objects;
-  StageTime setup;                  ///< opening the source
+  StageTime setup;                  ///< time for opening the source
   std::vector<FrameRecord> frames;  ///< all frames that were made, in order
   /// Number of frames that all stages have completed.
   int written = 0;
   double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
   bool interrupted = false;      ///< stopped by request before the last wanted frame
   std::string painter = "none";  ///< description of the painter
-  std::exception_ptr failure;    ///< of the failed stage nearest to the output; null if none failed
+  /// Exception of the failed stage; if several failed, of that nearest to the output; null if none did.
+  std::exception_ptr failure;
   bool finished_output = false;  ///< the output has its final name; it may have fewer frames than wanted
 };
 
-/// Makes the frames `made` and draws and writes the frames `wanted`, a subset of them. Ends with the last frame of
-/// `wanted` (of `made` if the camera path is computed from the frames made), or earlier at `stop` or a failure. The
-/// output is then completed with the frames written so far, unless the writer fails, or another stage fails and
-/// `keeps_partial_output` is false. Does not throw if a stage fails; see FilmResult::failure.
+/// Makes the frames `made`; draws and writes the frames `wanted`, a subset of them. Ends after the last frame of
+/// `wanted`, or of `made` if the camera path is computed from these frames; earlier if `stop` becomes true or a stage
+/// fails. Then finishes the output with the frames written so far, unless the writer failed, or another stage failed
+/// and `keeps_partial_output` is false. Does not throw if a stage fails; see FilmResult::failure.
 FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
                      const std::atomic<bool>& stop, Progress& progress, EventLog& log);
 

@@ -54,7 +54,7 @@ FrameSelection parse_frames(std::string_view text) {
   selection.begin = parse_part(parts[0], text);
   selection.end = parse_part(parts[1], text);
   if (parts.size() == 3) selection.step = parse_part(parts[2], text).value_or(1);
-  constexpr int kMaxStep = 1'000'000'000;  // so that the sum of a frame and a step is an int
+  constexpr int kMaxStep = 1'000'000'000;  // so that the sum of a frame number and a step fits into an int
   if (selection.step < 1 || selection.step > kMaxStep)
     throw Error(ExitCode::usage, "--frames: expected a step from 1 to {}, got {}", kMaxStep, text);
   if (selection.end && selection.begin.value_or(0) >= *selection.end) {

@@ -8,7 +8,7 @@
 
 namespace weft::cli {
 
-/// The half-open range as typed. A missing `begin` means frame 0; a missing `end` means the end of the scene.
+/// The half-open range as the user typed it. No `begin`: from frame 0. No `end`: to the end of the scene.
 struct FrameSelection {
   std::optional<int> begin, end;
   int step = 1;
@@ -24,14 +24,14 @@ struct FrameRange {
   std::string text() const;
 };
 
-/// Text of `frames` (ascending, at least one): consecutive ones as a half-open range, `3, 8:21`.
+/// Text of `frames` (ascending, at least one), such as `3, 8:21`: consecutive frames become a half-open range.
 std::string frames_text(const std::vector<int>& frames);
 
 /// Parses `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).
 FrameSelection parse_frames(std::string_view text);
 
-/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) if the selection is empty or exceeds
-/// the scene.
+/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) if the selection is empty or ends
+/// after the scene.
 FrameRange resolve_frames(const FrameSelection& selection, int frame_count);
 
 }  // namespace weft::cli

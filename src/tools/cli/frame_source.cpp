@@ -64,7 +64,7 @@ void SceneSource::run_preroll() {
   const bool whole = simulation_->run_preroll([&] {
     if (frame > -scene_.preroll_frames()) store_.save_if_cheap(*simulation_, frame);
     progress_.advance(Stage::simulate);
-    // A stop request during the preroll: saves the state, although there is no frame yet.
+    // After a stop request, saves the state, so that --resume can continue although there is no frame yet.
     if (stop_) store_.save(*simulation_, frame);
     ++frame;
     return !stop_;

@@ -1,4 +1,4 @@
-// Sources of frames: a simulation or a cache.
+// Sources of the frames of a film: a simulation or a cache.
 #pragma once
 
 #include <atomic>
@@ -20,21 +20,21 @@ namespace weft::cli {
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
-  /// Throws if the next frame cannot be made or read.
+  /// Makes or reads the next frame. Throws if it cannot.
   virtual MadeFrame next() = 0;
-  /// Passes all frames of the run to the camera, not only those that next() yields. Returns false if frames must still
-  /// be made.
+  /// If all frames of the run exist already, passes them to the camera, also those that next() does not yield, and
+  /// returns true. Otherwise returns false.
   virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
-  /// A frame that next() does not yield, such as one before the first; null if it is not available.
+  /// Returns a frame that next() does not yield, such as one before the first; null if it is not available.
   virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
 };
 
-/// Frames of a scene: first those that the store has from an earlier run, which get the scene's current looks, then
-/// simulated ones.
+/// Frames of a scene: first those that the store has from an earlier run, with the scene's current looks (colours,
+/// cameras, lights), then simulated ones.
 class SceneSource : public FrameSource {
  public:
-  /// Opens `store` for new frames. `stop` interrupts a preroll, whose progress goes to `progress`.
+  /// Opens `store` for new frames. `stop` interrupts the preroll, the frames before frame 0; `progress` shows it.
   SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress);
 
   MadeFrame next() override;
@@ -51,7 +51,7 @@ class SceneSource : public FrameSource {
   const std::atomic<bool>& stop_;
   Progress& progress_;
   std::unique_ptr<production::SceneSimulation> simulation_;
-  std::optional<production::Looks> looks_;  // current looks of the scene, if stored frames have others
+  std::optional<production::Looks> looks_;  // current looks of the scene; set if stored frames have others
   int next_ = 0;
 };
 

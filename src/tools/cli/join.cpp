@@ -1,4 +1,4 @@
-// weft join: joins parts of a film, possibly drawn on several machines, to one video. Each part is identified by its
+// weft join: joins parts of a film, which several machines may have drawn, to one video. It identifies each part by its
 // metadata, not by its name.
 #include "film/video/join.hpp"
 
@@ -26,14 +26,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A picture or a video.
+/// A picture file, or a video with some frames of the film.
 struct Piece {
   fs::path file;
   std::vector<int> frames = {};  ///< frame numbers, ascending
   int step = 1;                  ///< distance between frame numbers
   int width = 0, height = 0;
   Metadata film = {};   ///< metadata that all pieces of a film share
-  std::string gl = {};  ///< OpenGL description of the drawing machine
+  std::string gl = {};  ///< OpenGL description of the machine that drew it
 };
 
 bool is_video(const fs::path& file) {
@@ -67,8 +67,8 @@ int scene_frames_of(const fs::path& file, const Metadata& metadata) {
   return number<int>(file, metadata, "scene_frames", 1, scene::kMaxFrames + 1);
 }
 
-// Checks a time or a rate. The tolerance covers broadcast rates such as 30000/1001, which differ from their decimals
-// (29.97) by up to 1.1e-6 of the rate.
+// Checks a time or a frame rate. The tolerance allows for broadcast rates such as 30000/1001, which differ from their
+// decimals (29.97) by up to 1.1e-6 of the rate.
 void check_time(const fs::path& file, double found, double expected, const char* what) {
   if (std::abs(found - expected) <= 1e-5 * std::max(1.0, expected)) return;
   throw Error(ExitCode::usage, "{}: expected {} {:g}, got {:g}", file.string(), what, expected, found);
@@ -102,7 +102,7 @@ Piece read_video(const fs::path& file) {
 Piece read_piece(const fs::path& file) {
   Piece piece = is_video(file) ? read_video(file) : read_picture(file);
   piece.gl = piece.film["gl"];
-  // Removes the metadata that belong to a single piece or to its file format.
+  // Removes metadata that only concern this piece or its file format.
   for (const char* own : {"gl", "frame", "time_s", "frames", "major_brand", "minor_version", "compatible_brands",
                           "encoder", "creation_time"})
     piece.film.erase(own);
@@ -120,7 +120,7 @@ std::vector<fs::path> files_of(const fs::path& part) {
   return files;
 }
 
-/// All pieces, ordered by frame.
+/// All pieces of a film, ordered by frame. The constructor checks that they fit together.
 class Film {
  public:
   explicit Film(const std::vector<fs::path>& parts) {
@@ -199,7 +199,7 @@ FrameRange Film::frames(const JoinOptions& options) const {
   return missing.empty() ? wanted : before;
 }
 
-/// The files with these frames, in order. Throws Error(usage) if only some frames of a video are wanted.
+/// The files with these frames, in order. Throws Error(usage) if a video has other frames too.
 std::vector<fs::path> files_of(const Film& film, const FrameRange& frames) {
   std::vector<fs::path> files;
   for (const Piece& piece : film.pieces()) {

@@ -1,13 +1,13 @@
-// What main() of each of the two programs calls. Includes nothing, so that main.cpp compiles at once.
+// Functions for main() of the programs weft and weft-tools. Includes no header, so that main.cpp compiles fast.
 #pragma once
 
 namespace weft::cli {
 
-/// Runs the command line given to main() and returns the exit code; never throws. Passes commands that only the tools
-/// program has on to it.
+/// Runs the command line given to main(), and returns the exit code. For commands that only weft-tools has, replaces
+/// this process by weft-tools.
 int run_weft(int argc, char** argv) noexcept;
 
-/// The same with all commands. Linked only into the tools program.
+/// The same in weft-tools, which runs the commands that weft does not have.
 int run_weft_tools(int argc, char** argv) noexcept;
 
 }  // namespace weft::cli

@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestIgnoreFile = 1 << 20;  // [bytes]
 
-// Name of the template to which a file belongs: the stem of the file, or the name of its folder.
+// Name of the template to which a file belongs: the name of the file without extension, or of its folder.
 std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
 }
 
-// Result of adding a template of several files to an existing folder without replacing anything. Missing lines are
-// appended to .gitignore, a README is written beside an existing one, and other existing files are kept.
+// What to write so that a template of several files is added to a folder without replacing files. Missing lines are
+// appended to .gitignore, the README gets another name if one exists, and other existing files stay.
 struct Added {
   std::vector<std::pair<fs::path, std::string>> files;
   std::vector<std::string> kept;
@@ -80,7 +80,7 @@ std::vector<std::string> template_names() {
 }
 
 ExitCode make_new(const NewOptions& options) {
-  // The first line of a scene names the schema. From the schema, editors know all keys.
+  // Writes the schema beside the scene. The first line of the scene names it; with it, editors complete and check keys.
   std::vector<std::pair<fs::path, std::string>> files;
   fs::path scene = options.name;
   bool is_folder = false;

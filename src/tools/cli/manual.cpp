@@ -13,8 +13,8 @@ namespace weft::cli {
 namespace {
 
 struct Option {
-  std::vector<std::string> names;    ///< with dashes, short names first; for an argument its name
-  std::string value;                 ///< for example `FILE.mp4`; empty: takes no value
+  std::vector<std::string> names;    ///< with dashes, short names first; for an argument, its name alone
+  std::string value;                 ///< placeholder of the value, such as `FILE.mp4`; empty: the option has no value
   std::vector<std::string> choices;  ///< allowed values; empty: any value
   std::string meaning;
 };
@@ -176,7 +176,7 @@ std::string fish_completion(const CLI::App& app) {
   return text;
 }
 
-// Escapes characters that troff interprets. Quotes, ^ and ~ must stay ASCII, so that a shell can read copied commands.
+// Escapes characters that troff interprets. Quotes, ^ and ~ must stay ASCII, so that commands can be copied to a shell.
 std::string roff(const std::string& text) {
   std::string result;
   std::istringstream lines(text);

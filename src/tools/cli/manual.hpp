@@ -1,4 +1,4 @@
-// The command line for other programs: shell completion and the manual page, both generated from the text of --help.
+// Shell completion and the manual page, both generated from the text of --help.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// Options that several commands share, as CLI11 reads them.
+// Options that several commands share, defined for CLI11, which parses the command line.
 #pragma once
 
 #include <array>

@@ -8,7 +8,7 @@
 namespace weft::cli {
 namespace {
 
-// Parses the whole text as a number; nullopt if it is not one.
+// Parses the whole text as a number; nullopt if it is none.
 template <class Number>
 std::optional<Number> number_in(const std::string& text) {
   Number value = 0;

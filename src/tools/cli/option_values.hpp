@@ -1,5 +1,5 @@
-// Conversion of command-line texts to checked values. The functions that parse or check throw Error(usage) with what
-// was expected.
+// Converts texts of the command line to checked values. All functions that parse or check throw Error(usage), which
+// says what was expected.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ Value parse_choice(const char* option, const std::string& text, const std::array
 }
 
 int parse_integer(const char* option, const std::string& text, int low, int high);
-/// From 0 to 1.
+/// A number from 0 to 1.
 double parse_fraction(const char* option, const std::string& text);
 /// A factor from 0.01 to 100.
 double parse_factor(const char* option, const std::string& text);

@@ -20,7 +20,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// Checks that the first argument is a command or an option of the program; CLI11 would only report "required".
+// Checks that the first argument is a command or an option of the program; CLI11 would only report a missing command.
 void check_command_name(const Parser& parser, const std::vector<std::string>& arguments) {
   const std::vector<std::string> known = parser.command_names();
   const std::string list = fmt::format("{}", fmt::join(known, ", "));
@@ -42,7 +42,7 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
   throw Error(ExitCode::usage, "unknown command {}{}; the commands are {}", first, did_you_mean(first, known), list);
 }
 
-// Hint for an argument that looks like an option but may be the name of a file; empty if it cannot be one.
+// Hint for an unknown option that may be the name of a file; empty if it cannot be one.
 std::string as_file(const std::string& argument) {
   const std::filesystem::path file = argument;
   std::error_code none;
@@ -98,7 +98,7 @@ SweepOptions checked(SweepOptions sweep) {
   return sweep;
 }
 
-// Refuses options that the drawing command would refuse each time.
+// Refuses options that each drawing would refuse.
 WatchOptions checked(WatchOptions watch) {
   const std::vector<std::string>& words = watch.passed_on;
   const auto given = [&](const char* name) { return std::ranges::find(words, name) != words.end(); };
@@ -140,7 +140,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     throw Error(ExitCode::usage, "weft {}: expected no empty argument, got one; is a variable of the shell empty?",
                 arguments.front());
   try {
-    // CLI11 expects the arguments in reverse order
+    // CLI11 expects the arguments in reverse order.
     parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::CallForHelp&) {
     return PrintText{parser.app.help()};

@@ -1,4 +1,4 @@
-// The command line as checked values.
+// The options of all commands, as checked values.
 #pragma once
 
 #include <filesystem>
@@ -26,12 +26,12 @@ struct PictureSize {
 /// Options shared by all commands that start from a scene.
 struct SceneOptions {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;      ///< of --set
+  std::vector<std::string> overrides;      ///< texts `key=value` of --set
   std::optional<PictureSize> size;         ///< default: that of the scene
   std::optional<double> fps;               ///< default: that of the scene
   std::string camera;                      ///< empty: the scene's choice
   std::optional<frame::Stage::Look> look;  ///< default: that of the scene
-  std::optional<double> motion_blur;       ///< shutter angle [degrees]; default: that of the scene
+  std::optional<double> motion_blur;       ///< shutter angle [degrees], 0: none; default: that of the scene
   render::Quality quality = render::Quality::final;
   render::Backend backend = render::Backend::automatic;
   int threads = 0;  ///< 0: all cores
@@ -49,7 +49,7 @@ struct RunOptions {
   bool resume = false;
   int depth = 8;  ///< bits per channel of PNG pictures, 8 or 16
   VideoOptions video;
-  bool error = false, mesh_error = false;  ///< estimate the error; mesh_error: also that of the mesh
+  bool error = false, mesh_error = false;  ///< estimate the error of the run; mesh_error: also that of the mesh
 };
 
 struct SimulateOptions : RunOptions {
@@ -65,22 +65,22 @@ struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> overrides;
   std::filesystem::path against;  ///< a scene, an effective scene or a cache to compare with; may be empty
-  bool plan = false;
-  bool estimate = false;  ///< also estimate time and memory
+  bool plan = false;              ///< also list the parts of the program that the scene uses
+  bool estimate = false;          ///< also estimate time and memory of a run
 };
 
 struct ThumbnailOptions {
   SceneOptions common;                        ///< `scene` is set for each scene in turn
   std::vector<std::filesystem::path> scenes;  ///< scenes or caches, at least one
-  /// A picture; without an extension, or if it exists as a folder and there are several scenes, a folder that gets
-  /// <scene>.png (.start.png with `start`) for each. Empty: such files in the folder output.
+  /// The picture, or a folder for <scene>.png (with `start`: <scene>.start.png) of each scene. It counts as a folder if
+  /// it has no extension, or if it is an existing folder and there are several scenes. Empty: the folder `output`.
   std::filesystem::path output;
-  std::optional<int> frame;  ///< default: the most informative one
-  bool start = false;        ///< draw the start of the scene instead of a frame, even if the simulation refuses it
+  std::optional<int> frame;  ///< default: the one with the highest saliency
+  bool start = false;        ///< draw the start of the scene, even if a run refuses it, instead of a frame
 };
 
 struct SheetOptions {
-  SceneOptions common;           ///< the size is that of each picture
+  SceneOptions common;           ///< `size`: of each picture on the sheet
   std::filesystem::path output;  ///< empty: output/<scene>.sheet.png
   int count = 12;                ///< maximum number of pictures
   std::optional<int> columns;
@@ -98,25 +98,25 @@ struct JoinOptions {
 };
 
 struct SweepOptions {
-  std::filesystem::path scene, list;  ///< the list may be empty
+  std::filesystem::path scene, list;  ///< `list`: file with one row of values per run; may be empty
   std::vector<Axis> axes;
   std::filesystem::path output;        ///< folder
   std::vector<std::string> passed_on;  ///< checked options that are passed on to each run
   int jobs = 1;                        ///< number of concurrent runs
   std::optional<int> frame;            ///< frame shown on the sheet; default: the last
-  bool gather = false;                 ///< make only sheet, table and page from existing runs
+  bool gather = false;                 ///< only make the sheet, the table and the page of existing runs
   bool overwrite = false;
 };
 
 struct FarmOptions {
   enum class Action { submit, status, cancel };
   Action action = Action::status;
-  SweepOptions sweep;  ///< `output`: folder of the runs; `scene`: for submit the scene, otherwise this folder too
+  SweepOptions sweep;  ///< `output`: folder of the runs; `scene`: the scene for `submit`, else the same folder
   FrameSelection frames;
   int part = 50;                           ///< frames per drawing task
-  int threads = 1;                         ///< per task
-  int retries = 3;                         ///< of a task that was killed or found no disk space
-  std::optional<int> memory, minutes;      ///< per task [MB, min]; default: from a trial
+  int threads = 1;                         ///< number per task
+  int retries = 3;                         ///< number of retries of a task that was killed or found no disk space
+  std::optional<int> memory, minutes;      ///< limits per task [MB, min]; default: estimated from a trial
   std::vector<std::string> for_scheduler;  ///< options of sbatch
   std::filesystem::path program;  ///< program archive that tasks unpack and run; empty: this program at its own path
   bool dry_run = false;           ///< write and print the scripts, submit nothing
@@ -133,7 +133,7 @@ struct WatchOptions {
   std::vector<std::string> overrides;  ///< of --set
   std::vector<std::string> passed_on;  ///< checked options that are passed on to the drawing command
   bool film = false;                   ///< draw the whole video instead of a still
-  int times = 0;                       ///< number of drawings before it ends; 0: until interrupted
+  int times = 0;                       ///< number of drawings until the command ends; 0: until it is interrupted
 };
 
 struct SchemaOptions {
@@ -147,15 +147,15 @@ struct DoctorOptions {
 struct BenchOptions {
   enum class Kind { stability, accuracy, speed, fabrics };
   Kind kind = Kind::stability;
-  std::filesystem::path scene;         ///< for stability, accuracy and speed; empty: built-in ones
+  std::filesystem::path scene;         ///< for stability, accuracy and speed; empty: built-in scenes
   std::vector<std::string> overrides;  ///< of --set
-  /// For speed: factors on the particles along each side, and on the time step; ascending.
+  /// For speed: factors on the number of particles along each side, and on the time step; ascending.
   std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};
-  std::vector<int> threads;  ///< empty: 1, and all cores
-  FrameSelection frames;     ///< for speed: the measured frames, as typed
-  std::optional<render::Quality> drawing;
-  bench::AccuracyPlan plan;      ///< for accuracy
-  std::filesystem::path output;  ///< folder; empty: output/bench
+  std::vector<int> threads;                ///< empty: 1, and all cores
+  FrameSelection frames;                   ///< for speed: the measured frames
+  std::optional<render::Quality> drawing;  ///< for speed: also draw the frames, with this quality
+  bench::AccuracyPlan plan;                ///< for accuracy
+  std::filesystem::path output;            ///< folder; empty: output/bench
   bool overwrite = false;
 };
 
@@ -207,7 +207,8 @@ using Command =
                  SweepOptions, FarmOptions, NewOptions, WatchOptions, SchemaOptions, DoctorOptions, BenchOptions,
                  DiffOptions, AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
 
-/// `arguments` without the program's name. Throws Error(usage) with what was expected and the most similar known name.
+/// `arguments`: without the program's name. Throws Error(usage), which says what was expected and, for an unknown name,
+/// names the most similar known one.
 Command parse_command_line(const std::vector<std::string>& arguments);
 
 /// Parses `1280x720`. Throws Error(usage).

@@ -1,4 +1,4 @@
-// Destination of the pictures: one video, one PNG or EXR file per frame, or none.
+// Where a command writes pictures: to one video, to one PNG or EXR file per frame, or nowhere.
 #pragma once
 
 #include <filesystem>
@@ -22,13 +22,13 @@ struct VideoOptions {
   bool any() const { return codec != video::Codec::automatic || crf.has_value(); }
 };
 
-/// The codec of a video of this name. Throws Error(usage) if the options do not suit it.
+/// The codec of a video file. Throws Error(usage) if the options do not fit its extension.
 video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& options);
 
-/// A file name with a place for the frame number: `{frame}`, or `{frame:05}` for five digits.
+/// A file name with a placeholder for the frame number: `{frame}`, or `{frame:05}` for five digits.
 class FramePattern {
  public:
-  /// Throws Error(usage) if the text has no such place or more than one.
+  /// Throws Error(usage) if the text has no placeholder or more than one.
   explicit FramePattern(std::string_view text);
   FramePattern(std::string before, int digits, std::string after)
       : before_(std::move(before)), after_(std::move(after)), digits_(digits) {}
@@ -48,7 +48,7 @@ class FramePattern {
 struct OutputTarget {
   enum class Kind { video, images, none };
   Kind kind = Kind::video;
-  std::string text;  ///< as typed, or the default; images: a pattern; none: the folder of the cache
+  std::string text;  ///< images: a pattern; video: the file; none: the folder of the cache
 
   /// Whether pictures are written as OpenEXR with all layers of a frame.
   bool layered() const { return kind == Kind::images && std::filesystem::path(text).extension() == ".exr"; }

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 bool starts_with_one_of(const fs::path& file, std::initializer_list<std::string> beginnings) {
-  constexpr std::size_t kMaxStartBytes = 4096;  // [bytes]
+  constexpr std::size_t kMaxStartBytes = 4096;
   const std::string start = read_start(file, kMaxStartBytes);
   return std::ranges::any_of(beginnings, [&](const std::string& each) { return start.starts_with(each); });
 }

@@ -1,4 +1,4 @@
-// Recognises files that Weft has written, mostly by metadata. Other files are never removed or replaced silently.
+// Recognises files that Weft has written, mostly by metadata. Weft never replaces or removes other files unasked.
 #pragma once
 
 #include <filesystem>
@@ -12,9 +12,9 @@ bool is_picture_of(const std::filesystem::path& file, const std::string& scene, 
 /// Whether a PLY or OBJ file names Weft as its author.
 bool is_own_mesh(const std::filesystem::path& file);
 
-/// Whether a file is an output of a run of this scene: a picture, video, mesh, report or log. Empty files, which a
-/// killed run leaves, count too, and so do meshes of other scenes, as meshes do not name theirs. Effective scenes have
-/// no mark by which Weft recognises them: see Store::holds_scene().
+/// Whether a file is an output of a run of this scene: a picture, video, mesh, report or log. Empty files count, since
+/// a killed run may leave them. Meshes of other scenes count, since a mesh file does not name its scene. Effective
+/// scenes do not count: they have no mark; see Store::holds_scene().
 bool is_output_of(const std::filesystem::path& file, const std::string& scene);
 
 }  // namespace weft::cli

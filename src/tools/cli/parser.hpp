@@ -1,4 +1,4 @@
-// The program's commands, and the values that CLI11 sets while parsing.
+// The commands for CLI11, and the values that CLI11 sets while it parses the command line.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,11 +22,11 @@ struct Parser {
   FarmOptions farm;
   NewOptions fresh;
   WatchOptions watch;
-  std::string shell;  // for completion
+  std::string shell;  // argument of weft completion
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
-  std::vector<BenchOption> bench_options;  // given options that only some kinds accept
+  std::vector<BenchOption> bench_options;  // options given by the user that only some kinds of weft bench accept
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;
@@ -55,7 +55,7 @@ struct Parser {
   void add_export();
 
   std::vector<std::string> command_names() const;
-  /// The parsed command; null before parsing.
+  /// The command that was parsed; null before parsing.
   CLI::App* selected() const;
 };
 

@@ -10,7 +10,8 @@ constexpr std::array kFarmActions{Choice<FarmOptions::Action>{"submit", FarmOpti
                                   Choice<FarmOptions::Action>{"status", FarmOptions::Action::status},
                                   Choice<FarmOptions::Action>{"cancel", FarmOptions::Action::cancel}};
 
-/// Adds the options that choose the runs and those that are passed on to them. `frames` may be null.
+/// Adds the options that define the runs or are passed on to them. `frames` (may be null) receives the value of
+/// --frames.
 void add_runs(CLI::App& command, SweepOptions& sweep, FrameSelection* frames) {
   command
       .add_option_function<std::vector<std::string>>(

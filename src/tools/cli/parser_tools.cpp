@@ -1,4 +1,4 @@
-// Options of the commands that make no films: checks, measurements, comparison, exports.
+// Options of the commands that make no film: check, schema, doctor, bench, diff, accept, review, export.
 #include "core/error.hpp"
 #include "tools/cli/option_groups.hpp"
 #include "tools/cli/parser.hpp"

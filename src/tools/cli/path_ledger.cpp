@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Removes a slash at the end, which does not change the meaning.
+// Removes a slash at the end.
 fs::path plain(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
@@ -77,7 +77,7 @@ void PathLedger::add_output(const std::string& option, const fs::path& path) {
 
 void PathLedger::writes(const std::string& option, const fs::path& place, const std::vector<fs::path>& files) {
   for (const fs::path& file : files) add_output(option, file);
-  // The files are registered after all are checked, so that files of one output do not conflict with each other.
+  // Registers the files after all checks, so that files of one output do not conflict with each other.
   for (const fs::path& file : files) places_.emplace(resolved(file), Place{"what " + option + " writes"});
   outputs_.push_back({option + " " + resolved(place), files, {}});
 }
@@ -97,10 +97,10 @@ void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
   for (const Output& output : outputs_) {
     const bool is_gone_on_with = own.contains(output.name);
     for (const fs::path& file : output.files) {
-      std::error_code ignored;  // writing an inaccessible path will report the error
+      std::error_code ignored;  // if the path cannot be accessed, writing it reports the error
       if (fs::is_directory(file, ignored))
         throw Error(ExitCode::output_failed, "{}: is a folder, expected a file name", file.string());
-      // A link counts as existing, even if it is dangling.
+      // A symbolic link counts as an existing file even if its target does not exist.
       if (overwrite) continue;
       if (!fs::exists(fs::symlink_status(file, ignored))) {
         keep_if_made_meanwhile(file);

@@ -1,4 +1,5 @@
-// Prevents the loss of files: registers everything that a command reads and writes.
+// Registers all paths that a command reads and writes, so that it does not overwrite its inputs, nor other files unless
+// asked.
 #pragma once
 
 #include <filesystem>
@@ -11,30 +12,30 @@
 
 namespace weft::cli {
 
-/// All paths of one command. The command registers them before any work, inputs first. Functions that register throw
-/// Error(usage) if an output is an input or another output, or if it lies inside of either or contains one. Symbolic
-/// links, hard links and `..` are followed.
+/// All paths of one command. The command registers them before any work, inputs first. Functions that register an
+/// output throw Error(usage) if it is an input or another output, lies inside one, or contains one. They resolve
+/// symbolic links, hard links and `..`.
 class PathLedger {
  public:
-  /// Registers an input file; `what` names it in messages: "the scene".
+  /// Registers an input file. `what` names it in messages, such as "the scene".
   void reads(const std::filesystem::path& file, const std::string& what);
-  /// Registers a folder that is read as a whole, such as a frame cache: no output may be inside.
+  /// Registers a folder that the command reads as a whole, such as a frame cache. No output may be inside.
   void reads_folder(const std::filesystem::path& folder, const std::string& what);
-  /// Registers a folder from which single files are read: outputs may be inside.
+  /// Registers a folder from which the command reads single files. Outputs may be inside.
   void searches(const std::filesystem::path& folder, const std::string& what);
 
-  /// Registers output files; `place` names them all in messages: the folder or pattern that the user has given.
+  /// Registers output files. `place` is the folder or pattern that the user has given for them.
   void writes(const std::string& option, const std::filesystem::path& place,
               const std::vector<std::filesystem::path>& files);
   void writes(const std::string& option, const std::filesystem::path& file) { writes(option, file, {file}); }
-  /// Registers an output that may be overwritten if it already has this content.
+  /// Registers an output file. An existing file with the same content may be overwritten.
   void writes_content(const std::string& option, const std::filesystem::path& file, const std::string& content);
   /// Registers a folder that the command uses exclusively. The code that creates the folder checks what it contains.
   void fills(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if a folder has its name.
-  /// Without `overwrite`, files that appear after this call are protected too. `own`: outputs() of an interrupted run
-  /// that is resumed; existing files of these outputs may be replaced if `is_own` accepts them.
+  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if a folder has its name. If
+  /// `overwrite` is false, files that other processes create after this call are not replaced either. `own`: outputs()
+  /// of the run that is resumed; existing files of these outputs may be replaced if `is_own` returns true.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.
@@ -44,13 +45,13 @@ class PathLedger {
 
  private:
   struct Place {
-    std::string what;       // for example "the scene, which is read" or "what -o writes"
-    bool searched = false;  // may contain outputs
+    std::string what;       // text for messages: "the scene, which is read" or "what -o writes"
+    bool searched = false;  // whether outputs may be inside
   };
   struct Output {
     std::string name;  // option and place
     std::vector<std::filesystem::path> files;
-    std::string content;  // content that an existing file may have
+    std::string content;  // an existing file with this content may be overwritten; empty: none may
   };
   using FileId = std::pair<unsigned long, unsigned long>;  // device and inode
 
@@ -60,7 +61,7 @@ class PathLedger {
 
   std::map<std::string, Place> places_;  // by resolved path
   std::map<FileId, std::string> inputs_;
-  std::map<std::string, std::string> folders_;  // cache of resolved folders: thousands of files share few folders
+  std::map<std::string, std::string> folders_;  // cache of resolved folders, since thousands of files share few folders
   std::vector<Output> outputs_;
 };
 

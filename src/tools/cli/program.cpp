@@ -56,29 +56,29 @@ struct Dispatch {
   ExitCode (*run_other)(const Command&, char**);
 };
 
-// A process inherits closed streams and ignored signals from its caller.
+// Corrects what a process inherits from its caller: closed standard streams and ignored signals.
 void prepare_streams_and_signals() {
-  // The next opened file would get the number of a closed stream, and messages would be written into this file. Every
-  // machine has "/"; opened for reading, each write to it fails.
+  // If a standard stream is closed, the next opened file would get its number, and messages would be written into that
+  // file. Opening "/" takes the number instead: "/" always exists, and each write to it fails.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0 && ::open("/", O_RDONLY) < 0) break;
   // If SIGCHLD is ignored, the exit codes of child processes are lost, and failures would count as successes.
   ::signal(SIGCHLD, SIG_DFL);
-  // If a pipe is closed or a file exceeds its size limit, the write must return an error. By default, a signal would
-  // kill the process and leave half a file.
+  // If a pipe is closed or a file exceeds its size limit, write() must return an error. By default, a signal kills the
+  // process, which then leaves an incomplete file.
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
   end_on_signals();
 }
 
-// Throws if the working folder is gone, since relative paths start there.
+// Throws if the working folder, from which relative paths start, does not exist.
 void check_working_folder() {
   std::error_code error;
   if (std::filesystem::current_path(error).empty())
     throw Error(ExitCode::usage, "the working folder cannot be used: {}; go to one that exists", error.message());
 }
 
-// Replaces this process by the tools program beside it. Throws Error(usage) if the tools program cannot be started.
+// Replaces this process by weft-tools, which is beside weft. Throws Error(usage) if weft-tools cannot be started.
 ExitCode become_tools(const Command& /*command*/, char** argv) {
   const std::filesystem::path tools = own_program().replace_filename(kToolsName);
   ::execv(tools.c_str(), argv);
@@ -92,8 +92,8 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
     prepare_streams_and_signals();
-    // A program from an archive is started by the dynamic loader. Without this call, the process would have the name of
-    // the loader.
+    // The dynamic loader starts a program from an archive. Without this call, the process would have the name of the
+    // loader.
     if (const Installation own = own_installation(); !own.libraries.empty())
       ::prctl(PR_SET_NAME, own.code.filename().c_str());
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);

@@ -5,8 +5,8 @@
 
 namespace weft::cli {
 
-/// Runs a command line and returns the exit code. Never throws. Passes commands that only the tools program has (join,
-/// sweep, farm, doctor, bench, diff, accept, review, export) to `run_other`.
+/// Runs a command line, and returns the exit code. Passes the commands that weft does not have (join, sweep, farm,
+/// doctor, bench, diff, accept, review, export) to `run_other`.
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept;
 
 }  // namespace weft::cli

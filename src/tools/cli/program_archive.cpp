@@ -30,10 +30,10 @@ namespace fs = std::filesystem;
               file.string(), reason);
 }
 
-/// Reads the headers of a POSIX ustar archive from a stream of bytes.
+/// Checks the headers of a POSIX ustar archive that it receives as consecutive parts.
 class TarHeaders {
  public:
-  /// Throws std::runtime_error with the defect.
+  /// Adds the next part of the archive. Throws std::runtime_error with the defect.
   void add(std::string_view bytes) {
     while (!bytes.empty()) {
       const std::size_t count = std::min(bytes.size(), skip_ > 0 ? skip_ : kBlock - header_.size());
@@ -87,9 +87,9 @@ class TarHeaders {
 
   static constexpr std::size_t kLargestFile = std::size_t{1} << 33;  // [bytes]; limit of 11 octal digits
 
-  std::string header_;    // bytes of the current header read so far
-  std::size_t skip_ = 0;  // remaining bytes of a file before the next header
-  bool ended_ = false;    // a block of zeros was read
+  std::string header_;    // bytes of the current header that have arrived
+  std::size_t skip_ = 0;  // remaining bytes of the current file, before the next header
+  bool ended_ = false;    // whether a block of zeros has arrived, which ends the archive
   std::set<std::string> names_;
 };
 

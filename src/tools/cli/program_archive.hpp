@@ -1,4 +1,4 @@
-// The archive that `ninja bundle` makes, for farm machines on which nothing is installed.
+// The archive of the program that `ninja bundle` makes, for machines of a farm on which nothing is installed.
 #pragma once
 
 #include <filesystem>
@@ -6,11 +6,11 @@
 
 namespace weft::cli {
 
-/// A program archive. The constructor reads and checks it completely, so that a truncated download or the archive of
-/// another program is found before any task starts.
+/// The constructor reads and checks the whole archive, so that weft farm refuses a truncated archive, or one of another
+/// program, before any task starts.
 class ProgramArchive {
  public:
-  /// Throws Error(asset_unreadable) with what was expected.
+  /// Throws Error(asset_unreadable) with the defect.
   explicit ProgramArchive(const std::filesystem::path& file);
 
   /// Hash of the content; 16 hexadecimal digits.

@@ -1,4 +1,4 @@
-// Commands run, simulate and render, from options to exit code: each describes a film, and film.cpp makes it.
+// The commands run, simulate and render. Each turns its options into a FilmPlan, which make_film() carries out.
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -34,14 +34,14 @@ using Kind = OutputTarget::Kind;
 struct FilmPlan {
   cache::Manifest scene;
   std::string scene_text;     ///< the effective scene
-  FrameRange made;            ///< frames that the source makes or reads
-  FrameRange wanted;          ///< subset of `made` that is drawn or written as meshes
+  FrameRange made;            ///< frames that are simulated, or read from a cache
+  FrameRange wanted;          ///< subset of `made` that is drawn, or written as meshes
   int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
-  bool finds_camera = false;  ///< the camera is computed from all frames before the first one is drawn
+  bool finds_camera = false;  ///< whether the camera is computed from all frames before the first one is drawn
   OutputTarget target;
   render::Settings settings;
-  std::vector<std::string> objects;  ///< names
-  Drawn drawn = {};                  ///< output of an earlier run that is resumed
+  std::vector<std::string> objects;  ///< names of all objects
+  Drawn drawn = {};                  ///< output of the earlier run that is resumed
 
   bool blurs = false;  ///< whether pictures may need the previous frame, for motion blur
 
@@ -66,7 +66,7 @@ bool finds_camera(const scene::Scene& scene, const std::string& name) {
   return true;
 }
 
-/// Warns of odd sizes before time is spent on the run.
+/// Warns of odd sizes before the run starts.
 void warn_of_odd_size(const FilmPlan& plan, video::Codec codec) {
   const int width = plan.settings.width, height = plan.settings.height;
   const bool any_size = codec == video::Codec::ffv1 || codec == video::Codec::h264_lossless;
@@ -77,8 +77,8 @@ void warn_of_odd_size(const FilmPlan& plan, video::Codec codec) {
                   width, height, width + width % 2, height + height % 2));
 }
 
-/// Sets the target and how it is written. Throws Error(usage) if options do not suit it, and Error(output_failed) if no
-/// video can have the frame rate.
+/// Sets the target and the settings that depend on it. Throws Error(usage) if options do not fit the target, and
+/// Error(output_failed) if videos cannot have the frame rate.
 void take_output(FilmPlan& plan, const RunOptions& options) {
   plan.target = parse_output(options.output, plan.scene.scene);
   plan.settings.layers = plan.target.layered();
@@ -145,8 +145,8 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
 }
 
-/// Removes files of an earlier, longer run whose names have the same form, but not if --frames selects a part of the
-/// film: other commands may write the other frames to the same place.
+/// With --overwrite, removes pictures and meshes of other frames, which an earlier run of a longer scene has left.
+/// Keeps them if --frames selects a part of the film, since other commands may write the other frames.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   if (!options.common.overwrite || options.frames.begin || options.frames.end) return;
   const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
@@ -156,7 +156,7 @@ void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   for (const std::string& object : plan.objects) mesh_files(options.meshes, object).remove_others(plan.wanted, is_mesh);
 }
 
-/// State that all three commands share for their whole duration.
+/// Carries out a FilmPlan for any of the three commands, and reports the results.
 class Session {
  public:
   explicit Session(const RunOptions& options) : options_(options) { set_thread_count(options.common.threads); }
@@ -165,12 +165,12 @@ class Session {
   bool wants_error() const { return options_.error || options_.mesh_error; }
   Progress& progress() { return *progress_; }
 
-  /// Starts the work. Call it after all checks that may refuse the command.
+  /// Opens the log and begins the report. Call it after all checks that may refuse the command.
   void begin(const FilmPlan& plan);
   void make(const FilmPlan& plan, FilmParts parts);
-  /// If the run is complete, simulates companion runs, from which the error is estimated.
+  /// If the run is complete, estimates its error from companion runs (run_error/companions.hpp).
   void estimate_error(const scene::Scene& scene, run_error::Recorder& recorder);
-  /// Writes all reports; after an early end, also prints how to continue. Returns the exit code.
+  /// Writes all reports. After an early end, also prints how to continue. Returns the exit code.
   ExitCode end(const FilmPlan& plan, const Store* store);
 
  private:
@@ -249,7 +249,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   report_.frames = std::move(result.frames);
   report_.written = result.written;
   report_.gl = result.painter;
-  // An unfinished video counts as no frames; each written picture is complete.
+  // An unfinished video has no frames that count. Pictures count, since each written one is complete.
   if (plan.target.kind == Kind::video && !result.finished_output) {
     report_.written = 0;
     for (FrameRecord& record : report_.frames) record.written = false;
@@ -276,7 +276,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
 
 void Session::end_early(const FilmPlan& plan, const Store* store) {
   std::error_code ignored;
-  // The output may have been removed in the meantime.
+  // The user may have removed the output in the meantime.
   const fs::path place =
       fs::absolute(plan.draws() ? plan.target.file(plan.wanted.begin) : fs::path(report_.output), ignored);
   const int written = plan.draws() ? report_.written : static_cast<int>(report_.frames.size());
@@ -285,14 +285,14 @@ void Session::end_early(const FilmPlan& plan, const Store* store) {
     report_.message += fmt::format("; {} frame{} kept in {}", kept, kept == 1 ? " is" : "s are", report_.output);
   else
     report_.message += written > 0 ? "; no frame is kept" : "; no frame was written";
-  // If the simulation failed, it would fail again at the same frame, so --resume is not suggested.
+  // Does not suggest --resume after a failed simulation, which would fail again at the same frame.
   if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed &&
       fs::exists(store->folder(), ignored))
     report_.message += "; the same command with --resume continues from there";
 }
 
-// Writes side files first, since a failure to write them affects the exit code. Prints the message last, where users
-// see it.
+// Writes side files (effective scene, statistics, log) first, since a failure to write them changes the exit code.
+// Prints the message last, where users see it.
 ExitCode Session::end(const FilmPlan& plan, const Store* store) {
   if (report_.exit_code != ExitCode::ok) end_early(plan, store);
   if (store != nullptr) {
@@ -344,7 +344,7 @@ fs::path working_cache(const OutputTarget& target, const std::string& scene) {
   return file.parent_path() / ("." + name + ".weft-cache");
 }
 
-/// Simulates into `store`, which may already have the first frames.
+/// Simulates the frames that `store` does not have yet, and carries out the plan.
 ExitCode make_from_scene(Session& session, const scene::Scene& scene, const FilmPlan& plan, const PathLedger& paths,
                          Store& store) {
   if (!store.resumes()) store.clear();
@@ -368,7 +368,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
 
 }  // namespace
 
-// Simulates, draws and writes concurrently. Simulated frames are kept until the output is complete.
+// Simulates, draws and writes at the same time. Keeps the simulated frames in a cache until the output is complete.
 ExitCode run(const RunOptions& options) {
   Session session(options);
   const scene::Scene scene = load_scene(options.common);
@@ -383,13 +383,13 @@ ExitCode run(const RunOptions& options) {
   const bool overwrite = options.common.overwrite;
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
       is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
-    if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed during removal
+    if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed while it removed this cache
     log::info(fmt::format("note: {} is complete already: frames {}", plan.target.text, plan.wanted.text()));
     return ExitCode::ok;
   }
   if (!options.resume) paths.check_absent(overwrite);
   paths.check_writable();
-  // If the camera path is computed, pictures are drawn from the store, so the store must not fail.
+  // If the camera path is computed, pictures are drawn from the store, so the run must end if the store fails.
   Store store(cache, plan.finds_camera ? Store::Need::required : Store::Need::helpful, plan.scene, plan.scene_text);
   if (options.resume) {
     store.find_start();
@@ -404,7 +404,6 @@ ExitCode run(const RunOptions& options) {
   return code;
 }
 
-// Simulates into a frame cache, and writes meshes if requested.
 ExitCode simulate(const SimulateOptions& options) {
   Session session(options);
   const scene::Scene scene = load_scene(options.common);

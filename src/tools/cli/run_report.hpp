@@ -17,7 +17,7 @@ namespace weft::cli {
 /// The outcome of one frame.
 struct FrameRecord {
   simulation::FrameReport report;
-  bool written = false;  ///< wanted, and completed by all stages; false again if its video is not finished
+  bool written = false;  ///< all stages have completed the frame; set back to false if the video cannot be finished
   StageTime render, encode, meshes;
 };
 
@@ -35,26 +35,27 @@ struct RunReport {
   std::string gl;
   int width = 0, height = 0;  ///< [pixels]; 0 if nothing is drawn
   double fps = 0;
-  std::string output;               ///< as the user named it, or the default
+  std::string output;               ///< path as the user typed it, or the default
   std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
-  bool replayed = false;            ///< frames were read from a cache, not simulated
+  bool replayed = false;            ///< whether frames were read from a cache instead of simulated
   FrameRange wanted;
   std::vector<FrameRecord> frames;  ///< simulated or read frames
-  int written = 0;
-  StageTime cache;                 ///< storing frames and states
-  std::uintmax_t cache_bytes = 0;  ///< written to the cache
-  StageTime setup;                 ///< reading the scene and building the simulation, or opening the cache
-  double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
-  std::int64_t peak_memory = 0;    ///< [bytes]
+  int written = 0;                  ///< number of frames with FrameRecord::written
+  StageTime cache;                  ///< time for storing frames and states
+  std::uintmax_t cache_bytes = 0;   ///< written to the cache
+  StageTime setup;               ///< time for reading the scene and building the simulation, or for opening the cache
+  double wall_s = 0, cpu_s = 0;  ///< of the whole process, all threads
+  std::int64_t peak_memory = 0;  ///< [bytes]
   std::vector<std::string> warnings;
-  std::vector<std::string> notes;  ///< harmless remarks, such as a body surface moved to make space for cloth
+  /// Remarks that need no action, such as that a body surface was moved to make space for cloth.
+  std::vector<std::string> notes;
   ExitCode exit_code = ExitCode::ok;
   std::string message;                            ///< why the run ended early; empty if it did not
   std::optional<run_error::ErrorEstimate> error;  ///< if requested
 };
 
 struct StageTotals {
-  StageTime simulate, collide, forces, preconditioner, linear;  ///< all but the first are parts of `simulate`
+  StageTime simulate, collide, forces, preconditioner, linear;  ///< all others are parts of `simulate`
   StageTime render, encode, meshes;
 };
 
@@ -62,9 +63,9 @@ StageTotals total_times(const std::vector<FrameRecord>& frames);
 
 struct StepTotals {
   long long accepted = 0, rejected = 0;
-  long long inexact = 0;      ///< accepted steps with an error above the tolerance
-  double error_estimate = 0;  ///< of the time steps, sum over the frames [m]
-  double solver_error = 0;    ///< residual error of the solver, sum over the frames [m]
+  long long inexact = 0;      ///< accepted steps whose error exceeds the tolerance
+  double error_estimate = 0;  ///< estimated error of the time steps, sum over the frames [m]
+  double solver_error = 0;    ///< error due to residuals of the solver, sum over the frames [m]
 };
 
 StepTotals total_steps(const std::vector<FrameRecord>& frames);

@@ -34,7 +34,7 @@ scene::Scene load_scene(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   // Passes the frame rate as an override, so that scenes with different rates get different hashes.
   if (options.fps) overrides.push_back(fmt::format("time.fps={}", *options.fps));
-  // Unlike other looks, `strain` needs values that the simulation must record, so it becomes part of the scene.
+  // Unlike other looks, `strain` shows values that the simulation must record, so it becomes a change of the scene.
   if (options.look == frame::Stage::Look::strain) overrides.emplace_back("render.look=\"strain\"");
   scene::LoadResult loaded = scene::load(options.scene, overrides);
   if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));

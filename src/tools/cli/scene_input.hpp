@@ -1,4 +1,4 @@
-// Reading the scene of the command line as a checked Scene.
+// Reads and checks the scene that the command line names.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace weft::cli {
 
-/// Reads the scene with the changes of the command line. Throws Error(scene_invalid) with all mistakes, one per line,
-/// and Error(usage) for a camera that the scene does not have.
+/// Reads the scene and applies the changes that the command line asks for. Throws Error(scene_invalid) with all
+/// mistakes, one per line, and Error(usage) if the scene does not have the camera.
 scene::Scene load_scene(const SceneOptions& options);
 
 /// Registers the scene file and all files that it names.
@@ -26,12 +26,12 @@ std::string mistakes_text(const scene::LoadResult& loaded);
 /// Throws Error(usage) with the most similar name if `camera` is not in `names`.
 void check_camera(const std::vector<std::string>& names, const std::string& camera);
 
-/// The settings for drawing. `size` and `camera` are used if the options set no others.
+/// The settings for drawing. `size` and `camera` are used if `options` sets none.
 render::Settings render_settings(const PictureSize& size, const std::string& camera, const SceneOptions& options);
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
 
-/// The manifest of a frame cache of the scene, without its objects. `settings` are the defaults with which `weft
-/// render` draws the cache.
+/// The manifest of a frame cache of the scene, without its objects. `settings`: size and camera with which `weft
+/// render` draws the cache by default.
 cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& settings);
 
 /// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps"; `particles`: of all cloths and ropes.

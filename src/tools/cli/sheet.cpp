@@ -17,16 +17,16 @@
 namespace weft::cli {
 namespace {
 
-constexpr int kPictureWidth = 400;  // [pixels]; four side by side fill a screen
+constexpr int kPictureWidth = 400;  // [pixels]; four pictures side by side fill a screen
 constexpr int kColumns = 4;
 
-/// The default size of a small picture, with the aspect ratio of the scene.
+/// Default size of each picture on the sheet, with the aspect ratio of the scene.
 PictureSize small_size(const render::Settings& settings) {
   const double height = static_cast<double>(kPictureWidth) * settings.height / settings.width;
   return {kPictureWidth, std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-/// Selects `count` frames as evenly as possible, including the first and the last.
+/// Selects `count` frames as evenly as possible, with the first and the last; the middle one if `count` is 1.
 std::vector<int> evenly_spaced(const std::vector<int>& frames, int count) {
   const auto all = static_cast<int>(frames.size());
   if (count >= all) return frames;
@@ -44,7 +44,7 @@ std::string heading(const Stills& stills, const std::vector<int>& frames) {
                      stills.scene().frame_count, stills.scene().fps);
 }
 
-/// The picture of a frame with its caption.
+/// A picture with the number and the time of its frame as caption.
 image::SheetPicture with_caption(image::Image picture, int frame, double time_s) {
   return {std::move(picture), fmt::format("frame {}", frame), fmt::format("{:.2f} s", time_s)};
 }

@@ -24,7 +24,7 @@ std::array<struct sigaction, kSignals.size()> g_previous;
 // Signal handlers make only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
 
 void say(std::string_view text) {
-  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // standard error may be closed: no remedy
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // if standard error is closed, nothing can be done
 }
 
 [[noreturn]] void end_at_once(int) {
@@ -46,11 +46,11 @@ void on_signal(int signal) {
   }
 }
 
-/// Installs a handler for all signals that are not ignored, and keeps the previous ones.
+/// Installs a handler for those of kSignals that are not ignored, and stores the previous handlers.
 void install(void (*handler)(int), std::array<struct sigaction, kSignals.size()>& previous) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;  // interrupted system calls are restarted
+  action.sa_flags = SA_RESTART;  // interrupted system calls continue
   sigemptyset(&action.sa_mask);
   for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);
   for (std::size_t i = 0; i < kSignals.size(); ++i) {

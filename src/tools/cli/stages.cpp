@@ -20,7 +20,7 @@ namespace weft::cli {
 namespace {
 
 bool shows_single_color(const image::Image& image) {
-  // If the pixels equal those shifted by one, all pixels are equal.
+  // If each pixel equals the next one, all are equal.
   return image.rgb.size() > 3 && std::equal(image.rgb.begin() + 3, image.rgb.end(), image.rgb.begin());
 }
 
@@ -52,7 +52,7 @@ class GlPainter : public FramePainter {
   bool deep_ = false, warned_ = false;
 };
 
-// Adds the name of each object under its number in the layer id.object.
+// Adds the name of each object, under the number that the object has in the layer id.object.
 Metadata name_objects(Metadata metadata, const frame::FrameSnapshot& snapshot) {
   int number = render::kFirstSurface;
   for (const auto& surface : snapshot.surfaces)
@@ -89,7 +89,7 @@ class OutputWriter : public FrameWriter {
     video::Settings video;
     video.width = settings_.width;
     video.height = settings_.height;
-    // If only every step-th frame is drawn, a lower frame rate keeps the speed of the motion.
+    // If only every step-th frame is drawn, a lower frame rate keeps the true speed of the motion.
     video.fps = settings_.fps / settings_.frames.step;
     video.codec = settings_.codec;
     video.crf = settings_.crf.value_or(video.crf);

@@ -1,4 +1,4 @@
-// The stages of the pipeline that draw and write frames: interfaces, and the implementations that commands use.
+// The stages of the pipeline (film.hpp) that draw and write frames: interfaces and implementations.
 #pragma once
 
 #include <filesystem>
@@ -25,11 +25,10 @@ struct Picture {
   image::Image16 deep = {};   ///< with 16 bits per channel, if requested
 };
 
-/// Draws frames.
 class FramePainter {
  public:
   virtual ~FramePainter() = default;
-  /// Sets the camera path. Without one, a computed camera is derived from the first drawn frame alone.
+  /// Sets the camera path. Without it, a computed camera depends only on the first drawn frame.
   virtual void set_camera_path(render::CameraPath) {}
   /// `before`: the previous wanted frame, for motion blur and layers; null if there is none or it is not needed.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
@@ -37,7 +36,7 @@ class FramePainter {
   virtual std::string description() const = 0;
 };
 
-/// Writes pictures. If it is destroyed without finish(), no incomplete file may remain.
+/// Writes pictures. If the object is destroyed without finish(), it must leave no incomplete file.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
@@ -50,10 +49,10 @@ std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
 
 using Metadata = std::map<std::string, std::string>;
 
-/// Metadata of video and stills: scene, scene_hash, weft_version, gl, fps, scene_frames, camera, quality and others.
+/// Metadata of videos and pictures: scene, scene_hash, weft_version, gl, fps, scene_frames, camera, quality and others.
 Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl);
 
-/// Adds the metadata of one still: frame and time_s.
+/// Adds the metadata of a single picture: frame and time_s.
 Metadata describe_still(Metadata metadata, int frame, double time_s);
 
 struct WriterSettings {
@@ -67,13 +66,12 @@ struct WriterSettings {
   Metadata metadata = {};
 };
 
-/// Returns the writer of a video or of pictures.
 std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings);
 
-/// `DIR/<object>_<frame:05>.ply`.
+/// Names of the meshes of an object: `<folder>/<object>_<frame:05>.ply`.
 FramePattern mesh_files(const std::filesystem::path& folder, const std::string& object);
 
-/// Writes each object of the snapshot. Throws Error(output_failed).
+/// Writes a PLY file for each object of the snapshot. Throws Error(output_failed).
 void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot);
 
 }  // namespace weft::cli

@@ -1,4 +1,4 @@
-// Text output of commands.
+// Writes text to standard output.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,11 +9,11 @@
 
 namespace weft::cli {
 
-/// Writes the text at once. Returns silently if the reader has closed the pipe, as in `weft man | head`. Throws
-/// Error(output_failed) for any other failure.
+/// Writes and flushes the text. If the reader has closed the pipe, as in `weft man | head`, returns without an error.
+/// Throws Error(output_failed) for any other failure.
 void write_standard_output(std::string_view text);
 
-/// Likewise, with control characters escaped.
+/// The same for a formatted text, with control characters escaped.
 template <class... Args>
 void print(fmt::format_string<Args...> format, Args&&... args) {
   write_standard_output(log::without_controls(fmt::format(format, std::forward<Args>(args)...)));

@@ -21,19 +21,19 @@ using simulation::IntersectionPlace;
 // Maximum number of close-ups.
 constexpr std::size_t kCloseUps = 5;
 constexpr double kCloseUpAngle = 30;  // vertical field of view [degrees]
-// Height of a close-up [m]: minimum, and ratio to the size of the place.
+// Height of the region that a close-up shows: minimum [m], and ratio to the size of the place.
 constexpr double kMinCloseUpHeight = 0.1, kCloseUpHeightRatio = 1.6;
-// A later candidate view must show more by this factor to replace an earlier one.
+// A later camera must show more by this factor to replace an earlier one.
 constexpr double kMinVisibilityGain = 1.25;
-constexpr double kMarkWidth = 1.5 / 360;  // outline width over picture height
+constexpr double kMarkWidth = 1.5 / 360;  // width of the outline, as a fraction of the picture height
 constexpr std::array<std::uint8_t, 3> kMark{225, 20, 40};
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
 }
 
-// Fraction of the picture in which the triangles of a place are visible. The triangles are rendered as the only cloth,
-// and first, so that they hide the original surface, which is in the same place.
+// Fraction of the picture that shows triangles of a place. saliency_of() measures how much cloth is visible, so these
+// triangles are the only cloth. They are drawn first, so that they hide the original surface, which has the same depth.
 double visible_fraction(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                         const frame::Camera& camera, double aspect) {
   auto marks = std::make_shared<frame::Surface>();
@@ -56,8 +56,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
   return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
 }
 
-// Of 32 cameras around a place, the one that shows most of it. A later camera must show more by the factor
-// kMinVisibilityGain, so that views from the front and from above are preferred.
+// Of 32 cameras around a place, the one that shows most of it. The factor kMinVisibilityGain prefers the first cameras,
+// which look from the front and from above.
 frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                                    double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
@@ -84,7 +84,7 @@ frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const I
 }
 
 void draw_line(image::Image& image, const Vec2& from, const Vec2& to, int width) {
-  // Skips very long lines: they end far outside the picture.
+  // Skips very long lines, which end far outside the picture.
   const double length = (to - from).norm();
   if (!(length < 4.0 * (image.width + image.height))) return;
   const int steps = std::max(1, static_cast<int>(std::ceil(length)));

@@ -10,9 +10,8 @@
 
 namespace weft::cli {
 
-/// Draws the whole scene (from its camera, or framed automatically), and close-ups of the places with the most pairs of
-/// touching or crossing triangles. These triangles are outlined in red, also if they are hidden. `painter` must use the
-/// first camera of each snapshot.
+/// Draws the whole scene, and close-ups of the places with the most pairs of touching or crossing triangles. Outlines
+/// these triangles in red, even if something hides them. `painter` must use the first camera of each snapshot.
 std::vector<image::SheetPicture> draw_start(const production::StartView& start, const render::Settings& settings,
                                             FramePainter& painter);
 

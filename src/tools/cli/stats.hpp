@@ -1,4 +1,4 @@
-// The JSON of --stats and --log-json.
+// The JSON that --stats and --log-json write.
 #pragma once
 
 #include <filesystem>

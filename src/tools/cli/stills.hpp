@@ -23,20 +23,20 @@ class Stills {
 
   /// Description of the scene.
   const cache::Manifest& scene() const { return scene_; }
-  /// Settings for drawing: those of the command line; if it gives no size or camera, those of the scene.
+  /// Settings for drawing. If the command line gives no size or camera, those of the scene.
   const render::Settings& settings() const { return settings_; }
   /// The available frames, ascending; at least one.
   const std::vector<int>& frames() const { return frames_; }
 
   virtual void add_inputs(PathLedger& paths) const = 0;
-  /// Number of frames to simulate until frame `last` is available.
+  /// Number of frames to simulate, with the preroll, until frame `last` is available.
   virtual int cost(int last) const = 0;
-  /// Returns a frame. Call it with ascending frame numbers. Throws Error(interrupted) after SIGINT or a similar signal.
+  /// Returns a frame. Call it with ascending frame numbers. Throws Error(interrupted) after a stop signal.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
-  /// The camera path, found from the frames of the cache or from those simulated so far. Call it after all wanted
-  /// frames were requested.
+  /// The camera path, computed from all frames of the cache or from those simulated so far. Call it after at() for all
+  /// frames to draw.
   render::CameraPath camera();
-  /// Whether SIGINT or a similar signal has requested an end.
+  /// Whether a stop signal has arrived.
   bool is_stopped() const { return signals_.requested(); }
   /// Replaces the picture size in settings(). Call it before the first frame.
   void set_size(const PictureSize& size);
@@ -49,14 +49,14 @@ class Stills {
   cache::Manifest scene_;
   render::Settings settings_;
   std::vector<int> frames_;
-  std::optional<render::CameraPath> camera_;  // set if the camera must be computed
+  std::optional<render::CameraPath> camera_;  // set if the camera is a computed one
 };
 
 /// Opens `options.scene`: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.
 std::unique_ptr<Stills> open_stills(const SceneOptions& options);
 
-/// The file that `-o` names, or output/<default_name>, checked before any work. Throws Error(usage) if it is not a PNG
-/// or is an input, Error(output_failed) if it exists and `overwrite` is false, or cannot be written.
+/// Returns `output`; if it is empty, output/<default_name>. Throws Error(usage) if this is not a PNG file or an input,
+/// and Error(output_failed) if it cannot be written, or exists and `overwrite` is false.
 std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
                                  const std::string& default_name, bool overwrite);
 

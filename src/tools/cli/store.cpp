@@ -13,8 +13,8 @@
 namespace weft::cli {
 namespace {
 
-// A state is saved again only if the last save took at most this fraction of the time since then, because a state is
-// several times as large as a frame, and most states are never read.
+// A state is saved again only if the last save took at most this fraction of the wall time since then. Saving is
+// limited since a state is several times as large as a frame, and most states are never read.
 constexpr double kMaxSaveTimeRatio = 0.01;
 
 }  // namespace
@@ -26,7 +26,7 @@ Store::~Store() {
   try {
     if (lock_.empty()) lock_.remove();
   } catch (const Error&) {
-    return;  // a folder that cannot be accessed is kept
+    return;  // keeps a folder that cannot be accessed
   }
 }
 
@@ -67,7 +67,7 @@ void Store::find_start() {
   }
 }
 
-// Adds the hashes of former scenes to the manifest, since stored frames have the looks of these scenes until the run
+// Adds the hashes of former scenes to the manifest. The stored frames have the looks of these scenes until the run
 // reads and stores them again.
 void Store::note_former_looks(const cache::Manifest& found) {
   std::set<std::uint64_t> former(found.former_hashes.begin(), found.former_hashes.end());
@@ -104,7 +104,7 @@ void Store::note_outputs(std::set<std::string> outputs) const {
   }
 }
 
-// Ends storing. If a state is stored, keeps the stored frames: if the output fails for the same reason, they are the
+// Ends storing. Keeps the stored frames if --resume can use them: if the output fails for the same reason, they are the
 // only result.
 void Store::give_up(const std::string& reason) {
   log::warn(reason + "; the run continues, but if it is interrupted, frames from here on must be simulated again");
@@ -120,7 +120,7 @@ void Store::attempt(const Write& write) {
   try {
     write();
   } catch (const Error& error) {
-    // If the user has removed the folder of the output, the run must not continue.
+    // If the user has removed the folder of the output, the run must end.
     std::error_code ignored;
     if (need_ == Need::required || !std::filesystem::exists(folder().parent_path(), ignored)) throw;
     give_up(error.what());

@@ -1,4 +1,4 @@
-// The frame cache that a run fills while it works; also finds where an earlier run can be resumed.
+// The frame cache that a run fills while it simulates, and from which --resume continues.
 #pragma once
 
 #include <filesystem>
@@ -16,19 +16,19 @@
 
 namespace weft::cli {
 
-/// A frame from its source.
+/// A frame that a FrameSource has made.
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                       ///< not yet in the cache, or cached with former looks
-  const production::SceneSimulation* simulation = nullptr;  ///< in the state of this frame; null if the frame was read
+  bool fresh = false;                                       ///< not in the cache yet, or there with former looks
+  const production::SceneSimulation* simulation = nullptr;  ///< with the state of this frame; null if it was read
 };
 
 class Store {
  public:
   enum class Need {
     required,  ///< a storage failure ends the run
-    helpful,   ///< if storing fails or the disk is nearly full, storing ends with a warning; the run continues
+    helpful,   ///< if storing fails or the disk is nearly full, warns and stops storing; the run continues
   };
 
   /// Locks `folder` against other writers. Throws Error(output_failed).
@@ -38,51 +38,52 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// Number of frames that an earlier run has left.
+  /// Number of frames of an earlier run.
   std::size_t leftover_frames() const;
   bool has_leftover() const { return cache::is_cache(lock_.folder()); }
 
-  /// Finds the frame from which the earlier run can be resumed. If its files are damaged, reports them and starts at
-  /// the beginning. Throws Error(output_failed) if the scene of the earlier run differs in more than looks, or if
-  /// another build of the program made it.
+  /// Finds the frame from which the earlier run can be resumed. If files are damaged, reports them; the run then starts
+  /// at the beginning. Throws Error(output_failed) if the scene of the earlier run differs in more than looks, or if
+  /// another build of the program made the cache.
   void find_start();
   /// Whether find_start() found a state to resume from.
   bool resumes() const { return reader_ != nullptr; }
-  /// Removes what an earlier run has left.
+  /// Removes the files of an earlier run.
   void clear() const { lock_.clear(); }
 
-  /// The outputs of the run that is resumed; their existing files may be replaced.
+  /// The outputs of the run that is resumed, as PathLedger::outputs(). Their existing files may be replaced.
   std::set<std::string> outputs() const;
-  /// Whether a file is the effective scene of the run that is resumed, as that run has written it.
+  /// Whether a file is the effective scene of the resumed run, unchanged since that run wrote it.
   bool holds_scene(const std::filesystem::path& file) const;
   /// Adds to outputs().
   void note_outputs(std::set<std::string> outputs) const;
 
   /// The cache of the earlier run; call it only if resumes().
   const cache::Reader& earlier() const { return *reader_; }
-  /// Whether the cache has this frame and all earlier ones, with the current looks; call it only if resumes().
+  /// Whether the cache has this frame and all earlier ones with the current looks; call it only if resumes().
   bool holds(int frame) const;
   /// The stored state, from which the simulation continues; call it only if resumes().
   const cache::SolverState& start() const { return start_; }
 
-  /// Starts storing frames of these objects. While a film is made, only the simulating thread may call open() and the
+  /// Starts storing frames of these objects. While make_film() runs, only its simulating thread may call open() and the
   /// functions below.
   void open(std::vector<frame::ObjectInfo> objects);
-  /// Stores the frame if it is fresh, and from time to time the state of the simulation.
+  /// Stores the frame if it is fresh. Calls save_if_cheap() if the frame is simulated.
   void keep(const MadeFrame& frame);
-  /// Reads a frame that was stored in this run or an earlier one.
+  /// Reads a frame that this run or an earlier one has stored.
   frame::SnapshotPtr stored(int frame);
   /// Saves the state of the last frame. If this fails, an earlier state remains.
   void keep_last_state();
-  /// Saves the state if this run has saved none yet, or if the last save took at most 1 % of the wall time since then.
+  /// Saves the state of the simulation if this run has saved none yet, or if the last save took at most 1 % of the wall
+  /// time since then.
   void save_if_cheap(const production::SceneSimulation& simulation, int frame);
   void save(const production::SceneSimulation& simulation, int frame);
 
   const std::filesystem::path& folder() const { return lock_.folder(); }
-  /// Removes the folder. Must not be called while frames are added.
+  /// Removes the folder. No frame may be added at the same time.
   void remove();
   const std::vector<frame::ObjectInfo>& objects() const { return manifest_.objects; }
-  /// Whether a state is stored.
+  /// Whether a state is stored, from which --resume can continue.
   bool can_resume() const { return saved_frame_ || reader_; }
   StageTime time() const { return time_; }
   std::uintmax_t bytes() const { return writer_ ? writer_->bytes_added() : 0; }
@@ -100,13 +101,13 @@ class Store {
   std::unique_ptr<cache::Reader> reader_;      // of the earlier run
   std::unique_ptr<cache::Reader> now_reader_;  // of this run
   cache::SolverState start_;
-  int current_frames_ = 0;  // number of frames, from frame 0 on, that the earlier run left with the current looks
+  int current_frames_ = 0;  // frames 0 to current_frames_ − 1 of the earlier run have the current looks
   std::unique_ptr<cache::Writer> writer_;
   std::string state_;  // buffer, kept to reuse its memory
   WallTimer since_save_;
-  double save_seconds_ = 0;  // of the last save
+  double save_seconds_ = 0;  // wall time of the last save [s]
   std::optional<int> saved_frame_;
-  const production::SceneSimulation* simulation_ = nullptr;  // in the state of frame last_
+  const production::SceneSimulation* simulation_ = nullptr;  // its state is that of frame last_
   int last_ = 0;
   StageTime time_;
 };

@@ -42,7 +42,7 @@ Row stage_row(const char* name, const StageTime& time, int frames) {
 
 std::string times_table(const RunReport& report) {
   const StageTotals totals = total_times(report.frames);
-  // Frame 0 is not simulated: it is the given start.
+  // Frame 0 is the given start, which is not simulated.
   const int simulated = std::max(0, static_cast<int>(report.frames.size()) - 1);
   std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
                         stage_row("set up", report.setup, 0),
@@ -73,7 +73,7 @@ std::string joule(double energy) {
 }
 
 // One sentence: the error of positions, its main source, and how to reduce it. Without --error, it reports only the
-// frame with the largest error, since the errors of frames may cancel or grow later.
+// frame with the largest error: the errors of frames do not add up, since later motion may reduce or amplify them.
 std::string error_text(const RunReport& report) {
   if (report.error) return error_sentence(*report.error, report.cloth_size);
   const auto of_frame = [](const FrameRecord& record) {
@@ -140,7 +140,7 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
     return std::ranges::max_element(frames, {}, [&](const FrameRecord& r) { return std::invoke(value, r.report); })
         ->report;
   };
-  // Where a condition holds, such as "in 3 of 76 frames, first in frame 12"; empty if nowhere.
+  // The frames for which `holds` is true, such as "in 3 of 76 frames, first in frame 12"; empty if there are none.
   const auto where = [&](auto holds) {
     const auto in = [&](const FrameRecord& r) { return holds(r.report); };
     const auto count = std::ranges::count_if(frames, in);

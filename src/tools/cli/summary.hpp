@@ -6,7 +6,7 @@
 
 namespace weft::cli {
 
-/// Result and cost of a run, for people: several lines, without a line feed at the end. The last lines are the notes
+/// Describes result and cost of a run in several lines, without a line feed at the end. The last lines are the notes
 /// and warnings of the report.
 std::string summary(const RunReport& report);
 

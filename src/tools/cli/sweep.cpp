@@ -1,5 +1,5 @@
-// weft sweep: many runs of one scene. Each run is `weft run` in its own process, so that a failure does not affect the
-// others and each run can be repeated alone.
+// weft sweep: many runs of one scene. Each run is a process `weft run`, so that a failure does not affect other runs,
+// and each run can be repeated alone.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -29,7 +29,6 @@ namespace fs = std::filesystem;
 
 constexpr auto kProcessPollPause = 20'000;  // [microseconds]
 
-/// A run and its process.
 struct Job : SweepJob {
   pid_t process = -1;
   ExitCode code = ExitCode::ok;
@@ -37,7 +36,7 @@ struct Job : SweepJob {
 
   fs::path log() const { return folder / "run.log"; }
 
-  /// Exit code of the run, from the files that it has left.
+  /// Exit code of the run according to its statistics; frames_missing if they have none.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
     const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
@@ -76,8 +75,8 @@ class Sweep {
   }
 
  private:
-  /// Removes the statistics of all runs. Otherwise, if this sweep is stopped, a later one would take runs that are not
-  /// repeated yet, possibly with other options, for done.
+  /// Removes the statistics of all runs, by which a sweep recognises finished runs. If this sweep is stopped, the next
+  /// one then repeats the remaining runs, which may have had other options.
   void forget_results() const {
     std::error_code none;
     for (const Job& job : jobs_) fs::remove(job.stats(), none);
@@ -104,8 +103,8 @@ class Sweep {
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
-        // A terminal signals the whole process group. Other senders may signal this process alone, so this process
-        // passes the signal on to the runs.
+        // A terminal signals the whole process group, but other senders may signal this process alone. So it passes the
+        // signal on to the runs.
         if (!std::exchange(told, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }
@@ -124,7 +123,7 @@ class Sweep {
       std::erase_if(running, [&](Job* job) {
         int status = 0;
         if (::waitpid(job->process, &status, WNOHANG) == 0) return false;
-        // A process that ended without an exit code was killed by a signal: from outside or for lack of memory.
+        // A process without an exit code was killed by a signal, for example for lack of memory.
         job->code = WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
         const std::string how = job->code == ExitCode::ok
                                     ? "done"
@@ -166,7 +165,7 @@ class Sweep {
                             results.size(), options_.overwrite ? "starts again" : "continues"));
       return ExitCode::interrupted;
     }
-    std::vector<std::string> made;  // there is no sheet if no run has a picture
+    std::vector<std::string> made;  // a file may be missing: there is no sheet if no run has a picture
     for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
       if (fs::is_regular_file(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));

@@ -33,7 +33,7 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
   const std::vector<Changes> list = options.list.empty() ? std::vector<Changes>{} : read_list(options.list);
   std::vector<SweepJob> jobs;
   for (SweepRun& run : plan_sweep(list, options.axes)) jobs.push_back({.run = std::move(run)});
-  std::vector<std::string> mistakes;  // each mistake once, even if several runs have it
+  std::vector<std::string> mistakes;  // each text once, even if several runs have the same mistakes
   std::map<std::uint64_t, std::size_t> known;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     SweepJob& job = jobs[i];

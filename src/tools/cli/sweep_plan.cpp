@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxSweepKeys = 200;  // per run; far more than a scene has
-constexpr std::size_t kMaxNameBytes = 120;  // [bytes]; file systems allow 255 for a name
+constexpr std::size_t kMaxNameBytes = 120;  // file systems allow 255
 
 std::string trimmed(const std::string& text) {
   const auto blank = [](unsigned char c) { return std::isspace(c) != 0; };
@@ -50,7 +50,7 @@ std::vector<std::string> split_values(const std::string& text) {
   return values;
 }
 
-// Removes the byte order mark that spreadsheets put before UTF-8. Throws for UTF-16.
+// Removes the byte order mark with which spreadsheets begin UTF-8 files. Throws if the text is UTF-16.
 std::string without_byte_order_mark(const fs::path& file, const std::string& text) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
     throw Error(ExitCode::asset_unreadable, "{}:1:1: expected UTF-8, got UTF-16; save the table as CSV UTF-8",
@@ -82,9 +82,9 @@ std::vector<Changes> read_csv(const fs::path& file, const std::string& text) {
   std::vector<std::string> keys;
   std::vector<Changes> rows;
   std::istringstream in(text);
-  std::string whole;          // the row as far as it is read: several lines if quotes contain line feeds
-  int number = 0, first = 1;  // of the line, and of the first line of the row
-  bool quoted = false;        // a doubled quote changes nothing
+  std::string whole;          // lines of the current row; several if a quoted field contains line feeds
+  int number = 0, first = 1;  // number of the line, and of the first line of the row
+  bool quoted = false;        // whether a quoted field continues on the next line; doubled quotes do not matter
   for (std::string line; std::getline(in, line);) {
     ++number;
     whole += line;
@@ -124,7 +124,7 @@ void flatten(const toml::table& table, const std::string& above, Changes& change
     }
     std::ostringstream text;
     if (const auto* number = node.as_floating_point())
-      text << fmt::format("{}", number->get());  // shortest exact form
+      text << fmt::format("{}", number->get());  // shortest text that reads back exactly
     else
       node.visit([&](const auto& value) { text << value; });
     changes.emplace_back(path, text.str());
@@ -230,7 +230,7 @@ std::vector<Changes> parse_list(const fs::path& file, const std::string& raw) {
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes) {
   std::vector<SweepRun> runs;
   std::set<Changes> known;
-  std::map<std::string, std::set<std::string>> values;  // by key: the values that runs set
+  std::map<std::string, std::set<std::string>> values;  // by key: all values that runs set
   for (Changes& changes : combine(list, axes)) {
     std::set<std::string> keys;
     for (const auto& [key, value] : changes)
@@ -250,7 +250,7 @@ std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::ve
   std::map<std::string, std::string> short_names;
   for (const std::string& key : differing) short_names[key] = short_name(key, differing);
   std::set<std::string> names;
-  std::map<std::string, int> copies;  // number of runs with the same name, so that numbering takes linear time
+  std::map<std::string, int> copies;  // number of runs so far with the same name; makes numbering linear in time
   for (SweepRun& run : runs) {
     for (const auto& [key, value] : run.changes)
       if (differing.contains(key)) run.difference.emplace_back(short_names[key], value);

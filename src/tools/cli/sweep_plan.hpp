@@ -10,7 +10,7 @@
 
 namespace weft::cli {
 
-/// Maximum number of runs, so that a mistake does not start too many: 10,000 runs of ten seconds take a day.
+/// Limit on the number of runs, so that a mistake does not start too many. 10,000 runs of ten seconds each take a day.
 inline constexpr std::size_t kMaxRuns = 10'000;
 
 /// A key of the scene, and its values as the text that --set expects.
@@ -22,24 +22,24 @@ struct Axis {
 /// Parses `key=a,b,c`; commas within brackets, braces and quotes do not separate values. Throws Error(usage).
 Axis parse_axis(const std::string& text);
 
-/// The changes of one run: keys and values in the given order.
+/// The changes of one run: keys and values, in the order in which the user gave them.
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
-/// Reads the rows of a list: CSV with the keys in its first line, or TOML with a table [[run]] for each. Throws
-/// Error(asset_unreadable) with the line.
+/// Reads a list of runs: CSV with the keys in its first line and one run per row, or TOML with a table [[run]] for each
+/// run. Throws Error(asset_unreadable) with the line.
 std::vector<Changes> read_list(const std::filesystem::path& file);
 
 /// Parses the text of a list; the extension of `file` selects the format.
 std::vector<Changes> parse_list(const std::filesystem::path& file, const std::string& raw);
 
 struct SweepRun {
-  Changes changes;     ///< all changes
-  std::string name;    ///< of the run's folder; made of the values that differ between runs
-  Changes difference;  ///< the changes that differ between runs, with the shortest unique suffixes of their keys
+  Changes changes;     ///< all changes of the scene
+  std::string name;    ///< name of the run's folder, made of the values that differ between runs
+  Changes difference;  ///< the changes that differ between runs; keys are shortened to their shortest unique endings
 };
 
-/// Combines each row of the list with each combination of the axes; the last axis varies fastest. Duplicate runs are
-/// removed. Throws Error(usage) if a key is given twice or there are more than kMaxRuns runs.
+/// Combines each row of the list with each combination of the values of all axes; the last axis varies fastest. Removes
+/// duplicate runs. Throws Error(usage) if a key is given twice or there are more than kMaxRuns runs.
 std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::vector<Axis>& axes);
 
 }  // namespace weft::cli

@@ -56,7 +56,7 @@ std::string comparable_of(const Json& stats) {
 }
 
 /// Newton iterations, rejected steps, largest strain, kinetic energy at the end, error, and whether the error is
-/// comparable. The texts are empty if there is no frame.
+/// comparable. If there is no frame, all texts are empty.
 std::vector<std::string> figures_of(const Json& stats) {
   const Json& frames = frames_of(stats);
   if (frames.empty()) return std::vector<std::string>(6);
@@ -92,9 +92,8 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   }
 }
 
-/// Number of columns of the sheet. Runs with the same values of the first keys form a row, along which the last keys
-/// vary, if such a row has 2 to kMaxSheetColumns runs. Otherwise the sheet is about square, with at most
-/// kMaxSheetColumns columns.
+/// Number of columns of the sheet. If 2 to kMaxSheetColumns runs have the same values of the first keys, they form a
+/// row, along which the other keys vary. Otherwise the sheet is about square, with at most kMaxSheetColumns columns.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {
@@ -163,7 +162,7 @@ void write_sweep_sheet(const std::filesystem::path& file, const std::vector<Swee
   const int columns = columns_of(results);
   const image::SheetSize size = image::contact_sheet_size(pictures, columns);
   if (!size.is_writable()) {
-    // As many whole rows as a PNG can hold.
+    // Keeps as many whole rows as a PNG can hold.
     const int too_many = (size.height - image::kMaxPngSide + size.row - 1) / size.row;
     const std::size_t rows = (pictures.size() + columns - 1) / columns;
     pictures.resize((rows - too_many) * columns);

@@ -1,4 +1,4 @@
-// Identification of machine and program.
+// Identifies the processor and the program.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace weft::cli {
 /// Model name of the processor, or "unknown".
 std::string cpu_model();
 
-/// A hash of the program file `weft`, also in the tools program; 16 hexadecimal digits.
+/// Hash of the program file `weft`, also if weft-tools calls it; 16 hexadecimal digits.
 std::string program_fingerprint();
 
 }  // namespace weft::cli

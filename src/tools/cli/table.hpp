@@ -6,9 +6,9 @@
 
 namespace weft::cli {
 
-/// Text with aligned columns, two spaces apart; each line is indented by `indent` spaces and ends with a line feed. One
-/// letter of `alignment` per column: l or r; further columns are left-aligned. Widths count characters, not bytes.
-/// Control characters are escaped, so that each row is one line.
+/// Formats rows as text with aligned columns, two spaces apart. Each line is indented by `indent` spaces and ends with
+/// a line feed. `alignment`: one letter per column, l or r; further columns are left-aligned. Widths count characters,
+/// not bytes. Escapes control characters, so that each row is one line.
 std::string format_table(std::vector<std::vector<std::string>> rows, std::string_view alignment = "",
                          std::size_t indent = 0);
 

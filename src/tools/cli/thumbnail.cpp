@@ -58,7 +58,6 @@ std::string describe_choice(const render::Saliency& saliency, std::size_t count)
       100 * saliency.coverage, saliency.folding, saliency.motion);
 }
 
-/// File name of the picture.
 std::string picture_name(const ThumbnailOptions& options, const Stills& stills) {
   return stills.scene().scene + (options.start ? ".start.png" : ".png");
 }
@@ -69,7 +68,7 @@ bool is_folder(const ThumbnailOptions& options) {
   return !options.output.empty() && (!options.output.has_extension() || may_exist);
 }
 
-/// With several scenes, throws Error(interrupted) if a signal arrived while this scene was drawn.
+/// If there are several scenes, throws Error(interrupted) if a stop signal arrived while this one was drawn.
 void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
   if (stills.is_stopped() && options.scenes.size() > 1)
     throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
@@ -126,7 +125,7 @@ void draw_thumbnail(const ThumbnailOptions& options) {
   check_stopped(options, *stills);
 }
 
-/// Draws one picture per scene into a folder; continues after a failure.
+/// Draws one picture per scene into a folder. If a scene fails, continues with the next one.
 class Batch {
  public:
   explicit Batch(const ThumbnailOptions& options)
@@ -146,7 +145,7 @@ class Batch {
   }
 
  private:
-  /// Checks all scenes and output files before the first is drawn; skips scenes that cannot be read.
+  /// Checks all scenes and output files before the first drawing. Skips scenes that cannot be read.
   std::vector<ThumbnailOptions> plan() {
     std::vector<ThumbnailOptions> drawings;
     PathLedger paths;

@@ -1,4 +1,4 @@
-// The commands that only the tools program has.
+// The commands of weft-tools that weft does not have.
 #include <variant>
 
 #include "core/error.hpp"

@@ -21,9 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kFilePollPause = 100'000;  // for files and for the drawing process [microseconds]
+constexpr auto kFilePollPause = 100'000;  // between checks of the files and of the drawing process [microseconds]
 
-/// Modification times of files; the default time for missing ones.
+/// Modification times of files; a missing file has the default time.
 using Stamps = std::map<fs::path, fs::file_time_type>;
 
 Stamps stamps_of(const std::vector<fs::path>& files) {
@@ -39,7 +39,7 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 class Watch {
  public:
   explicit Watch(const WatchOptions& options) : options_(options) {
-    // Checks that the file that drawings will replace is an earlier drawing of the scene.
+    // Each drawing replaces the output. Checks that an existing output is an earlier drawing of the scene.
     const auto option = std::ranges::find(options.passed_on, "--output");
     const bool start = std::ranges::find(options.passed_on, "--start") != options.passed_on.end();
     const std::string scene = options.scene.stem().string();
@@ -52,10 +52,10 @@ class Watch {
                   output.string(), scene);
   }
 
-  /// Exit code of the last drawing, if their number is limited.
+  /// If the number of drawings is limited, returns the exit code of the last one.
   ExitCode draw_repeatedly() {
     for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {
-      // The list of files of an invalid scene is incomplete, so the scene file is always added.
+      // If the scene is invalid, its list of files is incomplete, so the scene file is always added.
       const scene::LoadResult loaded = scene::load(options_.scene, options_.overrides);
       files_ = {options_.scene};
       files_.insert(files_.end(), loaded.scene.files.begin(), loaded.scene.files.end());
@@ -70,8 +70,8 @@ class Watch {
  private:
   bool changed() const { return stamps_of(files_) != drawn_; }
 
-  /// Draws in a separate process, which reports its own errors. Kills it if a file changes or a stop is requested in
-  /// the meantime. Returns its exit code.
+  /// Draws in a separate process, which reports its own errors. Kills this process if a file changes or a stop is
+  /// requested. Returns its exit code.
   ExitCode draw() const {
     std::vector<std::string> words{own_program().string(),
                                    options_.film ? "run" : "thumbnail",
@@ -86,7 +86,7 @@ class Watch {
     int status = 0;
     while (::waitpid(process, &status, WNOHANG) == 0) {
       if (!is_killed && (stop_.requested() || changed())) {
-        ::kill(process, SIGKILL);  // no partial file gets a final name, as outputs are renamed when complete
+        ::kill(process, SIGKILL);  // leaves no partial output: outputs get their names when they are complete
         is_killed = true;
       }
       ::usleep(kFilePollPause);

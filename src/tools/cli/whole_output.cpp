@@ -14,10 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether an output has the expected metadata. The OpenGL implementation may differ.
+// Whether an output has the expected metadata; the OpenGL implementation may differ.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
-  // An output without one of these options must not have been drawn with it.
+  // These entries exist only if their option is given. If it is not given now, the output must not have the entry.
   for (const char* option : {"camera", "look", "motion_blur"})
     if (found.contains(option) && !expected.contains(option)) return false;
   return std::ranges::all_of(expected, [&](const auto& entry) {
@@ -26,13 +26,13 @@ bool agrees(const Metadata& found, Metadata expected) {
   });
 }
 
-enum class State { absent, other, part, whole };
+enum class State { absent, other, part, whole };  // `other`: of another film or with other settings
 
 State state_of_video(const fs::path& file, const FrameRange& frames, const render::Settings& settings,
                      Metadata expected) {
   video::Decoder decoder(file);
   expected["frames"] = frames.text();
-  // Odd sizes are padded to even ones.
+  // Some codecs pad odd sizes to even ones.
   const auto near = [](int found, int wanted) { return found == wanted || found == wanted + wanted % 2; };
   const bool fits = near(decoder.width(), settings.width) && near(decoder.height(), settings.height);
   if (!fits || !agrees(decoder.metadata(), std::move(expected))) return State::other;
@@ -50,7 +50,7 @@ State state_of_picture(const fs::path& file, int frame, const render::Settings& 
     const image::Image image = image::read_png(file, &found.metadata);
     found.width = image.width;
     found.height = image.height;
-    constexpr std::size_t kBitDepthPlace = 24;  // in the file; PNG specification, 11.2.2 (IHDR)
+    constexpr std::size_t kBitDepthPlace = 24;  // offset in the file; PNG specification, 11.2.2 (IHDR)
     if (read_start(file, kBitDepthPlace + 1).back() != (settings.deep ? 16 : 8)) return State::other;
   }
   const bool fits = found.width == settings.width && found.height == settings.height;
@@ -71,7 +71,7 @@ State state_of(const OutputTarget& target, const FrameRange& frames, const rende
     if (target.kind == OutputTarget::Kind::video) return state_of_video(file, frames, settings, expected);
     return state_of_picture(file, frames.begin, settings, expected);
   } catch (const Error&) {
-    return State::other;  // an unreadable file counts as one of another program
+    return State::other;  // an unreadable file counts as one of another film
   }
 }
 

@@ -1,4 +1,4 @@
-// Detection of complete or partial output of an earlier run.
+// Finds complete or partial output of an earlier run.
 #pragma once
 
 #include <filesystem>
@@ -23,7 +23,7 @@ struct Drawn {
   std::set<std::filesystem::path> own;  ///< files of this film that may be replaced
 };
 
-/// Checks pictures one by one; an incomplete video counts as no frames.
+/// Checks each picture. A video counts only if it is complete; of an incomplete one, `frames` is empty.
 Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
                  const cache::Manifest& scene, const std::filesystem::path& meshes,
                  const std::vector<std::string>& objects);

@@ -37,7 +37,7 @@ constexpr const char* kLogHead =
     "| date (UTC) | reference | old | new | difference | reason | by |\n"
     "|---|---|---|---|---|---|---|\n";
 
-// A reference must be complete, so the file is read to its end.
+// Reads the file to its end, since a reference must be complete.
 void check_readable(const fs::path& file) {
   if (!fs::is_regular_file(file)) {
     throw Error(ExitCode::asset_unreadable, "{}: {}", file.string(),
@@ -81,12 +81,12 @@ std::string now() {
   return text.data();
 }
 
-/// Creates a folder, and keeps other processes that make an object for the same folder waiting until this one is
-/// destroyed. File systems without locks let them go on.
+/// Creates a folder and locks it. Other FolderLock objects for this folder, in any process, wait in their constructors
+/// until this object is destroyed. On file systems without locks, they do not wait.
 class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder) {
-    std::error_code ignored;  // what is written to the folder reports the error
+    std::error_code ignored;  // the write to this folder reports the error
     fs::create_directories(folder, ignored);
     descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     while (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) continue;
@@ -149,7 +149,7 @@ Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test, con
 
 bool Acceptance::carry_out() const {
   const fs::path folder = log.parent_path().empty() ? "." : log.parent_path();
-  const FolderLock lock(folder);  // otherwise the log loses lines if several processes add some at once
+  const FolderLock lock(folder);  // without it, two processes that rewrite the log could lose a line
   const std::string bytes = read_file(test);
   std::string old_hash = "none", difference = "new";
   if (fs::exists(reference)) {

@@ -1,4 +1,4 @@
-// Replacement of references, and the log of the reasons.
+// Replaces references (accepted pictures and videos that new ones are compared with), and logs the reasons.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,15 @@ struct Acceptance {
   std::filesystem::path log;              ///< accepted.md
   std::string reason, user;
 
-  /// Plans the replacement. `reference` is the one named on the command line: a file, or a folder in which
-  /// `find_reference` looks up `name`. Throws Error: usage if `reference` and `test` do not fit together,
-  /// asset_unreadable if the test is not a complete picture or video.
+  /// Plans the replacement; changes no file. `reference`: a file, or a folder in which `find_reference` looks up
+  /// `name`. If it finds nothing, `test` becomes a new reference. Throws Error(usage) if `test` is neither picture nor
+  /// video or the extensions differ, and Error(asset_unreadable) if `test` is not complete.
   static Acceptance plan(const std::filesystem::path& reference, const std::filesystem::path& test,
                          const std::string& name);
 
-  /// Adds a line to the log, then replaces the reference, so that every replaced reference has its line. Each of the
-  /// two files is replaced atomically. Other processes that accept into the same folder wait meanwhile. Returns false
-  /// without any change if test and reference are equal in every pixel. Throws Error(output_failed).
+  /// Adds a line to the log, then replaces the reference, so that the log names every replacement. Replaces both files
+  /// atomically, and locks the folder of the log against other calls in any process. If test and reference are equal in
+  /// every pixel, changes nothing and returns false. Throws Error(output_failed).
   bool carry_out() const;
 };
 

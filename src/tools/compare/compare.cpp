@@ -57,13 +57,13 @@ bool has_default_budget(const Limits& limits) {
   return limits.pixel_budget == Limits{}.pixel_budget;
 }
 
-// Whether the figures are within the limits. `factor`: factor on the limits on means: pixels and mean FLIP.
+// `factor` multiplies the limits on pixels and on mean FLIP, but not that on spots.
 bool is_within(const Figures& figures, const Limits& limits, double factor) {
   return counted_pixels(figures, limits) <= factor * allowed_pixels(figures, limits) &&
          figures.flip <= factor * for_size(limits, figures).flip && figures.spot <= limits.spot;
 }
 
-// Sets the mean and the largest value of the FLIP map.
+// Sets `flip` and `spot` of the figures from the FLIP map.
 void read_flip(Comparison& result) {
   result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
   result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
@@ -81,7 +81,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
     result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
     if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
-    // FLIP also spreads a difference to pixels outside the mask, where it must not count.
+    // FLIP filters the images, so a difference near the border of the mask also changes the map outside.
     for (std::size_t i = 0; i < mask->values.size(); ++i)
       if (mask->values[i] == 0) result.flip.values[i] = 0;
     read_flip(result);
@@ -116,8 +116,8 @@ Limits for_size(Limits limits, const Figures& figures) {
 }
 
 double counted_pixels(const Figures& figures, const Limits& limits) {
-  // With this weight, the budget allows twice the largest fraction of pixels measured to differ at edges between CPU
-  // types: 21 of 57,600. The largest number is 27 of 129,600 (README.md, Decisions).
+  // With this weight, the default budget allows twice the largest fraction of edge pixels that differed between CPU
+  // types: 21 of 57,600 pixels (README.md, Decisions).
   constexpr double kEdgePixelWeight = 1.0 / 40;
   const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
   return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;
@@ -133,8 +133,8 @@ Verdict verdict(const Figures& figures, const Limits& limits) {
 }
 
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits) {
-  // Measured for spill in films of 96x64 pixels, in which a square appears for one or two frames: up to 1.3 times the
-  // limits, and mean FLIP up to 0.29 of that of the changed frame.
+  // Measured in videos of 96x64 pixels in which a square appears for one or two frames: spill reached 1.3 times the
+  // limits, and 0.29 times the mean FLIP of the changed frame.
   constexpr std::size_t kFrames = 12;
   constexpr double kOverLimit = 2, kMaxFlipRatio = 1.0 / 3;
   if (!is_within(frames[k], limits, kOverLimit)) return false;

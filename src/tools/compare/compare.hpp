@@ -1,4 +1,4 @@
-// Difference of two images of one size, as numbers and as a picture.
+// Difference of two images of the same size, as numbers and as a picture.
 #pragma once
 
 #include <cstddef>
@@ -11,38 +11,39 @@
 namespace weft::compare {
 
 /// Limits beyond which two images count as different. The defaults tolerate differences between CPU types and Mesa
-/// versions: single pixels at edges of cloth, shadows and prints (README.md, Decisions). They reject differences that a
-/// viewer sees if the images alternate.
+/// versions: single pixels at the edges of cloth, shadows and printed patterns (README.md, Decisions). They reject
+/// differences that a viewer sees if the images alternate.
 struct Limits {
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
-  /// Fraction of the pixels that may differ by more than pixel_tolerance. If it has its default value, a pixel at an
-  /// edge (`Figures::pixels_at_edges`) counts as 1/40, and at least one pixel is allowed.
+  /// Fraction of the pixels that may differ by more than pixel_tolerance. The default value has two more rules: a pixel
+  /// at an edge (`Figures::pixels_at_edges`) counts as 1/40 of a pixel, and at least one pixel may differ.
   double pixel_budget = 2e-5;
-  /// Limit on the mean of the FLIP map, for small differences everywhere. The default corresponds to one level on 2 %
-  /// of the pixels; it is wider for small pictures, see `for_size`.
+  /// Limit on the mean of the FLIP map. It detects small differences of many pixels: the default corresponds to a
+  /// difference of one level at 2 % of the pixels. `for_size` raises the default for small pictures.
   double flip = 5e-4;
-  /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget allows. If one of
-  /// four samples of a pixel is on the wrong side of an edge, the FLIP value of that pixel is up to 0.25. A speck of
-  /// 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels, exceeds the limit.
+  /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget allows: a spot of
+  /// 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels. It tolerates a pixel with one of its four
+  /// samples on the wrong side of an edge, whose FLIP value is up to 0.25.
   double spot = 0.3;
 };
 
 /// Widens default limits for lossy videos: the encoder amplifies small differences where it divides gradients into
-/// coding blocks. Measured between two CPU types in H.264 at crf 18: up to 1.35 % of the pixels over the tolerance,
-/// mean FLIP 0.011, spots of 0.28. The limits are twice these values; that of spots is 0.4.
+/// coding blocks. Measured between H.264 videos at crf 18 from two CPU types: up to 1.35 % of the pixels over the
+/// tolerance, mean FLIP 0.011, largest FLIP 0.28. The wider limits are twice the first two values, and 0.4.
 Limits with_encoder_noise(Limits limits);
 
-/// Images are compared only at pixels at which the mask is not 0.
+/// Selects the pixels that are compared: those whose value is not 0.
 using Mask = Plane<std::uint8_t>;
 
+/// Measured differences of two images.
 struct Figures {
   int width = 0, height = 0;         ///< [pixels]
   std::int64_t pixels = 0;           ///< pixels that were compared: all, or those of the mask
   std::int64_t pixels_changed = 0;   ///< pixels that differ at all
   std::int64_t pixels_over = 0;      ///< pixels that differ by more than the tolerance
   std::int64_t pixels_at_edges = 0;  ///< of pixels_over, those in small groups at edges: see `count_at_edges`
-  int largest = 0;                   ///< largest difference of any channel [levels of 255]
-  int largest_x = 0, largest_y = 0;  ///< position of this difference, the first one in reading order [pixels]
+  int largest = 0;                   ///< largest difference of any channel of a pixel [levels of 255]
+  int largest_x = 0, largest_y = 0;  ///< first pixel with this difference, row by row from the top left
   double ssim = 1;                   ///< mean structural similarity, 1 if equal
   double flip = 0;                   ///< mean of the FLIP map over the compared pixels, 0 if equal
   double spot = 0;                   ///< largest value of the FLIP map
@@ -52,7 +53,7 @@ struct Figures {
 
 enum class Verdict {
   same,     ///< equal in every pixel
-  within,   ///< differs, within the limits
+  within,   ///< differs, but not beyond a limit
   differs,  ///< exceeds a limit
 };
 
@@ -61,30 +62,30 @@ struct Comparison {
   Plane<float> flip;  ///< per pixel, 0 (looks the same) to 1
 };
 
-/// Compares two images. Outside `mask` (null: none), the test counts as equal to the reference. Throws Error(internal)
-/// if images or mask differ in size or have no pixels.
+/// Compares two images. Pixels outside `mask` count as equal (null: there is no mask). Throws Error(internal) if images
+/// or mask differ in size or have no pixels.
 Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance,
                    const Mask* mask = nullptr);
 
-/// Adapts the default limit on mean FLIP, which is for 640x360 pixels and more. In smaller pictures, edges cover a
-/// larger fraction of the pixels; there, the limit is multiplied by √(640 · 360 / number of pixels).
+/// Multiplies the default limit on mean FLIP by √(640 · 360 / number of pixels) if the picture has fewer than 640x360
+/// pixels, since edges cover a larger fraction of a small picture.
 Limits for_size(Limits limits, const Figures& figures);
 
 /// Number of pixels that count against the budget; fractional if edge pixels count as 1/40.
 double counted_pixels(const Figures& figures, const Limits& limits);
-/// Number of pixels that the budget allows; can be fractional.
+/// Number of pixels that may differ by more than the tolerance; can be fractional.
 double allowed_pixels(const Figures& figures, const Limits& limits);
 
 Verdict verdict(const Figures& figures, const Limits& limits);
 
-/// Whether frame k of a lossy video, whose verdict is `differs`, counts as spill: the encoder predicted it from a
-/// changed frame at most 12 frames away. Conditions: its pixels over the tolerance and its mean FLIP are at most twice
-/// the limits, its spot is within the limit, and its mean FLIP is at most a third of the largest mean FLIP of these
-/// neighbouring frames. `frames`: all frames of the video, in order.
+/// Whether frame k of a lossy video, whose verdict is `differs`, is spill: it differs only since the encoder predicted
+/// it from a changed frame nearby. Conditions: the counted pixels and the mean FLIP are at most twice their limits,
+/// `spot` is within its limit, and the mean FLIP is at most a third of the largest one of the frames at most 12 frames
+/// away. `frames`: all frames of the video, in order.
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits);
 
-/// The FLIP map in the colours of `image::heat_color`, with dark blue for 0. The position on the scale is the square
-/// root of the value, so that small differences are visible: 0.01 is at a tenth of the scale.
+/// The FLIP map in the colours of `image::heat_color`, with dark blue for 0. The position on the colour scale is the
+/// square root of the value, so that small differences are visible: 0.01 is at a tenth of the scale.
 image::Image heat_map(const Plane<float>& flip);
 
 }  // namespace weft::compare

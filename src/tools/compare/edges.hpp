@@ -8,10 +8,10 @@
 
 namespace weft::compare {
 
-/// Counts the pixels over the tolerance that are in groups of at most 4 such pixels and whose values in both images fit
-/// into the other image. A value fits into the other image if each channel lies, within the tolerance, between the
-/// smallest and the largest value of the 3x3 pixels around the same place. This excludes a speck, which fits only into
-/// its own image, and a moved edge, which makes a larger group.
+/// Counts the pixels that differ by more than `tolerance` and fulfil two conditions. (1) The pixel belongs to a
+/// connected group of at most 4 such pixels; an edge that moved makes a larger group. (2) In each image, each channel
+/// of the pixel lies, within the tolerance, between the smallest and the largest value of the 3x3 pixels around the
+/// same place in the other image; this excludes a spot that only one image has.
 std::int64_t count_at_edges(const image::Image& reference, const image::Image& test, int tolerance);
 
 }  // namespace weft::compare

@@ -37,7 +37,7 @@ Mask read_mask(const std::filesystem::path& file, int width, int height) {
   return mask;
 }
 
-// Compares two pictures or frames, returns the figures and updates the result, which stores the worst pair.
+// Compares two pictures or frames, adds them to `result`, and returns their figures.
 Figures add_frame(FileComparison& result, image::Image&& reference, image::Image&& test, const Limits& limits,
                   const std::optional<Mask>& mask) {
   Comparison frame = compare(reference, test, limits.pixel_tolerance, mask ? &*mask : nullptr);
@@ -57,7 +57,7 @@ Figures add_frame(FileComparison& result, image::Image&& reference, image::Image
   return figures;
 }
 
-// Recounts the frames that exceed a limit, with frames of spill (see is_spill()) counted separately.
+// Counts the frames that exceed a limit again, those of spill (see is_spill()) separately.
 void count_spill(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
   result.frames_differing = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {

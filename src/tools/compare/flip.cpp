@@ -42,16 +42,17 @@ float lab_curve(float t) {
   return t > kEdge * kEdge * kEdge ? std::cbrt(t) : t / (3 * kEdge * kEdge) + 4.0f / 29;
 }
 
-// Kernel a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. In one dimension, this is the
-// Fourier transform of a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. Like the paper, as_seen() uses the
-// kernel in two dimensions.
+// Contrast sensitivity function a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. Its inverse Fourier transform
+// in one dimension is the kernel a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. Like
+// the paper, as_seen() uses this kernel in two dimensions, with x as the distance from the centre.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
 constexpr std::array kSensitivities{Sensitivity{1, 0.0047, 0, 1e-5}, Sensitivity{1, 0.0053, 0, 1e-5},
                                     Sensitivity{34.1, 0.04, 13.5, 0.025}};
 
-// Samples exp(-pi² x² / b) at the pixels; x in degrees. The radius is the paper's: three sigmas of the widest kernel.
+// Samples exp(-pi² x² / b) at distances x of whole pixels [degrees]. The radius is the paper's: three sigmas of the
+// widest kernel.
 std::vector<float> gaussian(double b) {
   constexpr double kPiSq = std::numbers::pi * std::numbers::pi;
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPiSq)) * kPixelsPerDegree));
@@ -118,7 +119,7 @@ Channels opponent_channels(const image::Image& image) {
   return channels;
 }
 
-// Filters the channels, clamps them to displayable colours, and converts to L*a*b*.
+// Filters the channels, clamps the colours to those that a display shows, and converts them with hunt_lab().
 Channels seen_colors(const Channels& opponent) {
   Channels seen;
   for (int c = 0; c < 3; ++c) seen[c] = as_seen(opponent[c], c);

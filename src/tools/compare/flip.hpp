@@ -1,6 +1,6 @@
 // FLIP, the visible difference between two alternating images: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström
-// and Fairchild, "FLIP: a difference evaluator for alternating images", 2020. Implemented from its formulas; the stages
-// are separate functions so that each can be tested.
+// and Fairchild, "FLIP: a difference evaluator for alternating images", 2020. Its stages are separate functions for the
+// tests.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ float hyab(const Color& a, const Color& b);
 /// distance between pure green and pure blue, then maps [0, 0.4] linearly to [0, 0.95] and the rest to [0.95, 1].
 float remapped(float distance);
 
-/// Filters one channel (0 to 2) with the contrast sensitivity of the eye (Section 4.1.1, Table 1).
+/// Filters channel 0 to 2 of Y C_x C_z with the contrast sensitivity function of the eye (Section 4.1.1, Table 1).
 Plane<float> as_seen(const Plane<float>& plane, int channel);
 
 /// Difference of edges and points, 0 to 1 (Section 4.2). Arguments: Y channels, scaled to [0, 1].

@@ -41,7 +41,7 @@ Plane<T> convolve_rows(const Plane<T>& in, std::span<const T> kernel) {
   const int radius = static_cast<int>(kernel.size() / 2), width = in.width;
   Plane<T> out(width, in.height);
   for_each_row(in.height, [&](int y) {
-    // Repeats the ends of the row, so that the loop below needs no cases.
+    // Repeats the ends of the row, so that the loop below needs no special cases there.
     std::vector<T> padded(static_cast<std::size_t>(width + 2 * radius));
     for (int i = 0; i < width + 2 * radius; ++i) padded[i] = in.row(y)[std::clamp(i - radius, 0, width - 1)];
     T* to = out.row(y);

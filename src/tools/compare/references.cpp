@@ -22,7 +22,7 @@ std::vector<fs::path> places(const fs::path& folder, const std::string& machine)
   return found;
 }
 
-// Whether the name lies in the folder of a machine class or in `default`, rather than in a subfolder of pictures.
+// Whether the first folder of the name is that of a machine class or `default`.
 bool is_of_class(const std::string& name) {
   static const std::regex kClass(R"((default|mesa-\d+\.\d+(-\d+bit)?)/.*)");
   return std::regex_match(name, kClass);
@@ -74,7 +74,7 @@ std::vector<std::string> comparable_names(const fs::path& folder) {
   // Linked folders are followed; a cycle of links ends with an error.
   fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    // Hidden files are incomplete: Weft is still writing them.
+    // Weft writes to a hidden file and renames it when it is complete.
     const bool hidden = entry->path().filename().string().starts_with('.');
     std::error_code ignored;
     if (entry->is_directory(ignored)) {

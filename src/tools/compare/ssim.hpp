@@ -7,9 +7,9 @@
 namespace weft::compare {
 
 /// Mean SSIM (Eqs. 13 and 17) of the luma Y' = 0.2126 R' + 0.7152 G' + 0.0722 B': 1 for equal images, less if structure
-/// differs. Uses Gaussian windows of 11x11 pixels with sigma 1.5 [pixels], inside the image; K1 = 0.01, K2 = 0.03.
-/// Along a side of fewer than 11 pixels, it uses windows around all pixels and repeats the border. Both images must
-/// have the same size.
+/// differs. Uses Gaussian windows of 11x11 pixels with sigma 1.5 [pixels], inside the image; K1 = 0.01, K2 = 0.03. If a
+/// side has fewer than 11 pixels, the windows along this side are centred on all pixels, and border pixels are
+/// repeated. Both images must have the same size.
 double structural_similarity(const image::Image& reference, const image::Image& test);
 
 }  // namespace weft::compare

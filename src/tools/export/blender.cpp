@@ -42,7 +42,7 @@ const char* extension(const Material& material) {
   return "REPEAT";
 }
 
-// Picture and mapping of each material. The script sets them, as MTL cannot express every mapping.
+// Picture and mapping of each material. They are in the script since MTL cannot express every mapping.
 Json pictures_json(const frame::Surface& surface) {
   Json result = Json::object();
   const Materials materials = materials_of(surface);
@@ -114,7 +114,7 @@ void BlenderScript::add(int frame, const std::vector<View>& views) {
 }
 
 std::string BlenderScript::text() const {
-  // ASCII JSON never contains three consecutive quotes, so the Python literal ends only at its end.
+  // ASCII JSON never contains three consecutive quotes, so it cannot end the Python literal early.
   const std::string data = json_text(film_, -1, JsonLetters::ascii);
   std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
                                  json_text(film_["name"], -1, JsonLetters::ascii), kVersion, data);

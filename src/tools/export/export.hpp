@@ -12,10 +12,10 @@
 namespace weft::exporter {
 
 enum class Format {
-  ply,      ///< per object and frame: triangles, positions (doubles), weft and warp coordinates; panels are separate
-  obj,      ///< per object and frame: simulated faces, weft and warp coordinates, normals, materials (MTL) and pictures
+  ply,      ///< per object and frame: triangles, positions (doubles), weft and warp; panels share no vertices
+  obj,      ///< per object and frame: quads or triangles, weft and warp, normals, materials (MTL), pictures
   pc2,      ///< per object: the OBJ of the first frame, and a point cache that moves its vertices; y is up
-  gltf,     ///< one file with all visible objects, their colours, pictures and motion, and cameras
+  gltf,     ///< one file: all visible objects with colours, pictures and motion, and the cameras
   usd,      ///< the contents of gltf as text, with the axes of the scene
   usdz,     ///< as usd, but packed in one file
   blender,  ///< pc2, and a script that loads all of it with cameras and lights
@@ -24,7 +24,7 @@ enum class Format {
 struct Request {
   Format format = Format::gltf;
   std::filesystem::path folder;
-  std::string name;                ///< of the scene; names files that contain all objects
+  std::string name;                ///< of the scene; base name of files that contain all objects
   double fps = 25;                 ///< of the scene
   std::vector<int> frames;         ///< ascending, equally spaced, at least one
   int width = 1280, height = 720;  ///< of the pictures
@@ -37,8 +37,8 @@ struct Request {
 /// All files that write() will write, except shared_files(). `first`: the first requested frame.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
 
-/// A material file or a picture. Exports of different frames of a film into one folder write the same content, so the
-/// file may exist already.
+/// A material file or a picture. It is the same for all frames of a film, so an earlier export of other frames may have
+/// written it already.
 struct SharedFile {
   std::filesystem::path file;
   std::string content;
@@ -46,8 +46,8 @@ struct SharedFile {
 std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first);
 
 /// Reads each frame once, in order, and writes it. Calls `stop` before each frame, and ends if it returns true. Returns
-/// whether all frames were written. Each file gets its name only when it is complete. Throws Error(output_failed), and
-/// what `read` throws.
+/// whether all frames were written. Each file gets its final name only when it is complete. Throws
+/// Error(output_failed), and what `read` throws.
 bool write(
     const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
     const std::function<bool()>& stop = [] { return false; });

@@ -23,7 +23,7 @@
 namespace weft::exporter {
 namespace {
 
-// Numbers are copied with their byte order in memory.
+// glTF is little endian, and numbers are copied as they are in memory.
 static_assert(std::endian::native == std::endian::little);
 
 using nlohmann::json;
@@ -46,7 +46,7 @@ int wrap_number(frame::Paint::Wrap wrap) {
   return kRepeat;
 }
 
-// Duplicates places (seams.hpp) on creases, so that each place has one normal group. Returns the group of each place.
+// Duplicates places (CutSurface) on creases, so that each has one normal group (NormalGroups). Returns these groups.
 std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
   std::vector<Index> group_of(cut.vertex_of.size(), -1);
   std::map<std::pair<Index, Index>, Index> copies;  // by place and group
@@ -301,8 +301,8 @@ void GltfFile::see(const std::vector<View>& views) {
     const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
     Eigen::Vector4f turn =
         Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
-    // Of both signs of the quaternion, takes the one nearer to the previous frame, so that readers interpolate along
-    // the shorter way.
+    // q and -q are the same rotation. The one nearer to the previous frame makes readers interpolate along the shorter
+    // arc.
     if (!eye.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(eye.turns.end() - 4))) < 0) turn = -turn;
     for (int axis = 0; axis < 3; ++axis) eye.positions.push_back(static_cast<float>(position[axis]));
     for (int part = 0; part < 4; ++part) eye.turns.push_back(turn[part]);

@@ -21,9 +21,9 @@ namespace weft::exporter {
 ///
 /// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. Normals have targets as
 /// well, since the normals of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp)
-/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If their mapping
-/// differs from these coordinates, a second pair of coordinates maps them. Parts with their own materials are
-/// separate primitives over the same vertices.
+/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If a picture is
+/// mapped in another way, a second set of texture coordinates maps it. A mesh has one primitive per material; all
+/// primitives share its vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.

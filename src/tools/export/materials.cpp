@@ -54,14 +54,14 @@ bool is_same(const PictureFile& a, const PictureFile& b) {
 std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture, const std::string& surface) {
   for (std::size_t i = 0; i < pictures.size(); ++i)
     if (is_same(pictures[i], picture)) return i;
-  // The names of objects have no dots, so that "man.2.png" is not the picture of an object "man_2" as well.
+  // Names of objects contain no dots, so no other object has a picture of this name.
   picture.name = pictures.empty() ? surface + ".png" : fmt::format("{}.{}.png", surface, pictures.size() + 1);
   pictures.push_back(std::move(picture));
   return pictures.size() - 1;
 }
 
-// A picture that is laid once along this axis becomes a clamped one with a transparent rim, which looks the same.
-// `row`: the row of Material::picture_from_uv for this axis.
+// Exported formats have no Wrap::once (the picture occurs once along this axis). An empty rim with Wrap::clamp looks
+// the same. `row`: the row of Material::picture_from_uv for this axis.
 void widen(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
   rim = wrap == Wrap::once;
   if (!rim) return;

@@ -10,16 +10,16 @@
 
 namespace weft::exporter {
 
-/// A picture beside or inside the exported files. Other programs show it unchanged, so its pixels already include the
-/// surface's colour: multiplied with the picture, or, with Alpha::over_color, visible through its transparent parts and
+/// A picture beside or inside the exported files. Other programs cannot combine it with a colour, so its pixels already
+/// include the surface's colour: multiplied by the picture or, with Alpha::over_color, behind its transparent parts and
 /// around it.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
   Vec3 color;  ///< linear colour of the surface
   frame::Paint::Alpha alpha = frame::Paint::Alpha::ignored;
-  bool rim_u = false, rim_v = false;  ///< whether a transparent rim of one pixel is added at both ends of
-                                      ///< this axis; readers continue the rim beyond the edges
+  bool rim_u = false, rim_v = false;  ///< whether a rim of one empty pixel is added at both ends of this axis; readers
+                                      ///< continue the rim beyond the edges
 
   /// The bytes of the PNG file; it has alpha only if the picture cuts holes.
   std::string png() const;
@@ -28,7 +28,7 @@ struct PictureFile {
 struct Material {
   static constexpr std::size_t kNoPicture = static_cast<std::size_t>(-1);
   std::string name;  ///< letters, digits, - and _
-  Vec3 color;        ///< linear; already contained in the picture, if there is one
+  Vec3 color;        ///< linear; if there is a picture, its pixels already include this colour
   double roughness = 0, metal = 0;
   std::size_t picture = kNoPicture;  ///< index in Materials::pictures
   frame::Paint::Wrap wrap_u = frame::Paint::Wrap::repeat, wrap_v = frame::Paint::Wrap::repeat;  ///< never Wrap::once
@@ -40,9 +40,9 @@ struct Material {
   bool has_picture() const { return picture != kNoPicture; }
 };
 
-/// Materials of a surface. Both sides of cloth have those of its front.
+/// Materials of a surface. Both sides of cloth have the materials of the front.
 struct Materials {
-  std::vector<Material> all;  ///< that of the surface itself, then one per part
+  std::vector<Material> all;  ///< that of the surface itself, then one per element of Surface::parts
   std::vector<PictureFile> pictures;
 
   /// Index in `all` of the material of a triangle.

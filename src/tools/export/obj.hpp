@@ -9,9 +9,9 @@
 
 namespace weft::exporter {
 
-/// Writes the simulated faces, positions [m], weft and warp [m] of each panel as texture coordinates, normals, and
-/// references to the materials in `<object>.mtl`. Positions and texture coordinates read back exactly as doubles;
-/// normals have six digits. The axes are those of `positions`. Throws Error(output_failed).
+/// Writes positions [m], the faces (Surface::quads, else the triangles), texture coordinates (weft and warp [m] of each
+/// panel), normals, and references to the materials in `<object>.mtl`. Positions and texture coordinates read back
+/// exactly as doubles; normals have six digits. The axes are those of `positions`. Throws Error(output_failed).
 void write_obj(const std::filesystem::path& file, const frame::Surface& surface, const std::vector<Vec3>& positions);
 
 /// The text of the material file, with linear colour and roughness as Blender reads them.

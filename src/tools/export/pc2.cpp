@@ -9,7 +9,7 @@
 
 namespace weft::exporter {
 
-// Numbers are copied with their byte order in memory.
+// PC2 is little endian, and numbers are copied as they are in memory.
 static_assert(std::endian::native == std::endian::little);
 
 PointCache::PointCache(const std::filesystem::path& file, std::size_t points, int first_frame, int step,

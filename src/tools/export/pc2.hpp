@@ -19,15 +19,15 @@
 
 namespace weft::exporter {
 
-/// Writes one sample per frame of the scene, as Blender's modifier ignores the field "frames between samples". Samples
-/// between two added frames are interpolated linearly.
+/// Blender's modifier ignores the field "frames between samples", so there is a sample for every frame of the scene.
+/// Those between two added frames are interpolated linearly.
 class PointCache {
  public:
   /// `given`: number of frames that will be added, `step` apart. All functions throw Error(output_failed).
   PointCache(const std::filesystem::path& file, std::size_t points, int first_frame, int step, std::size_t given);
 
   void add(const std::vector<Vec3>& positions);
-  /// Call it after the last sample: gives the file its name.
+  /// Gives the file its final name; call it after the last frame.
   void commit();
 
  private:

@@ -1,4 +1,4 @@
-// Surfaces cut open along the edges at which texture coordinates differ between both sides.
+// Cuts surfaces along the edges at which the texture coordinates of the two triangles differ.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ struct CutSurface {
   bool is_cut(std::size_t vertices) const { return vertex_of.size() > vertices; }
 };
 
-/// Cuts a surface with this number of vertices, according to the texture coordinates of the triangle corners.
+/// Cuts a surface, which has `vertices` vertices.
 CutSurface cut_at_seams(const frame::Surface& surface, const Materials& materials, std::size_t vertices);
 
 }  // namespace weft::exporter

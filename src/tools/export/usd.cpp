@@ -21,8 +21,8 @@
 namespace weft::exporter {
 namespace {
 
-// Film width of a 35 mm camera. The unit is a tenth of the stage's unit (metre), as USD prescribes; only the ratio to
-// the focal length matters.
+// Film width of a 35 mm camera: 36 mm, in tenths of the stage's unit (1 m), as USD prescribes. Only its ratio to the
+// focal length matters.
 constexpr double kFilmWidth = 0.36;
 
 // A valid name of a primitive: letters, digits and underscores, no leading digit.
@@ -179,7 +179,8 @@ UsdFile::UsdFile(const frame::FrameSnapshot& first, const std::string& name, dou
     object.smooth = object.groups.of_corner == surfaces_[s]->triangles;
     objects_.push_back(std::move(object));
   }
-  // After the names of all objects, which keep theirs: the materials of objects and of parts are in one scope.
+  // The materials of objects and of parts are in one scope, so their names must differ. Parts get theirs last, so that
+  // the names of objects stay unchanged.
   for (Object& object : objects_) {
     const std::vector<frame::SurfacePart>& parts = surfaces_[object.surface]->parts;
     for (std::size_t p = 0; p < parts.size(); ++p)

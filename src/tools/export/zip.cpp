@@ -19,7 +19,7 @@ constexpr std::uint16_t kUtf8Names = 0x0800;
 constexpr std::uint16_t kFirstDay = 0x0021;  // 1980-01-01, the earliest date
 constexpr std::uint16_t kPaddingId = 0x1986;
 
-// Appends the lowest `size` bytes of a number, little endian; bytes beyond its own size are 0.
+// Appends the lowest `size` bytes of a number, little endian; if `size` exceeds 8, the remaining bytes are 0.
 void append(std::string& bytes, std::uint64_t number, int size) {
   for (int i = 0; i < size; ++i, number >>= 8) bytes += static_cast<char>(number & 0xff);
 }
@@ -46,7 +46,7 @@ std::string entry_of(const StoredFile& file) {
 }
 
 void append_file(std::string& bytes, const StoredFile& file, const std::string& entry) {
-  // An extra field pads the header so that the content is aligned. The field has at least its own header of four bytes.
+  // An extra field pads the header so that the content is aligned. It has at least four bytes, its own header.
   std::size_t padding = (kAlignment - (bytes.size() + kLocalHeader + file.name.size()) % kAlignment) % kAlignment;
   if (padding > 0 && padding < 4) padding += kAlignment;
   bytes += "PK\x03\x04" + entry;

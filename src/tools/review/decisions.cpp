@@ -70,11 +70,12 @@ const Decisions::File& Decisions::read(const fs::path& folder) {
 }
 
 Json Decisions::of(RunFiles& run) {
-  // Folders below the searched one, each with the path of the run from there: for "stiff/band" first "band" in stiff/,
-  // then "stiff/band" in the searched folder itself.
+  // Folders up to `run.folder`, each with the path of the run from there: for "stiff/band", "band" in stiff/, then
+  // "stiff/band".
   const fs::path name = run.key;
   std::vector<std::pair<fs::path, std::string>> places;
-  // Pictures such as band/00000.png are the run "band", also for a page of the folder band/ alone.
+  // Pictures such as band/00000.png are the run "band". A page that was made for the folder band/ alone calls this run
+  // "band" too, so its file is in band/.
   if (!run.pictures.empty() && run.pictures.front().parent_path() == run.folder / name)
     places.emplace_back(name, name.filename().string());
   std::string key = name.filename().string();

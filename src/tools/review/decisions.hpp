@@ -1,11 +1,11 @@
-// Reviewers' decisions about runs. The page offers them for download as `review.json`; reviewers put this file into the
-// folder of a run or a folder above it.
+// Reviewers' decisions about runs. The review page offers them for download as `review.json`; reviewers put this file
+// into the folder of a run or a folder above it.
 //
 //     {"format": "weft review 1", "runs": {"stiff/band": {"state": "needs work", "of": "9f86d081884c7d65", "by": "Ann",
 //      "date": "2026-11-23T19:40:00.000Z", "notes": [{"frame": 12, "text": "a fold stands up", "by": "Ann",
 //      "date": "...", "of": "...", "marks": [[[0.41, 0.3], [0.47, 0.36]]]}]}}}
 //
-// The names of runs are paths below the folder of the file. `of`: the fingerprint of the reviewed pictures. Marks are
+// The names of runs are paths below the folder of the file. `of`: fingerprint() of the reviewed pictures. Marks are
 // polylines; their points are fractions of the picture's width and height, from the left and the top.
 #pragma once
 
@@ -17,11 +17,12 @@
 
 namespace weft::review {
 
+/// Reads files of decisions, and finds the entries of runs.
 class Decisions {
  public:
-  /// The entry of a run; null if there is none. Files from the folder of the run up to the searched folder are read. Of
-  /// their valid entries, the one with the latest date counts; of equal dates, or without dates, the nearest. Adds
-  /// unusable files and entries to `run.problems`.
+  /// Returns the entry of a run; null if there is none. Reads the files in the folder of the run and in its parents, up
+  /// to `run.folder`. Returns the valid entry with the latest date; of equal or missing dates, that of the folder
+  /// nearest to the run. Adds unusable files and entries to `run.problems`.
   Json of(RunFiles& run);
 
  private:

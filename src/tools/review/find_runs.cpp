@@ -25,7 +25,7 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-// All regular files below the folder, sorted by path. Links are not followed, as the page would publish their targets.
+// All regular files below the folder, sorted by path. Skips links, since the page would publish their targets.
 std::vector<fs::path> list_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
@@ -193,8 +193,9 @@ class Search {
     runs_.push_back(std::move(run));
   }
 
-  // Finds the video or pictures that the statistics name as output. Searches beside the statistics, since folders may
-  // have been moved or copied from other machines. If it finds none, uses the video with the name of the statistics.
+  // Finds the video or pictures that the statistics name as output. Looks for each trailing part of this path in the
+  // folder of the statistics, since the folders may have been moved or copied from other machines. If it finds none,
+  // uses the video with the name of the statistics.
   void take_pictures(RunFiles& run) {
     const fs::path beside = run.stats.parent_path();
     const auto named_output = run.stats_json.find("output");
@@ -225,8 +226,7 @@ class Search {
     return true;
   }
 
-  // Whether the pictures are in a subfolder of a sweep's run that has a video: then a farm has joined them to this
-  // video.
+  // Whether a video has these pictures: a farm draws those of a run into a subfolder, then joins them to a video.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {
@@ -234,7 +234,7 @@ class Search {
            });
   }
 
-  // A single picture is a thumbnail or a sheet, not a run.
+  // Adds a run of numbered pictures. A single picture is a thumbnail or a sheet, not a run.
   void add_pictures(const fs::path& prefix, const std::vector<fs::path>& files) {
     if (files.size() < 2 || are_in_a_video(prefix)) return;
     std::string name = prefix.lexically_relative(folder_).generic_string();
@@ -264,7 +264,7 @@ class Search {
 
   const fs::path folder_;
   std::vector<fs::path> statistics_;
-  std::set<fs::path> videos_, effective_;               // videos not yet assigned to a run
+  std::set<fs::path> videos_, effective_;               // .mp4 files not yet assigned to a run; all effective scenes
   std::map<fs::path, std::vector<fs::path>> pictures_;  // by prefix before the number; not yet assigned to a run
   std::map<fs::path, Swept> swept_;                     // by the folder of the run
   std::map<std::string, std::string> unusable_;         // by name of a run: why its JSON file is unusable

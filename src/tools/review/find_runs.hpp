@@ -1,4 +1,4 @@
-// Finds the files of `weft run` in folders, and groups them by run.
+// Finds the files that `weft run` has written, and groups them by run.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,20 @@ using Json = nlohmann::ordered_json;
 
 /// The files of one run. A member is empty if the file was not found.
 struct RunFiles {
-  std::filesystem::path folder;                 ///< folder that was searched
-  std::string key;                              ///< path below `folder` without extension, such as "stiff/falling_band"
-  std::string name;                             ///< the key, with a prefix if several folders are searched
-  std::filesystem::path video;                  ///< MP4
+  std::filesystem::path folder;  ///< folder that was searched
+  std::string key;               ///< path below `folder` without extension, such as "stiff/falling_band"
+  std::string name;              ///< the key; if several folders are searched, preceded by the name of the folder
+  std::filesystem::path video;   ///< MP4
   std::vector<std::filesystem::path> pictures;  ///< numbered PNG files in order, if there is no video
   std::filesystem::path stats;
-  Json stats_json;  ///< content of `stats`
-  std::filesystem::path effective;
+  Json stats_json;                    ///< content of `stats`
+  std::filesystem::path effective;    ///< effective scene: the scene with all defaults and changes
   std::vector<std::string> problems;  ///< unusable files, each with the reason
   Json values;                        ///< for a sweep: changed values by key; otherwise null
 };
 
-/// Name of the index that weft sweep writes beside its runs. It lists `runs`, each with its `folder` and the values
-/// that were `set`.
+/// Name of the index file that weft sweep writes beside its runs. It lists `runs`, each with its `folder`, and in `set`
+/// the values that the sweep changed.
 inline constexpr const char* kSweepName = "sweep.json";
 
 /// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips hidden files, links and

@@ -28,7 +28,7 @@ struct Survey {
 /// Reads all pictures of a run. Throws Error(asset_unreadable) if any picture cannot be read.
 Survey survey(const RunFiles& run);
 
-/// Comparison of one picture with that of the reference at the same time.
+/// Comparison of one picture with the picture of the reference at the same time.
 struct PairComparison {
   long long picture = 0, reference = 0;  ///< indices, from 0
   compare::Figures figures;
@@ -37,14 +37,14 @@ struct PairComparison {
 };
 
 /// Compares the pictures whose indices are in `at` (ascending) with those of the reference at the same times. Skips a
-/// picture if the reference has none at its time, or if that one is already compared. Throws Error(asset_unreadable) if
-/// pictures cannot be read or differ in size.
+/// picture if the reference has none at its time, or if the previous picture was compared with the same one. Throws
+/// Error(asset_unreadable) if pictures cannot be read or differ in size.
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at);
 
-/// Index of the picture of `to` that is closest in time to picture k of `from`; it may lie outside of `to`. Returns k
-/// if a frame rate is unknown.
+/// Index of the picture of `to` that is closest in time to picture k of `from`; it may be negative or beyond the last
+/// picture of `to`. Returns k if a frame rate is unknown.
 long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to);
 
 }  // namespace weft::review

@@ -48,8 +48,8 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference with the name of the run, else with its path below its own folder. If there is none, the only reference
-// whose name has the same last part; else null.
+// The reference whose name is `run.name`, else `run.key`. If there is none, the only reference whose name has the same
+// last part after a slash; null if there is none or several.
 const RunFiles* find_reference(const std::vector<RunFiles>& references, const RunFiles& run) {
   for (const std::string& name : {run.name, run.key}) {
     const auto same = std::ranges::find(references, name, &RunFiles::name);
@@ -127,7 +127,7 @@ class Page {
   }
 
  private:
-  // Adds the name of the folder to each run if several folders were given.
+  // If several folders are given, puts the name of the folder before the name of each run.
   std::vector<RunFiles> wanted_runs() const {
     std::vector<RunFiles> runs;
     for (const fs::path& folder : request_.folders) {
@@ -217,7 +217,7 @@ class Page {
     entry.json["pictures"]["files"] = std::move(files);
   }
 
-  // Adds contact sheet and poster; reads number and rate of the pictures from the files.
+  // Adds the contact sheet and its middle tile as poster. Takes the number and the rate of the pictures from the files.
   void add_tiles(Entry& entry) const {
     if (entry.json["pictures"]["kind"] == "none") return;
     const Survey found = survey(*entry.run);

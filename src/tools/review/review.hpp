@@ -26,8 +26,8 @@ struct Outcome {
   int differing = 0;                   ///< number of runs that exceed the default limits of weft diff
 };
 
-/// Writes the page. Throws Error: asset_unreadable for folders without runs, reference_missing if the reference is not
-/// a folder with runs, output_failed, interrupted.
+/// Writes the page. Throws Error(asset_unreadable) if the folders contain no runs, Error(reference_missing) if the
+/// reference is not a folder with runs, Error(output_failed), and Error(interrupted) if `stop` returns true.
 Outcome write_review(const Request& request);
 
 /// JSON that is safe inside a script element, since it contains no `<`.

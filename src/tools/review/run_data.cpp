@@ -13,7 +13,7 @@
 namespace weft::review {
 namespace {
 
-// Rounds a number to six digits. A plot of 1000 pixels cannot show more, and the file has half the size.
+// Rounds a number to six significant digits. A plot cannot show more, and the file has half the size.
 Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();
@@ -86,7 +86,7 @@ double number_or_zero(const Json& object, const char* key) {
 }  // namespace
 
 Json frame_columns(const Json& frames) {
-  constexpr std::size_t kMaxFrameColumns = 200;  // Weft writes 33
+  constexpr std::size_t kMaxFrameColumns = 200;  // limit for damaged files; Weft writes 33
   Json columns = Json::object();
   for (const Json& frame : frames) {
     for (const auto& [key, value] : frame.items())
@@ -129,7 +129,7 @@ PictureTimes picture_times(const RunFiles& run) {
   } else if (!run.stats.empty()) {
     for (const Json& frame : run.stats_json["frames"]) {
       if (frame.value("written", Json(true)) == true) {
-        constexpr double kMaxFrameNumber = 1e9;  // limit on frame numbers
+        constexpr double kMaxFrameNumber = 1e9;  // limit for damaged files
         shown.push_back(static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMaxFrameNumber)));
       }
     }

@@ -9,7 +9,7 @@
 namespace weft::review {
 
 /// The frames of a run's statistics as one array per quantity: {"frame": [0, 1], "max_strain": [0, 0.01]}. Missing
-/// values, and values that are neither numbers nor booleans, become null. Numbers are rounded to six digits.
+/// values, and those that are neither numbers nor booleans, become null. Numbers keep six significant digits.
 Json frame_columns(const Json& frames);
 
 /// Summary of the numbers in each column: {"count", "min", "min_frame", "max", "max_frame", "last", "sum"}. Columns
@@ -22,7 +22,7 @@ struct PictureTimes {
   double fps = 0;  ///< pictures per second; 0 if unknown
 };
 
-/// Derived from the statistics or the names of the pictures.
+/// Derives the times from the names of the pictures; if there are none, from the statistics.
 PictureTimes picture_times(const RunFiles& run);
 
 /// Each value of an effective scene by its path, as in --set: {"cloth.band.material.stretch": "1000000.0"}. Throws
@@ -30,7 +30,7 @@ PictureTimes picture_times(const RunFiles& run);
 Json scene_values(const std::string& toml, const std::string& file);
 
 /// All data of a run except its pictures. Missing files are named in "problems". "columns" and "effective" are large;
-/// only the run's own page needs them.
+/// only the page of this run needs them, not the overview.
 Json run_data(const RunFiles& run);
 
 }  // namespace weft::review

@@ -18,7 +18,7 @@ const char* text(const Gl& gl, GLenum name) {
 }
 
 /// If the program runs from its unpacked archive (`ninja bundle`), makes EGL use the Mesa driver in that archive.
-/// Without this call, libEGL and Mesa would search system folders for each other's files.
+/// Otherwise, libEGL and Mesa would search system folders for each other's files.
 void use_own_mesa() {
   const std::filesystem::path libraries = own_installation().libraries, vendor = libraries / "egl_vendor.json";
   std::error_code none;
@@ -30,9 +30,9 @@ void use_own_mesa() {
 /// Mesa reads these variables once, when the process makes its first context.
 void set_rasteriser_environment(int threads) {
   use_own_mesa();
-  // Otherwise EGL may use a graphics card, which draws slightly different pictures and has no llvmpipe threads.
+  // Without this, EGL may use a graphics card. Its pictures differ slightly, and it has no llvmpipe threads to measure.
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
-  // Mesa 22.3: llvmpipe crashes with 512-bit vectors and 4x multisampling; its default width always works.
+  // llvmpipe of Mesa 22.3 crashes with 512-bit vectors and 4x multisampling. Its default width always works.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");
   if (width && std::string_view(width) == "512") unsetenv("LP_NATIVE_VECTOR_WIDTH");
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);

@@ -1,4 +1,4 @@
-// OpenGL contexts: a library opened at run time provides a 4.5 core context without a window.
+// OpenGL 4.5 core contexts without a window, from a library that is opened at run time.
 #pragma once
 
 #include <glad/gl.h>
@@ -10,7 +10,7 @@
 
 namespace weft::render {
 
-/// All functions of one context. Stored per context, because each backend brings its own copies of the functions.
+/// All functions of one context. Each context has its own table, because each backend has its own functions.
 using Gl = GladGLContext;
 
 /// An OpenGL 4.5 core context. It has no usable default framebuffer: draw only into framebuffers made in it.
@@ -20,7 +20,7 @@ class Context {
 
   /// Binds the context to the calling thread. Throws Error(internal) with the library's message.
   virtual void make_current() = 0;
-  /// Unbinds it, so that another thread can bind it.
+  /// Unbinds the context, so that another thread can bind it.
   virtual void release() = 0;
 
   const Gl& gl() const { return gl_; }
@@ -38,10 +38,10 @@ class Context {
   std::string description_;
 };
 
-/// Makes a context, bound to the calling thread. `automatic` takes OSMesa, or EGL if OSMesa fails. `threads`:
-/// number of threads of the software rasteriser (0: its default); the driver reads it once per process, so the first
-/// context decides. Throws Error(usage) if a library is absent, Error(internal) if a call fails. If `automatic` finds
-/// that neither library works, it throws Error(usage), which names each library and its error.
+/// Makes a context and binds it to the calling thread. `automatic`: OSMesa, or EGL if OSMesa fails. `threads`: number
+/// of threads of the software rasteriser (0: its default). The driver reads this number only for the first context of
+/// the process. Throws Error(usage) if a library is absent, Error(internal) if a call fails. If neither library works
+/// for `automatic`, throws Error(usage) with the error of each.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
 /// CPU seconds that the threads of llvmpipe have used so far in all contexts; 0 for other drivers.

@@ -1,4 +1,4 @@
-// EGL without a surface (EGL_MESA_platform_surfaceless): for Mesa 25.1 and later, which ship no OSMesa.
+// EGL without a surface (EGL_MESA_platform_surfaceless), for Mesa 25.1 and later, which do not include OSMesa.
 #include <array>
 
 #include "core/error.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kEgl = "libEGL.so.1";
 
-// The few EGL 1.5 names used here, so that building needs no EGL headers. Values: Khronos registry, egl.xml.
+// The few EGL 1.5 names that this file uses, so that the build needs no EGL headers. Values: Khronos registry, egl.xml.
 using EglHandle = void*;
 using EglInt = int;
 using EglBoolean = unsigned;

@@ -1,4 +1,4 @@
-// OpenGL objects that delete themselves. Their context must be current on destruction.
+// Owners of OpenGL objects, which delete the objects. The context must be current on destruction.
 #pragma once
 
 #include <span>
@@ -78,7 +78,7 @@ using Texture = GlObject<TextureKind>;
 using Framebuffer = GlObject<FramebufferKind>;
 using ProgramName = GlObject<ProgramKind>;
 
-/// A texture of one mip level; sampled with `filter` (GL_NEAREST or GL_LINEAR), clamped to its edge.
+/// Makes a texture with one mip level, sampled with `filter` (GL_NEAREST or GL_LINEAR) and clamped to its edge.
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
 
 /// Throws Error(internal) that names `what` if the framebuffer is incomplete.
@@ -90,7 +90,7 @@ void upload(const Gl& gl, const Buffer& buffer, std::span<const T> data) {
   gl.NamedBufferData(buffer.name(), static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);
 }
 
-/// Throws Error(internal) with the error's name if GL has recorded an error since the last call.
+/// Throws Error(internal) that names `what` and the error if OpenGL has recorded one since the last call.
 void check_errors(const Gl& gl, const char* what);
 
 }  // namespace weft::render

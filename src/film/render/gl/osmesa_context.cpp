@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kOsMesa = "libOSMesa.so.8";
 
-// The OSMesa 8 names used here, so that building needs no OSMesa headers. Values: GL/osmesa.h.
+// The OSMesa 8 names that this file uses, so that the build needs no OSMesa headers. Values: GL/osmesa.h.
 using OsmesaHandle = void*;
 constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaProfile = 0x33, kOsmesaCoreProfile = 0x34;
 constexpr int kOsmesaMajorVersion = 0x36, kOsmesaMinorVersion = 0x37;
@@ -49,7 +49,7 @@ class OsmesaContext : public Context {
   void release() override { make_current_(nullptr, nullptr, 0, 0, 0); }
 
  private:
-  // OSMesa requires a buffer; this one is never drawn to.
+  // OSMesa requires a buffer. Nothing is drawn into this one.
   static constexpr int kSide = 4;
   std::array<std::uint8_t, kSide * kSide * 4> pixels_{};
 

@@ -8,12 +8,11 @@
 
 namespace weft::render {
 
-/// One linked program.
 class Program {
  public:
   Program() = default;
-  /// `vertex` and `fragment`: file names in shaders/; `fragment` may be empty if only depth is drawn. `defines`
-  /// ("CLOTH", "LIGHTS 2") precede the sources. Throws Error(internal) with the compiler's message.
+  /// `vertex` and `fragment`: file names in shaders/; `fragment` is empty if no colours are drawn. `defines` ("CLOTH",
+  /// "LIGHTS 2") precede the sources. Throws Error(internal) with the compiler's message.
   Program(const Gl& gl, const std::string& vertex, const std::string& fragment,
           const std::vector<std::string>& defines = {});
 
@@ -26,7 +25,7 @@ class Program {
   ProgramName program_;
 };
 
-/// Source of a file in shaders/ with each `#include "name"` line replaced by that file.
+/// Source of a file in shaders/, with each line `#include "name"` replaced by the source of that file.
 std::string shader_source(const std::string& file);
 
 }  // namespace weft::render

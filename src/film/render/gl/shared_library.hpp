@@ -5,7 +5,7 @@
 
 namespace weft::render {
 
-/// The library stays open until the process ends: a software rasteriser keeps threads and LLVM state.
+/// The library stays open until the process ends, because a software rasteriser keeps threads and LLVM state.
 class SharedLibrary {
  public:
   /// Throws Error(usage), as for a missing package, with the dynamic loader's message.

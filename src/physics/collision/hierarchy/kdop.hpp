@@ -1,10 +1,11 @@
 // Discrete oriented polytopes (k-DOPs): bounds by k fixed directions (Etzmuß et al. 2001, "Bounding Volume Hierarchy",
 // Eq. 3).
 //
-// A set is stored as its k support values: row r holds the minimum of direction_r · x over the set. Directions come in
-// opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this sign
-// convention the hull of two sets is the row-wise minimum. Row r of set a plus row r ^ 1 of set b is the gap between
-// the sets along direction r, times the length of direction r. Two k-DOPs overlap if no gap is positive.
+// A set of points is stored as its k support values: row r holds the minimum of direction_r · x over the set.
+// Directions come in opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. The
+// k-DOP of the union of two sets is the row-wise minimum. Row r of set a plus row r ^ 1 (the opposite direction) of set
+// b is the gap between them along direction r, times the length of direction r. Two k-DOPs overlap if no gap is
+// positive.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,7 @@ namespace weft::collision {
 template <int K>
 inline constexpr int kRows = (K + 7) / 8 * 8;
 
-/// The directions of a k-DOP by component, 0 or ±1, so that projections are short sums. Rows past K are zero.
+/// The directions of a k-DOP. Their components are 0 or ±1, so that projections are short sums. Rows past K are zero.
 template <int K>
 struct Directions {
   static_assert(K == 6 || K == 18 || K == 26, "box; with edges; with corners and edges");
@@ -49,7 +50,7 @@ struct Directions {
 template <int K>
 inline constexpr Directions<K> kDirections{};
 
-/// Support values of a set in float, rounded outward: the bound may be too large, never too small.
+/// Support values of a set in single precision, rounded so that the bound may be too large but never too small.
 template <int K>
 struct alignas(32) KDop {
   float row[kRows<K>];
@@ -84,8 +85,8 @@ template <int K>
 inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   constexpr const Directions<K>& dir = kDirections<K>;
   // Rounding to float changes a value by at most 2^-24 of itself. Rounding the sum of three products in double changes
-  // it by less than 2^-50 of the coordinates; for 6 directions, the sum is exact. Subtract at least both, and 1e-38 for
-  // values near zero.
+  // it by less than 2^-50 of the coordinates (not at all for 6 directions). The subtracted terms exceed both; 1e-38 is
+  // for values near zero.
   const double cancel = K == 6 ? 1e-38 : 1e-38 + 0x1p-50 * (p.cwiseAbs().sum() + q.cwiseAbs().sum() + margin);
   KDop<K> bound;
   for (int r = 0; r < kRows<K>; ++r) {
@@ -97,9 +98,9 @@ inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   return bound;
 }
 
-/// Support values of a set that moves linearly: at the start in rows 0 to K − 1, at the end in the next K rows. Along
-/// any direction the gap between two such sets is concave in time, so if it is positive at the start and at the end, it
-/// is positive throughout. So two sets with a gap between them that move together do not overlap.
+/// Support values of a set whose points move linearly: at the start of the step in rows 0 to K − 1, at its end in the
+/// next K rows. The gap between two such sets along a direction is concave in time, so if it is positive at both ends,
+/// it is positive throughout. Therefore two sets that move together with a gap between them do not overlap.
 template <int K>
 struct alignas(32) MovingKDop {
   float row[(2 * K + 7) / 8 * 8];
@@ -108,14 +109,14 @@ struct alignas(32) MovingKDop {
     for (std::size_t r = 0; r < std::size(row); ++r) row[r] = std::min(row[r], other.row[r]);
   }
 
-  /// Largest distance between two opposite faces of the k-DOP that contains both start and end [m].
+  /// Largest distance between two opposite faces of the k-DOP that contains the set at start and end [m].
   double longest_side() const {
     double longest = 0;
     for (int d = 0; d < K / 2; ++d) longest = std::max(longest, (-min_row(2 * d) - min_row(2 * d + 1)) / length(d));
     return longest;
   }
 
-  /// False only if one direction separates the two sets during the whole motion.
+  /// Whether the sets may meet: false only if one direction separates them at the start and at the end.
   bool overlaps(const MovingKDop& other) const {
     for (int r = 0; r < K; ++r)
       if (row[r] + other.row[r ^ 1] > 0 && row[K + r] + other.row[(K + r) ^ 1] > 0) return false;
@@ -132,6 +133,7 @@ template <int K>
 inline MovingKDop<K> moving_point(const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   const KDop<K> start = swept_point<K>(p, p, margin);
   KDop<K> end = swept_point<K>(low, high, margin);
+  // `end` bounds the segment from `low` to `high`. Oblique directions need the other six corners of the box, too.
   if (K > 6 && low != high)
     for (int corner = 1; corner < 7; ++corner) {
       const Vec3 at(corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]);

@@ -1,4 +1,4 @@
-// Tests one k-DOP against several at once: bounds stored by row, one lane per bound.
+// SIMD tests of one k-DOP or triangle against eight others. Each of the eight occupies one lane.
 #pragma once
 
 #include <bit>
@@ -13,28 +13,29 @@
 
 namespace weft::collision {
 
-/// Number of sets tested at once: one per lane of an AVX register of floats.
+/// Number of sets tested at once: one per float of an AVX register.
 inline constexpr int kLanes = 8;
 
-/// Mask of the lanes below `count`.
+/// Bit mask of lanes 0 to `count` − 1.
 inline std::uint32_t first_lanes(int count) {
   return (1U << count) - 1;
 }
 
-/// Calls visit(l) for each set bit, lowest first.
+/// Calls visit(l) for each set bit l, lowest first.
 template <class Visit>
 void for_each_bit(std::uint32_t mask, const Visit& visit) {
   for (; mask != 0; mask &= mask - 1) visit(std::countr_zero(mask));
 }
 
-/// Bounds of eight moving sets as a structure of arrays: row r of set l is row[r][l].
+/// Moving k-DOPs of eight sets as a structure of arrays: row r of set l is row[r][l].
 template <int K>
 struct alignas(32) LaneBounds {
   float row[2 * K][kLanes];
 };
 
-/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r * stride]. Two sets
-/// overlap unless some direction has a positive gap at both ends. The sign of a sum of two floats is exact.
+/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r * stride]. They
+/// overlap unless the gap along one direction is positive at the start and at the end. The sign of a sum of two floats
+/// is exact.
 template <int K>
 inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* query, std::size_t stride) {
 #if defined(__AVX__)
@@ -68,12 +69,12 @@ inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* quer
 #endif
 }
 
-/// Vectors of four or eight numbers.
+/// SIMD vectors of four or eight numbers.
 typedef float Lanes4 __attribute__((vector_size(16)));
 typedef float Lanes8 __attribute__((vector_size(32)));
 typedef std::int32_t IntLanes8 __attribute__((vector_size(32)));
 
-/// Lane-wise minimum (maximum), in place: without AVX, returning a vector by value would use another ABI.
+/// Sets a to the lane-wise minimum (maximum) of a and b. Returning a vector by value would use another ABI without AVX.
 inline void lower_to(Lanes8& a, const Lanes8& b) {
   a = a < b ? a : b;
 }
@@ -92,12 +93,12 @@ inline std::uint32_t sign_mask(const Lanes8& lanes) {
 #endif
 }
 
-/// Bit l is set if lane l is negative. A comparison of integer vectors sets all bits of each lane for which it is true.
+/// As above, for the result of a vector comparison, which has all bits set in the lanes for which it is true.
 inline std::uint32_t sign_mask(const IntLanes8& lanes) {
   return sign_mask(reinterpret_cast<const Lanes8&>(lanes));
 }
 
-/// Coordinates x, y, z of eight points, transposed from rows (x, y, z, unused).
+/// Coordinates of eight points: axis[k] holds coordinate k of all. transpose() reads rows (x, y, z, unused).
 struct Points8 {
   Lanes8 axis[3];
 };
@@ -120,16 +121,16 @@ struct alignas(32) LaneCorners {
   std::int32_t corner[3][8];
 };
 
-/// Of eight triangles: which share exactly one vertex with a given triangle, and which share more.
+/// Bit masks of eight triangles: those that share exactly one vertex with a given triangle, and those that share more.
 struct SharedMasks {
   std::uint32_t one, more;
 };
 
-/// Compares triangle `own` of `query` with all triangles of `lanes`. A corner that a triangle names twice counts once.
+/// Compares triangle `own` of `query` with all triangles of `lanes`. A repeated corner (piece of rope) counts once.
 inline SharedMasks shared_vertices(const LaneCorners& lanes, const LaneCorners& query, int own) {
   const std::int32_t c0 = query.corner[0][own];
   std::int32_t c1 = query.corner[1][own], c2 = query.corner[2][own];
-  if (c2 == c0 || c2 == c1) c2 = -2;
+  if (c2 == c0 || c2 == c1) c2 = -2;  // equals no vertex and no empty lane (−1)
   if (c1 == c0) c1 = -2;
 #if defined(__AVX2__)
   const auto row = [&](int c) { return _mm256_load_si256(reinterpret_cast<const __m256i*>(lanes.corner[c])); };

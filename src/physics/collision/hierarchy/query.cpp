@@ -7,7 +7,7 @@
 namespace weft::collision {
 namespace {
 
-/// Minimum of row r of bound l over start and end of the motion. Rows 0 to 5 belong to the axes.
+/// Minimum of row r of bound l over start and end of the motion. Rows 0 to 5 are the directions ±x, ±y, ±z.
 template <int K>
 float row_over_motion(const LaneBounds<K>& bounds, int r, int l) {
   return std::min(bounds.row[r][l], bounds.row[K + r][l]);
@@ -84,7 +84,7 @@ class NearestQuery {
   std::vector<Found> found_;
 };
 
-/// Bit l is set if the box of bound l meets the box from low to high.
+/// Bit l is set if the box of bound l overlaps the box from `low` to `high`.
 template <int K>
 std::uint32_t overlapping_boxes(const LaneBounds<K>& bounds, const Vec3& low, const Vec3& high) {
   std::uint32_t mask = 0;

@@ -11,17 +11,18 @@ namespace weft::collision {
 /// Squared distance [m²] of a triangle (by global number) from the query point; infinite to exclude it.
 using DistanceSq = std::function<double(Index)>;
 
-/// Triangles count as nearest if their squared distance exceeds the minimum by at most this fraction.
+/// A triangle counts as nearest if its squared distance exceeds the smallest one by at most this fraction.
 inline constexpr double kNearestTolerance = 1e-6;
 
-/// Replaces `out` by the nearest triangles to p (within kNearestTolerance), sorted by number; empty if every triangle
-/// is excluded. Branch and bound: subtrees whose bounds are farther than the best triangle so far are skipped. At the
-/// positions that `distance_sq` uses, triangles must lie inside the bounds of the tree; larger bounds only cost time.
+/// Replaces `out` by the nearest triangles to p (within kNearestTolerance), sorted by number; empty if `distance_sq`
+/// excludes all. Branch and bound: skips subtrees whose bounds are farther than the best triangle so far. At the
+/// positions that `distance_sq` uses, each triangle must lie inside its bound of the last refit; larger bounds only
+/// cost time.
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 
-/// Replaces `out` by the triangles whose bounds (boxes over the whole motion, with the margin of the last refit) meet
-/// the box from `low` to `high` [m], sorted by number.
+/// Replaces `out` by the triangles whose bounds overlap the box from `low` to `high` [m], sorted by number. Their
+/// bounds are boxes over the whole motion of the last refit, with its margin.
 template <int K>
 void triangles_in_box(const Tree<K>& tree, const Vec3& low, const Vec3& high, std::vector<Index>& out);
 

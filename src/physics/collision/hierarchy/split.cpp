@@ -7,7 +7,7 @@ namespace weft::collision {
 
 namespace {
 
-/// The direction pair along which the set is longest.
+/// The pair of opposite faces that are furthest apart.
 template <int K>
 int longest_side(const KDop<K>& hull) {
   int best = 0;
@@ -42,7 +42,7 @@ std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> 
   const auto middle = std::stable_partition(items.begin(), items.end(), goes_first);
   const auto first = static_cast<std::size_t>(middle - items.begin());
 
-  // If all triangles would go to one part, put half of them in each.
+  // If one part is empty, each part gets half of the triangles.
   return first == 0 || first == items.size() ? items.size() / 2 : first;
 }
 

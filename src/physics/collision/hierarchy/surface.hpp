@@ -1,4 +1,4 @@
-// Input of the hierarchy and the proximity search: surfaces in one global numbering of vertices and triangles.
+// Types of the broad and the narrow phase: surfaces, triangles and pairs of triangles, in one global numbering.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace weft::collision {
 
-/// Three vertices of the global vertex array, counter-clockwise seen from the front. A piece of rope is (a, b, b): its
-/// only features are its edge and its ends.
+/// Three vertices of the global vertex array, counter-clockwise seen from the front. A piece of rope from a to b is the
+/// degenerate triangle (a, b, b): one edge and its two ends.
 using Triangle = std::array<Index, 3>;
 
-/// A cloth or an obstacle: a range of the global vertex array and the triangles over it.
+/// A cloth, rope, rigid body or obstacle: a range of the global vertex array and the triangles between these vertices.
 struct Surface {
   std::span<const Triangle> triangles;  ///< corners are global vertex indices inside the range below
   Index first_triangle = 0;             ///< global number of triangles.front()
@@ -29,8 +29,8 @@ struct TrianglePair {
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
-/// A growing list of pairs. Keeps its memory when cleared; pairs are written without a capacity check for each. Does
-/// not touch the memory behind the last pair, so that the system need not provide it.
+/// A list of pairs that keeps its memory when cleared. Callers reserve space for several pairs at once, so that no pair
+/// needs its own capacity check. Reserved memory is not initialised, so the system need not provide unused pages.
 class PairList {
  public:
   void clear() { size_ = 0; }
@@ -40,7 +40,7 @@ class PairList {
   const TrianglePair* begin() const { return storage_.get(); }
   const TrianglePair* end() const { return storage_.get() + size_; }
 
-  /// Makes room for `count` more pairs. Write them to the returned place, then call grow() with their end.
+  /// Reserves space for `count` more pairs. Write them to the returned place, then call grow() with their end.
   TrianglePair* reserve_more(std::size_t count) {
     if (size_ + count > capacity_) {
       capacity_ = size_ + count + (size_ + count) / 2;
@@ -60,10 +60,10 @@ class PairList {
   std::size_t size_ = 0, capacity_ = 0;
 };
 
-/// Triangle pairs whose bounds overlap. Pairs that share an edge or all corners are in neither list.
+/// Pairs of triangles whose bounds overlap. Pairs with two or three common vertices are in neither list.
 struct CandidatePairs {
-  PairList apart;       ///< share no vertex
-  PairList one_shared;  ///< share exactly one vertex
+  PairList apart;       ///< pairs without a common vertex
+  PairList one_shared;  ///< pairs with exactly one common vertex
 
   void clear() {
     apart.clear();

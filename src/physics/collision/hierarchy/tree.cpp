@@ -12,7 +12,8 @@ namespace weft::collision {
 
 namespace {
 
-/// Beyond this depth, sets are halved by the number of triangles, because a centre split may split off only one.
+/// Deeper sets are split into halves of equal size. A split at the centre may separate only one triangle, which would
+/// allow a depth as large as the number of triangles.
 constexpr int kMaxCentreSplits = 64;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
@@ -31,8 +32,8 @@ void check(const Surface& surface, std::size_t positions, const TreeShape& shape
 }
 
 // Slack of lazy refits: enough for kSlackSteps steps at the present speed, plus a fraction of the margin against
-// jitter. Bounds get no slack if it would exceed kMaxSlackFraction of the margin: the extra pairs would cost more in
-// the narrow phase than the refit saves.
+// jitter. A vertex gets no slack if this exceeds kMaxSlackFraction of the margin: the additional pairs would cost more
+// in the narrow phase than the lazy refit saves.
 constexpr double kSlackSteps = 8;
 constexpr double kMinSlackFraction = 1.0 / 64;
 constexpr double kMaxSlackFraction = 1.0 / 8;
@@ -57,7 +58,7 @@ struct Tree<K>::Builder {
   Tree& tree;
   std::size_t max_children, max_triangles;
   std::vector<KDop<K>> bounds;  // of each triangle
-  std::vector<Index> order;     // triangles; those of a group are contiguous
+  std::vector<Index> order;     // all triangles; those of a group are contiguous
 
   /// Splits `group` in two: reduces it to the first part and returns the second.
   Group split(Group& group) {
@@ -141,7 +142,7 @@ void Tree<K>::refit(const Motion& motion, double margin) {
   parallel_for(leaves_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) fit_leaf(n);
   });
-  // Children have larger numbers than their parent.
+  // Children have larger numbers than their parent, so they are fitted first.
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_node(n);
   resting_margin_ = -1;
 }
@@ -165,7 +166,7 @@ void Tree<K>::fit_leaf(std::size_t n) {
   }
 }
 
-/// Fits a node to its children, Eq. (3).
+/// Fits a node to its children (Etzmuß et al. 2001, Eq. 3).
 template <int K>
 void Tree<K>::fit_node(std::size_t n) {
   Node& node = nodes_[n];
@@ -187,8 +188,8 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
   if (resting.slack >= 0 && to_one_place && (p - resting.place).squaredNorm() <= slack_sq &&
       (low - resting.place).squaredNorm() <= slack_sq)
     return false;
-  // The ball of radius `slack` around the end of this step must contain its start, too. If that needs too much slack,
-  // the bound is as tight as after refit.
+  // The bound covers the ball of radius `slack` around the end of this step. The ball contains the start, too. If this
+  // needs too much slack, the bound is as tight as after refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
     resting = {low, slack};

@@ -13,7 +13,8 @@
 
 namespace weft::collision {
 
-/// Motion of vertices, by global number [m]: from x_t0 to anywhere in the box low_t1 to high_t1 (possibly a point).
+/// Motion of all vertices [m]: v moves from x_t0[v] to anywhere in the box from low_t1[v] to high_t1[v] (possibly a
+/// point).
 struct Motion {
   std::span<const Vec3> x_t0, low_t1, high_t1;
 
@@ -29,9 +30,9 @@ struct TreeShape {
   int leaf = kLanes;      ///< 1 to 8
 };
 
-/// A tree of k-DOPs. The bounds of a node's children, and of a leaf's triangles, are stored side by side so that all
-/// are tested at once; smaller nodes leave lanes empty. Nodes are numbered depth first, parents before children, so
-/// refitting is one pass from the last to the first.
+/// A tree of k-DOPs. The bounds of a node's children, and of a leaf's triangles, are stored side by side, so that one
+/// SIMD operation tests all of them; smaller nodes leave lanes empty. Nodes are numbered depth first, parents before
+/// children, so refitting is one pass from the last node to the first.
 template <int K>
 class Tree {
  public:
@@ -55,8 +56,9 @@ class Tree {
 
   Tree() = default;
 
-  /// Builds over the surface at `positions` (global array, [m]) and fits it there without margin. Splits along the
-  /// longest side until each group fits into a leaf. Throws Error(internal) if an index or the shape is out of range.
+  /// Builds over the surface at `positions` (global array, [m]) and fits it there without margin. Splits sets of
+  /// triangles along their longest side until each set fits into a leaf. Throws Error(internal) if an index or the
+  /// shape is out of range.
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
   /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. Triangles that come
@@ -64,9 +66,9 @@ class Tree {
   void refit(const Motion& motion, double margin);
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
-  /// As refit, but enlarges the bounds of slow vertices by a slack that lasts for a few steps (see kMaxSlackFraction in
-  /// tree.cpp), and keeps such a bound while its vertex stays within the slack. Nodes without a renewed vertex bound
-  /// below them are not refitted. Bounds are never smaller than after refit.
+  /// As refit, but enlarges the bound of a slow vertex by a slack that suffices for a few steps (see kMaxSlackFraction
+  /// in tree.cpp), and keeps this bound while the vertex stays within the slack. Refits only leaves and nodes above
+  /// vertices with a new bound. Bounds are never smaller than after refit.
   void refit_lazily(const Motion& motion, double margin);
   void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit_lazily({x_t0, x_t1}, margin);
@@ -87,7 +89,7 @@ class Tree {
  private:
   struct Builder;
 
-  /// A vertex stays inside its bound while it is within `slack` [m] of `place`; slack < 0: the bound has no slack.
+  /// A vertex bound holds while the vertex is within `slack` [m] of `place`; slack < 0: the bound has no slack.
   struct Resting {
     Vec3 place = Vec3::Zero();
     double slack = -1;
@@ -102,12 +104,12 @@ class Tree {
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
   std::vector<Bound> node_bounds_, leaf_bounds_;
-  std::vector<Bound> vertex_bounds_;  ///< bound of the trajectory of each vertex; only lazy refits reuse it
+  std::vector<Bound> vertex_bounds_;  ///< per vertex: bound of its trajectory; only lazy refits reuse it
 
   // Used only by lazy refits.
   std::vector<Resting> resting_;                      // by vertex
   std::vector<std::uint8_t> moved_;                   // by vertex: has a new bound
-  std::vector<std::uint8_t> changed_, leaf_changed_;  // by node, by leaf
+  std::vector<std::uint8_t> changed_, leaf_changed_;  // by node, by leaf: has a new bound
   double resting_margin_ = -1;                        // margin of the bounds with slack [m]
 };
 

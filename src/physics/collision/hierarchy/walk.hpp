@@ -9,11 +9,12 @@
 
 namespace weft::collision {
 
-// Minimum number of leaves of both trees together for which threads are used, and number of tasks to aim for.
+// Threads are used if both trees together have at least this many leaves. The traversal is then divided into at least
+// kMinThreadTasks tasks, if possible.
 constexpr std::size_t kMinLeavesForThreads = 512, kMinThreadTasks = 64;
 
-/// One traversal of two trees, which may be the same. kLonger: of two nodes, descend only into the one with the longer
-/// side. kListed: record in a separation list where the traversal stops. Both are compile-time constants, so that the
+/// One traversal of two trees, which may be the same. kLonger: of two nodes, descends only into the one with the longer
+/// side. kListed: records in a separation list where the traversal stops. Both are compile-time constants, so that the
 /// plain traversal has no branches for them.
 template <int K, bool kLonger, bool kListed>
 class Walk {
@@ -45,8 +46,8 @@ class Walk {
  private:
   static std::size_t index(Ref ref) { return static_cast<std::size_t>(ref); }
 
-  /// Lists the same pairs as from_roots() in the same order. Descends until there are enough deferred calls, which the
-  /// threads then share.
+  /// Lists the same pairs as from_roots(), in the same order. Expands the traversal level by level into deferred calls,
+  /// until there are enough of them to share among the threads.
   void from_roots_in_threads() {
     const bool is_large = a_.leaves().size() + b_.leaves().size() >= kMinLeavesForThreads;
     if (thread_count() == 1 || !is_large) {
@@ -78,13 +79,13 @@ class Walk {
   void from_roots() {
     if (same_) return traverse_self(a_.root());
     if (a_.bound(a_.root()).overlaps(b_.bound(b_.root()))) return traverse_pair(a_.root(), b_.root());
-    // If the roots do not overlap, nothing is recorded, so the next traversal also starts at the roots.
+    // If the roots do not overlap, the separation list stays empty, so the next traversal also starts at the roots.
   }
 
   void resume() {
     SeparationList& list = *how_.list;
     if (list.size() + list.self_leaves.size() + list.closed.size() == 0) return from_roots();
-    // Entries added by this traversal are kept separate from those that it resumes.
+    // Keep the old entries, which this traversal resumes, apart from those that it adds.
     SeparationList before;
     std::swap(before.missed, list.missed);
     std::swap(before.leaf_pairs, list.leaf_pairs);
@@ -109,9 +110,9 @@ class Walk {
       if (stop.lanes != 0) before.missed[kept++] = stop;
     }
     before.missed.resize(kept);
-    for (const Ref ref : before.closed) traverse_self(ref);  // records it again, or what is below it
+    for (const Ref ref : before.closed) traverse_self(ref);  // adds new entries for this subtree
 
-    // Old entries stay in front, so that they are not copied repeatedly.
+    // Append the new entries to the old ones and not the reverse, so that the old ones are not copied.
     const auto append = [](auto& first, auto& second) {
       first.insert(first.end(), second.begin(), second.end());
       std::swap(first, second);
@@ -128,7 +129,7 @@ class Walk {
   };
   void resume_from(const DeferredCall& stop) { stop.self ? open(stop.a) : open(stop.a, stop.b); }
 
-  /// Lists all pairs below one node of a single tree.
+  /// Lists all pairs of triangles below one node of a tree that is traversed against itself.
   void traverse_self(Ref ref) {
     if (deferred_ != nullptr) return deferred_->push_back({ref, ref, true});
     open(ref);
@@ -152,9 +153,8 @@ class Walk {
     }
   }
 
-  /// Lists all pairs of a triangle below ref_a and one below ref_b; the bounds of ref_a and ref_b are known to overlap.
-  /// Unless kLonger, descends into both nodes together, because one test against all children costs as much as one
-  /// against a single child.
+  /// Lists all pairs of a triangle below ref_a and one below ref_b, whose bounds are known to overlap. Unless kLonger,
+  /// descends into both nodes, because testing a bound against all children of a node costs as much as against one.
   void traverse_pair(Ref ref_a, Ref ref_b) {
     if (deferred_ != nullptr) return deferred_->push_back({ref_a, ref_b, false});
     open(ref_a, ref_b);
@@ -177,7 +177,7 @@ class Walk {
     });
   }
 
-  /// Tests ref_a, whose bound is at `row` with this stride, against all children of a node of tree b.
+  /// Tests ref_a against all children of a node of tree b. Row r of the bound of ref_a is row[r * stride].
   void open_b(Ref ref_a, const float* row, std::size_t stride, Ref ref_b) {
     const Node& node = b_.nodes()[index(ref_b)];
     const std::uint32_t hits = overlap_mask(node.bounds, row, stride) & first_lanes(node.count);
@@ -199,7 +199,7 @@ class Walk {
     for_each_bit(near_b, [&](int i) { test_lane(leaf_a, i, leaf_b, first_lanes(leaf_b.count)); });
   }
 
-  /// Tests triangle i of leaf a against the `allowed` ones of leaf b.
+  /// Tests triangle i of leaf a against the triangles of leaf b in the mask `allowed`.
   void test_lane(const Leaf& leaf_a, int i, const Leaf& leaf_b, std::uint32_t allowed) {
     const std::uint32_t hits = overlap_mask(leaf_b.bounds, &leaf_a.bounds.row[0][i], kLanes) & allowed;
     if (hits == 0) return;
@@ -222,7 +222,7 @@ class Walk {
   const bool same_;
   const Traversal how_;
   CandidatePairs& out_;
-  std::vector<DeferredCall>* deferred_ = nullptr;  // collects calls while they are deferred; else null
+  std::vector<DeferredCall>* deferred_ = nullptr;  // not null: collects calls of open() instead of making them
 };
 
 }  // namespace weft::collision

@@ -8,11 +8,11 @@ namespace weft::collision {
 
 namespace {
 
-/// Weights below this count as zero, so that a point above a shared edge is on the edge for both faces despite
-/// rounding. This moves the closest point by up to 1e-13 of an edge; rounding moves it by a few times 1e-16.
+/// Weights below this count as zero, so that, despite rounding, a point above a shared edge is on the edge for both
+/// faces. This rule moves the closest point by up to 1e-13 of an edge; rounding moves it by a few times 1e-16.
 constexpr double kSnap = 1e-13;
 
-/// Relative rounding error of a squared distance, and of a distance relative to the edge lengths.
+/// Relative rounding error of a squared distance; also that of a distance, relative to the edge lengths.
 constexpr double kRounding = 2e-15;
 
 /// Parameter in [0, 1] of the point of the segment o + t e that is closest to o + w.
@@ -23,7 +23,8 @@ double along_segment(const Vec3& e, const Vec3& w) {
   return t < kSnap ? 0 : t > 1 - kSnap ? 1 : t;
 }
 
-/// Keeps the closer solution. Up to rounding, a point inside an edge wins, because the ends are never closer.
+/// Replaces `best` by this solution if it is closer. If both are equally close up to rounding, a solution inside an
+/// edge (0 < `parameter` < 1) wins, because it cannot be farther than the ends of its edge.
 void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, const Vec3& difference, double parameter) {
   const double distance_sq = difference.squaredNorm();
   const bool inner = parameter > 0 && parameter < 1;
@@ -36,7 +37,7 @@ ClosestPoints infinitely_far() {
 }
 
 /// Chooses between the boundary solution and the interior solution of a nearly degenerate pair. The interior one must
-/// be closer by more than rounding, so that collinear points always give an end or a corner.
+/// be closer by more than rounding, so that collinear points always give an end of an edge or a corner.
 ClosestPoints choose_closer(const ClosestPoints& boundary, const ClosestPoints& inside, double length) {
   return std::sqrt(inside.distance_sq) < std::sqrt(boundary.distance_sq) - kRounding * length ? inside : boundary;
 }
@@ -44,7 +45,7 @@ ClosestPoints choose_closer(const ClosestPoints& boundary, const ClosestPoints& 
 }  // namespace
 
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
-  // Use coordinates relative to t0, so that large coordinates cost no digits.
+  // Coordinates relative to t0: their rounding does not grow with the distance from the origin.
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
   const Vec3 n = e1.cross(e2);
   const double n_sq = n.squaredNorm(), sizes = e1.squaredNorm() * e2.squaredNorm();
@@ -53,7 +54,7 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
   const bool inside = n_sq > 0 && b1 > snap && b2 > snap && b1 + b2 < n_sq - snap;
   double u1 = b1 / n_sq, u2 = b2 / n_sq;
   if (inside && n_sq > kNearlyParallelSq * sizes) {
-    // Project on the normal: w - u1 e1 - u2 e2 would lose digits by cancellation.
+    // Project w on the normal: w - u1 e1 - u2 e2 would lose digits by cancellation.
     const Vec3 difference = n * (w.dot(n) / n_sq);
     return {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
   }
@@ -88,7 +89,7 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
     return {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
   }
 
-  // The distance is convex in both parameters. Without an interior minimum, one of them is at an end.
+  // The distance is a convex function of s and t. Without an interior minimum, s or t is 0 or 1.
   ClosestPoints best = infinitely_far();
   const Vec3 w_p1 = p1 - q0, w_q1 = q1 - p0;
   const double t_p0 = along_segment(e, -w), t_p1 = along_segment(e, w_p1);

@@ -8,13 +8,15 @@
 
 namespace weft::collision {
 
-/// If sine² of the angle between two edges is below this, their cross product has lost so many digits that the interior
-/// solution is refined and the boundary is tested as well. At the limit the error is 1e-16 / 1e-2 of the edge length.
+/// If the squared sine of the angle between two edges is below this, their cross product has lost many digits. The
+/// interior solution is then refined, and the boundary is tested as well. At the limit the error is 1e-16 / 1e-2 of the
+/// edge length.
 inline constexpr double kNearlyParallelSq = 1e-4;
 
-/// Closest points x_a = Σ (positive weights) x, x_b = -Σ (negative weights) x of two features with four vertices.
+/// Closest points of two features that have four vertices x together: x_a = Σ (positive weights) x on side a, x_b = −Σ
+/// (negative weights) x on side b.
 struct ClosestPoints {
-  std::array<double, 4> weights;  ///< side a ≥ 0, summing to 1; side b ≤ 0, summing to -1
+  std::array<double, 4> weights;  ///< of side a: ≥ 0, sum 1; of side b: ≤ 0, sum −1
   Vec3 difference;                ///< x_a - x_b [m]
   double distance_sq;             ///< [m²]
 
@@ -27,17 +29,18 @@ struct ClosestPoints {
   }
 };
 
-/// Point p (side a, weights[0]) against triangle t0 t1 t2 (side b, weights[1] to [3]). The triangle may degenerate to a
-/// segment or a point. The weights always describe a point of the triangle. The distance is accurate to about 2e-14 of
-/// the longest edge for ordinary triangles, and 2e-13 for needles of any aspect ratio, at any distance from the origin.
+/// Point p (side a, weights[0]) against triangle t0 t1 t2 (side b, weights[1] to [3]), which may degenerate to a
+/// segment or a point. The weights always describe a point of the triangle. Error of the distance, at any distance from
+/// the origin: 2e-14 of the longest edge for ordinary triangles, 2e-13 for needles of any aspect ratio.
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2);
 
-/// Segment p0 p1 (side a, weights[0] and [1]) against segment q0 q1 (side b, weights[2] and [3]); each may be a point.
-/// For parallel segments, returns one of the closest pairs, always the same for the same input.
+/// Segment p0 p1 (side a, weights[0] and [1]) against segment q0 q1 (side b, weights[2] and [3]). Each segment may be a
+/// point. For parallel segments, returns one of the closest pairs, the same one for the same input.
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1);
 
-/// Fast test before closest_vertex_face: true only if the distance is certainly above √reach_sq. Lower bounds are the
-/// distance to the plane of the triangle and, beyond an edge, to the plane through that edge perpendicular to the face.
+/// Fast test before closest_vertex_face: true only if the distance certainly exceeds √reach_sq. Lower bounds: the
+/// distance to the plane of the triangle; beyond an edge, that to the plane through the edge perpendicular to the
+/// triangle.
 inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;  // far above the rounding of the products
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
@@ -50,7 +53,7 @@ inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, con
   return beyond(b1, e2.squaredNorm()) || beyond(b2, e1.squaredNorm()) || beyond(b0, (e2 - e1).squaredNorm());
 }
 
-/// As is_surely_farther, for two edges. The distance between their lines is a lower bound.
+/// As is_surely_farther, for two edges by the distance of their lines; false for nearly parallel edges.
 inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0;
@@ -60,8 +63,8 @@ inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3&
          height * height > kSafety * reach_sq * n_sq;
 }
 
-/// Fast test before closest_edge_edge: true only if the closest points of the two lines are outside an edge, or farther
-/// apart than √reach_sq.
+/// Fast test before closest_edge_edge: true only if the closest points of the two lines are outside an edge or farther
+/// apart than √reach_sq; false for nearly parallel edges.
 inline bool is_surely_not_interior(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;

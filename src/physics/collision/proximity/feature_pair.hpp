@@ -11,7 +11,8 @@ namespace weft::collision {
 
 enum class ProximityKind : std::uint8_t { vertex_face, edge_edge };
 
-/// Identifies two features, independent of the order of their vertices.
+/// Identifies two features, whatever the order of their vertices. The first entry is negative (~vertex) for a vertex
+/// and a face, so the kinds do not mix.
 using FeatureKey = std::array<Index, 4>;
 inline FeatureKey feature_key(ProximityKind kind, FeatureKey vertices) {
   if (kind == ProximityKind::vertex_face) {
@@ -26,8 +27,8 @@ inline FeatureKey feature_key(ProximityKind kind, FeatureKey vertices) {
   return vertices;
 }
 
-/// The points are x_a = Σ w x over the positive weights w, and x_b = −Σ w x over the negative ones. A vertex with
-/// weight 0 may belong to neither feature.
+/// Points of the two features: x_a = Σ w x over the positive weights w on side a, x_b = −Σ w x over the negative ones
+/// on side b. A vertex of weight 0 need not belong to either feature.
 struct FeaturePair {
   std::array<Index, 4> vertices{};  ///< vertex, then the corners of the face; or the ends of edge a, then of edge b
   std::array<double, 4> weights{};  ///< those of side a sum to 1, those of side b to −1

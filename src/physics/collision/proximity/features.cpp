@@ -12,7 +12,7 @@ Features::Features(std::span<const Triangle> triangles, Index vertex_count)
 }
 
 void Features::collect_triangles_at_vertices(Index vertex_count) {
-  // Counting sort by vertex; a corner named twice counts once.
+  // Counting sort by vertex. A repeated corner (of a piece of rope) counts once.
   const auto for_each_corner = [&](const auto& visit) {
     for (std::size_t t = 0; t < triangles_.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
@@ -49,7 +49,7 @@ void Features::own_edges() {
     return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
   });
 
-  // The first triangle of a run of equal edges owns the edge.
+  // Of equal edges, which are consecutive now, the first triangle owns the edge.
   edge_.resize(triangles_.size());
   across_.assign(triangles_.size(), {-1, -1, -1});
   apexes_begin_ = {0};
@@ -58,7 +58,7 @@ void Features::own_edges() {
     const Side& owner = sides[begin];
     owned_[owner.triangle] |= static_cast<std::uint8_t>(8U << owner.corner);
     edge_[owner.triangle][owner.corner] = static_cast<Index>(apexes_begin_.size() - 1);
-    // In a piece of rope (a, b, b) both sides of the edge belong to the same triangle.
+    // In a piece of rope (a, b, b), the same triangle has the edge twice.
     if (end - begin == 2 && sides[begin + 1].triangle != owner.triangle)
       across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)

@@ -1,4 +1,4 @@
-// Assigns each vertex and edge to one triangle, and lists their neighbours.
+// Assigns each vertex and edge to one triangle that owns it, and lists the triangles around vertices and edges.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace weft::collision {
 
-/// The lowest-numbered triangle that contains a vertex or edge owns it. A loop over triangle pairs thus visits each
-/// pair of features once (representative triangles: Curtis, Tamstorf & Manocha, "Fast Collision Detection for
-/// Deformable Models using Representative-Triangles", 2008).
+/// The lowest-numbered triangle that contains a vertex or edge owns it. If a loop over triangle pairs uses only owned
+/// features, it visits each pair of features once (Curtis, Tamstorf & Manocha, "Fast Collision Detection for Deformable
+/// Models using Representative-Triangles", 2008).
 class Features {
  public:
   Features() = default;
@@ -27,14 +27,15 @@ class Features {
   /// Bits 0 to 2: the triangle owns corner c. Bits 3 to 5: it owns the edge from corner c to corner c + 1.
   std::uint8_t owned(Index t) const { return owned_[t]; }
 
-  /// Vertices opposite to the edge from corner c to c + 1 that triangle t owns, one for each triangle at that edge.
+  /// Vertices opposite to the edge from corner c to corner c + 1, which triangle t must own: one for each triangle at
+  /// that edge.
   std::span<const Index> apexes(Index t, std::size_t c) const {
     const auto edge = static_cast<std::size_t>(edge_[t][c]);
     return std::span(apexes_).subspan(at(apexes_begin_[edge]), at(apexes_begin_[edge + 1] - apexes_begin_[edge]));
   }
 
-  /// The other triangle at the edge from corner c to corner c + 1 that triangle t owns; −1 unless exactly two triangles
-  /// share it.
+  /// The other triangle at the edge from corner c to corner c + 1, which triangle t must own. −1 unless exactly two
+  /// triangles share the edge.
   Index across(Index t, std::size_t c) const { return across_[t][c]; }
 
   /// Triangles at a vertex, lowest number first.
@@ -43,7 +44,7 @@ class Features {
     return std::span(around_).subspan(at(around_begin_[v]), at(around_begin_[v + 1] - around_begin_[v]));
   }
 
-  /// Pairs of triangles a < b with a common edge and a in [first, first + count), sorted.
+  /// Sorted pairs of triangles a < b with a common edge, with a in [first, first + count).
   std::vector<TrianglePair> hinges(Index first, Index count) const;
 
  private:
@@ -52,7 +53,7 @@ class Features {
 
   std::span<const Triangle> triangles_;
   std::vector<std::uint8_t> owned_;
-  std::vector<std::array<Index, 3>> edge_;  // number of the edge, if owned
+  std::vector<std::array<Index, 3>> edge_;  // by triangle and corner: number of the edge, if owned
   std::vector<std::array<Index, 3>> across_;
   std::vector<Index> apexes_begin_;  // by edge
   std::vector<Index> apexes_;

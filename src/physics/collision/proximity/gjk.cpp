@@ -9,18 +9,19 @@ namespace weft::collision {
 
 namespace {
 
-/// The search ends if the distance is known to this fraction of the size of the two sets: a few rounding errors.
+/// The search ends when the upper and lower bounds of the distance differ by this fraction of the size of both sets: a
+/// few rounding errors.
 constexpr double kTolerance = 1e-14;
-/// Polygons of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
+/// Sets of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
 constexpr int kMaxRounds = 40;
 
-/// A corner of the difference set a - b.
+/// A corner w of the Minkowski difference a - b: corner `a` of set a minus corner `b` of set b.
 struct Support {
   std::size_t a = 0, b = 0;
   Vec3 w = Vec3::Zero();
 };
 
-/// Up to four corners of the difference set, and the point of their hull nearest to the origin.
+/// Up to four corners of the Minkowski difference, and the point of their hull nearest to the origin.
 struct Simplex {
   std::array<Support, 4> corner{};
   std::array<double, 4> weight{1, 0, 0, 0};
@@ -44,7 +45,7 @@ struct Simplex {
   }
 };
 
-/// The point that is furthest along d, by its index.
+/// Index of the point that is furthest along d.
 std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
   std::size_t best = 0;
   double max_along = points[0].dot(d);
@@ -56,8 +57,8 @@ std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
   return best;
 }
 
-/// Finds the point of triangle i, j, k that is nearest to the origin. If it is nearer than the best point so far, it
-/// becomes simplex.nearest. The closed form of closest_vertex_face also handles needles, segments and points.
+/// Finds the point of triangle i, j, k that is nearest to the origin, and stores it in `simplex` if it is nearer than
+/// the best point so far (`least_sq`). closest_vertex_face also accepts needles, segments and points.
 void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, std::size_t k) {
   const auto& c = simplex.corner;
   const ClosestPoints points = closest_vertex_face(Vec3::Zero(), c[i].w, c[j].w, c[k].w);

@@ -12,12 +12,12 @@ namespace weft::collision {
 
 namespace {
 
-// Triangles per batch of pairs with a common vertex: each triangle has six to nine such pairs.
+// Number of triangles whose pairs with a common vertex form one batch. Each triangle has six to nine such pairs.
 constexpr std::size_t kTrianglesPerBatch = 64;
-// Pairs of a list per batch of candidates among them.
+// Number of listed pairs from which AppendPairs appends one batch of candidates.
 constexpr std::size_t kPairsPerBatch = 4 * kGrainSize;
 
-/// Unit vector along v, or along a fallback if the features touch, so that v has no direction.
+/// Unit vector along v. If the features touch, v has no direction; the result then has that of `fallback`.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
   if (const double length_sq = v.squaredNorm(); length_sq > 1e-280) return v / std::sqrt(length_sq);
   for (const Vec3& tiny : {v, fallback}) {
@@ -36,7 +36,7 @@ struct ProximityFinder::GatherParameters {
   double min_fold;
 };
 
-/// Turns pairs of triangles into pairs of features within a radius.
+/// Finds the pairs of features within a radius in pairs of triangles.
 class ProximityFinder::Gathering {
  public:
   Gathering(const ProximityFinder& finder, const GatherParameters& parameters, FeaturePairs& found)
@@ -49,9 +49,8 @@ class ProximityFinder::Gathering {
         radius_rounded_(parameters.radius_rounded),
         min_fold_(static_cast<float>(parameters.min_fold)) {}
 
-  /// Tests all owned features of each pair of triangles against each other. Boxes of vertices, edges and faces come
-  /// first, for eight pairs at once and without branches, because outcomes are unpredictable (measured: 3 times
-  /// faster).
+  /// Tests all owned features of each pair of triangles against each other. Tests their boxes first, for eight pairs at
+  /// once and without branches, because branches would be mispredicted (measured: 3 times as fast).
   void test_pairs(std::span<const TrianglePair> pairs) {
     for (; pairs.size() >= 8; pairs = pairs.subspan(8)) test_eight_pairs(pairs.first<8>(), 8);
     if (pairs.empty()) return;
@@ -72,7 +71,7 @@ class ProximityFinder::Gathering {
     std::array<Boxes, 3> edge;  // edge i goes from corner i to corner i + 1
     Boxes face;
     std::array<IntLanes8, 3> corner;     // vertex numbers
-    std::array<std::uint32_t, 6> owned;  // of corners 0 to 2, then edges 0 to 2; bit l: the triangle in lane l owns it
+    std::array<std::uint32_t, 6> owned;  // by corner, then by edge; bit l: the triangle in lane l owns it
 
     Side(const Features& features, const std::vector<Rounded>& rounded, const std::array<Index, 8>& triangles) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -100,7 +99,7 @@ class ProximityFinder::Gathering {
     }
   };
 
-  /// Bit l is set if the boxes in lane l are within the radius.
+  /// Bit l is set if the boxes in lane l are closer than the radius.
   static std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b, const Lanes8& radius) {
     Lanes8 gap = a_low.axis[0] - b.high.axis[0];
     raise_to(gap, b.low.axis[0] - a_high.axis[0]);
@@ -111,8 +110,8 @@ class ProximityFinder::Gathering {
     return sign_mask(gap - radius);
   }
 
-  /// The radius for the box tests in float. Rounding changes a coordinate by 2^-24 of itself, so a gap between two
-  /// changes by at most four times that. Only coordinates of the pair enter, so other bodies do not affect the result.
+  /// The radius for the box tests in float. Rounding changes a gap between coordinates by less than four times 2^-24 of
+  /// the largest one. Uses only coordinates of the pair, so other bodies do not affect the result.
   Lanes8 rounded_radius(const Boxes& a, const Boxes& b) const {
     Lanes8 largest = a.high.axis[0];
     for (const Boxes* box : {&a, &b})
@@ -130,7 +129,7 @@ class ProximityFinder::Gathering {
     const Lanes8 radius = rounded_radius(a.face, b.face);
     const std::uint32_t together = near(a.face.low, a.face.high, b.face, radius) & ((1U << count) - 1);
     if (together == 0) return;
-    std::array<std::array<std::uint32_t, 3>, 3> same;  // corner i of a equals corner j of b
+    std::array<std::array<std::uint32_t, 3>, 3> same;  // bit l: corner i of a is corner j of b
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < 3; ++j) same[i][j] = sign_mask(IntLanes8(a.corner[i] == b.corner[j]));
 
@@ -180,7 +179,7 @@ class ProximityFinder::Gathering {
   const float min_fold_;
 };
 
-/// Turns pairs of features into near pairs.
+/// Finds the near pairs among pairs of features.
 class ProximityFinder::Search {
  public:
   Search(const Features& features, std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out)
@@ -201,14 +200,15 @@ class ProximityFinder::Search {
     return closest_vertex_face(at(vertex), at(face[0]), at(face[1]), at(face[2]));
   }
 
-  /// Whether another pair represents this vertex-face pair, whose closest point is on the boundary of the face.
+  /// Whether another pair represents this one, whose closest point is on the boundary of the face (see
+  /// ProximityFinder).
   bool is_represented_by_other(Index vertex, Index face, const ClosestPoints& points) const {
     const Triangle& corners = features_.triangle(face);
-    std::array<Index, 2> support{-1, -1};  // edge or vertex of the face that holds the closest point
+    std::array<Index, 2> support{-1, -1};  // ends of the edge, or vertex, of the face on which the closest point lies
     for (std::size_t c = 0, n = 0; c < 3; ++c)
       if (points.weights[c + 1] != 0 && n < 2) support[n++] = corners[c];
 
-    // If two vertices are closest, both sides find the same pair. List the one whose vertex has the lower number.
+    // If the closest points are two vertices, list only the pair of the vertex with the lower number.
     if (support[1] < 0 && vertex > support[0]) {
       const auto star = features_.triangles_at(vertex);
       const auto apart = [&](Index t) { return !has_vertex(features_.triangle(t), support[0]); };
@@ -241,8 +241,8 @@ class ProximityFinder::Search {
  private:
   const Vec3& at(Index vertex) const { return x_[vertex]; }
 
-  /// Largest sine of the angle by which the unit direction `outward`, perpendicular to the edge, points towards a face
-  /// at the edge: |edge| (arm · outward) / |edge × arm|.
+  /// Largest sine of the angle by which `outward`, a unit vector perpendicular to the edge, points towards a face at
+  /// the edge: |edge| (arm · outward) / |edge × arm|. `apexes`: corners of the faces opposite to the edge.
   double outside_wedge(Index e0, Index e1, std::span<const Index> apexes, const Vec3& outward) const {
     const Vec3 edge = at(e1) - at(e0);
     const double length = edge.norm();
@@ -255,7 +255,7 @@ class ProximityFinder::Search {
     return max_sine;
   }
 
-  /// Sine of the angle from the wedge of the vertex to the direction towards its closest point; 0 inside the wedge.
+  /// Sine of the angle from the wedge of a vertex (see Proximity) to the direction towards its closest point; 0 inside.
   double outside_vertex_wedge(Index vertex, const ClosestPoints& points) const {
     const Vec3 point = at(vertex) - points.difference;
     double least_sq = (1 - kRoundoff) * points.distance_sq;
@@ -334,8 +334,8 @@ void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const S
     test_pairs(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())), parameters);
 }
 
-// In cloth without sharp creases all triangles are clear, so no pair with a common vertex is tested (measured: these
-// pairs took 13 % of the time of ball_through_cloth).
+// In cloth without sharp creases all triangles are clear, so no pair with a common vertex is tested. Testing these
+// pairs would take 13 % of the time of ball_through_cloth.
 void ProximityFinder::gather(std::size_t count, const AppendPairs& append_apart, std::span<const Surface> deformable,
                              std::span<const Vec3> x, double radius, double min_fold,
                              std::span<const std::uint8_t> clear) {
@@ -391,8 +391,7 @@ void ProximityFinder::find(std::span<const Vec3> x, double detection_distance, s
     Search search(features_, x, detection_distance, list);
     for (std::size_t p = begin; p < end; ++p) search.edges(edge_edges[p]);
   });
-  // The order of candidates depends on the shape of the trees. Sums over contacts in that order would differ by
-  // rounding.
+  // The order of candidates depends on the shape of the trees, and later sums depend on the order by rounding.
   std::ranges::sort(out, {}, [](const Proximity& near) { return std::tie(near.kind, near.vertices); });
 }
 

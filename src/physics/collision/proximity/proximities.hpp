@@ -1,4 +1,5 @@
-// Narrow phase: finds near vertex-face and edge-edge pairs among candidate pairs of triangles.
+// Narrow phase: finds near vertex-face and edge-edge pairs among candidate pairs of triangles. Near: closer than the
+// detection distance.
 #pragma once
 
 #include <array>
@@ -15,27 +16,28 @@
 
 namespace weft::collision {
 
-/// Two features closer than the detection distance, with their closest points: Σ weights x = distance · normal.
+/// Two near features with their closest points: Σ weights x = distance · normal.
 struct Proximity : FeaturePair {
-  /// For an edge pair, one value for edge a and one for edge b: sine of the angle from the wedge of that edge to the
-  /// direction towards the other edge; negative inside the wedge. The wedge of an edge is the set of directions,
-  /// perpendicular to the edge, in which no face at the edge is closer than the edge. If a value is above 0, a
-  /// neighbouring pair is closer, and the response may skip this one. For vertex-face pairs whose closest point is on
-  /// an edge or at a vertex of the face, the first value is that of the wedge of the vertex, but 0 inside; else both
-  /// are 0.
+  /// Sine of the angle by which the contact direction, between the closest points, leaves the wedge of a feature. The
+  /// wedge of a vertex or edge consists of the directions (of an edge: perpendicular to it) in which no adjacent face
+  /// is closer than the vertex or edge itself. Edge pair: one value for each edge, negative inside its wedge.
+  /// Vertex-face pair: first the value of the vertex, but 0 inside its wedge or if the closest point is inside the
+  /// face; then 0. If a value is above 0, a neighbouring pair is closer, so the response may skip this one.
   std::array<double, 2> outside_wedge{};
 };
 
-/// Finds near pairs among candidate pairs. Of all vertex-face and edge-edge pairs without a common vertex and with a
-/// distance below the detection distance, those are listed whose closest points are
+/// Finds near pairs among candidate pairs. Of all near vertex-face and edge-edge pairs without a common vertex, it
+/// lists those whose closest points are
 ///   - inside the face;
 ///   - inside both edges;
 ///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. If several faces
-///   there are equally close, only one is listed. Every skipped pair is represented by a listed pair that is at least
-/// as close. Proof: let S be the edge or vertex of the face where the closest point lies. Every face around S contains
-/// that point, so the vertex is no farther from each of them. Likewise, if the closest point of an edge pair is at an
-/// end, the faces around the other edge are no farther. From face to face, distances never grow, and ties go to the
-/// lower number, so the chain ends at a listed pair. The smallest distance of all is therefore always listed.
+///     are equally close, it lists only one pair.
+///
+/// Every near pair that is not listed is represented by a listed pair that is at least as close. Proof: let the point
+/// of a face closest to a vertex lie on the edge or vertex S of the face. Every face around S contains that point, so
+/// the vertex is no farther from each of them. Likewise, if the closest point of an edge pair is an end of one edge,
+/// this end is no farther from the faces around the other edge. Going from face to face, distances never grow, and of
+/// equal distances the face with the lower number wins, so the chain ends at a listed pair.
 class ProximityFinder {
  public:
   ProximityFinder() = default;
@@ -44,25 +46,24 @@ class ProximityFinder {
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
   /// Gathers all pairs of features closer than `radius` [m] at x [m], and some others. The candidates must include
-  /// every pair of triangles closer than `radius`; pairs with a common edge are added here, for each surface of
-  /// `deformable`. An edge pair is skipped if the sines of half the fold angles along both edges add up to less than
-  /// `min_fold`. Between two smooth layers, four of five pairs are edge pairs, but vertices and faces suffice there.
+  /// every pair of triangles closer than `radius`, except pairs with a common edge, which gather() adds for each
+  /// surface of `deformable`. Skips an edge pair if the sines of half the fold angles along both edges add up to less
+  /// than `min_fold`: between two smooth layers, four of five pairs are edge pairs, but vertex-face pairs suffice.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
               double radius, double min_fold = 0);
-  /// Appends the candidates among the pairs [begin, end) of a list; called from several threads.
+  /// Appends those of the pairs [begin, end) of a list that are candidates. Several threads call it.
   using AppendPairs = std::function<void(std::size_t begin, std::size_t end, PairList& pairs)>;
-  /// As above, with candidates without a common vertex only, from a list of `count` pairs. Pairs that share one or two
-  /// vertices are added here, for each surface of `deformable`. `clear`: result of Separation::find_clear_triangles for
-  /// `radius`.
+  /// As above, with candidates from a list of `count` pairs without a common vertex. Adds the pairs with one or two
+  /// common vertices, except of `clear` triangles (found by Separation::find_clear_triangles for the distance
+  /// `radius`).
   void gather(std::size_t count, const AppendPairs& append_apart, std::span<const Surface> deformable,
               std::span<const Vec3> x, double radius, double min_fold, std::span<const std::uint8_t> clear);
 
-  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m], ordered by kind and by
-  /// the numbers of their vertices, whatever the order of the candidates. The list is complete as long as no vertex is
-  /// farther than (radius − detection_distance) / 2 from its position in gather().
+  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m] and not represented by others,
+  /// sorted by kind and by the numbers of their vertices. The list is complete if no vertex is farther than (radius −
+  /// detection_distance) / 2 from its position in gather().
   void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
-  /// Gathers and finds.
   void find(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
             double detection_distance, std::vector<Proximity>& out) {
     gather(candidates, deformable, x, detection_distance);
@@ -74,7 +75,7 @@ class ProximityFinder {
   class Search;
 
   struct Rounded {
-    Lanes4 xyz;
+    Lanes4 xyz;  // position in float
   };
   struct VertexFace {
     Index vertex, face;
@@ -103,7 +104,7 @@ class ProximityFinder {
 
   Features features_;
   std::vector<std::array<float, 3>> folds_;  ///< per triangle and owned edge: sine of half the fold angle; 1 at borders
-  std::vector<Rounded> rounded_;             ///< positions in float, for the box tests
+  std::vector<Rounded> rounded_;             ///< all positions, for the box tests
   FeaturePairs pairs_;
 };
 

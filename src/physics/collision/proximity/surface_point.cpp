@@ -10,11 +10,11 @@
 namespace weft::collision {
 namespace {
 
-// Below this distance, the line to the nearest point counts as having no direction [m].
+// If the nearest point is closer than this [m], rounding determines the direction of the line to it.
 constexpr double kMinDirectionLength = 1e-10;
-// Minimum cosine between a face normal and a given direction for the face to count as facing that way.
+// A face counts as facing a direction if the cosine between its normal and that direction exceeds this.
 constexpr double kMinFacingCosine = 0.5;
-// Scale of the offset between a point and the start of its ray [m], and length of the ray [m].
+// Scale of the offset from a point to the start of its ray [m], and length of the ray [m].
 constexpr double kRayOffset = 1e-7;
 constexpr double kRayLength = 1e3;
 
@@ -22,8 +22,8 @@ ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x)
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
 }
 
-// Angle [rad] that a face spans around its point with these weights: the angle of the face at a corner, π on an edge,
-// 2π inside.
+// Angle [rad] that a face spans around its point with these weights: at a corner the angle of the face, on an edge π,
+// inside 2π.
 double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
   const auto on = [&](std::size_t c) { return weights[c] > kRoundoff; };
   const int support = on(0) + on(1) + on(2);
@@ -38,8 +38,8 @@ std::optional<std::array<double, 3>> intersect_segment(const Vec3& p, const Vec3
                                                        std::span<const Vec3> x) {
   const Vec3 &t0 = x[face[0]], &t1 = x[face[1]], &t2 = x[face[2]];
   const Vec3 segment = q - p;
-  // Six times the signed volumes of the tetrahedra of the segment and each edge. All have the same sign if the line
-  // goes through the face.
+  // Six times the signed volumes of the tetrahedra between the segment and each edge of the face. They have the same
+  // sign if the line through p and q passes through the face.
   const double v0 = segment.dot((t1 - p).cross(t2 - p)), v1 = segment.dot((t2 - p).cross(t0 - p)),
                v2 = segment.dot((t0 - p).cross(t1 - p));
   const double sum = v0 + v1 + v2;
@@ -78,7 +78,7 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
       difference = points.difference;
       outward.setZero();
     }
-    // Skip another point that is just as near, on the far side of a thin body.
+    // Skip a point that is just as near but elsewhere, such as on the other side of a thin body.
     if ((points.difference - difference).squaredNorm() >
         kRoundoff * best_sq + kMinDirectionLength * kMinDirectionLength)
       continue;
@@ -118,7 +118,8 @@ bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase
                std::span<const Vec3> x) {
   Eigen::Index axis = 0;
   towards.cwiseAbs().maxCoeff(&axis);
-  // The ray begins slightly beside p. Otherwise it could go through an edge or a corner, and hit two faces or none.
+  // The ray begins slightly beside p. A ray from p itself could pass through an edge or a corner and hit two faces or
+  // none.
   const Vec3 from = p + kRayOffset * Vec3(0.918, 0.637, 0.781);
   Vec3 to = from;
   to[axis] += towards[axis] < 0 ? -kRayLength : kRayLength;
@@ -155,7 +156,7 @@ std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Tria
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t next = (c + 1) % 3;
     if (intersect_segment(x[a[c]], x[a[next]], b, x)) {
-      // The heights of the ends over the face give the place on the edge.
+      // The heights of the ends above the face determine where the edge passes through it.
       const Vec3 n = face_normal(b, x);
       const double from = std::abs(n.dot(x[a[c]] - x[b[0]])), to = std::abs(n.dot(x[a[next]] - x[b[0]]));
       const double fraction = from + to > 0 ? from / (from + to) : 0.5;

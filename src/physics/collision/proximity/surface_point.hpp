@@ -21,24 +21,23 @@ struct SurfacePoint {
   double height = 0;                ///< signed distance of p [m], negative inside; infinite if there are no triangles
 };
 
-/// Nearest point of these triangles, which are counter-clockwise seen from outside. The angle-weighted normal of all
-/// faces that meet at the nearest point decides between inside and outside, or back and front (Bærentzen & Aanæs,
-/// "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
+/// Nearest point of these triangles, which are counter-clockwise seen from outside. Inside and outside (of an open
+/// surface: back and front) are distinguished by the angle-weighted normal of all faces that meet at the nearest point
+/// (Bærentzen & Aanæs, "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
 SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, std::span<const Vec3> x);
 
 /// Whether a face takes part in a search.
 using CountsFace = std::function<bool(const Triangle& face)>;
 /// Nearest point of a surface of the broad phase at positions x [m], which must be inside the bounds of its last refit.
-/// Gives the same bits as a search over all triangles that are not excluded, except if the distances of some thousand
-/// faces, each within rounding of the next, extend over more than kNearestTolerance (query.hpp). `counts`: if given,
-/// excludes faces for which it is false. `towards`: unit or zero; if not zero and some counted faces have a normal
-/// within 60 degrees of it, excludes all other faces.
+/// Gives the same bits as a search over all faces that take part, unless some thousand faces are equally near up to
+/// rounding. `counts`: if given, faces for which it is false do not take part. `towards`: unit or zero; if it is not
+/// zero and some of these faces have a normal within 60 degrees of it, only those take part.
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
 
 /// Whether a point is inside a surface of the broad phase, which may cross itself; for an open surface: behind it.
-/// Casts a ray along the axis nearest to `towards`: the point is inside if the ray leaves through more faces than it
-/// enters. x [m] must be inside the bounds of the last refit.
+/// Casts a ray along the axis nearest to `towards`. The point is inside if the ray leaves through more faces than it
+/// enters through. x [m] must be inside the bounds of the last refit.
 bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
                std::span<const Vec3> x);
 

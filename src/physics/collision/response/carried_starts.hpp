@@ -1,4 +1,5 @@
-// Start positions of a step in the frame of a moving obstacle: as if the obstacle had carried all particles along.
+// Start positions of a step in the frame of a moving obstacle: where the particles would be if the obstacle had carried
+// them along.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +11,7 @@
 
 namespace weft::collision {
 
-/// Motion of a body that keeps its shape over one step: takes a point from x to turn · x + shift.
+/// Motion of a body that keeps its shape over one step. A point moves from x to turn · x + shift.
 struct RigidMotion {
   Mat3 turn = Mat3::Identity();
   Vec3 shift = Vec3::Zero();  ///< [m]
@@ -19,10 +20,10 @@ struct RigidMotion {
 };
 
 /// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates`).
-/// In its own frame, the obstacle stands still. So this class applies the motion of the obstacle to the start positions
-/// of all particles. Relative trajectories are then straight, and a plane fixed to the obstacle can separate them for
-/// the whole step. A particle that ends at its carried start keeps its exact distance to the obstacle, so a single
-/// obstacle never meets it.
+/// In the frame of the obstacle, the obstacle rests. This class therefore applies the motion of the obstacle to the
+/// start positions of all particles. From these "carried" starts, a plane fixed to the obstacle can separate
+/// trajectories for the whole step. A particle that ends at its carried start keeps its distance from the obstacle, so
+/// it does not meet this obstacle.
 class CarriedStarts {
  public:
   CarriedStarts() = default;
@@ -30,19 +31,19 @@ class CarriedStarts {
   CarriedStarts(Index first_obstacle, std::span<const std::size_t> body_of)
       : first_obstacle_(first_obstacle), body_of_(body_of) {}
 
-  /// Begins a step from x_t0 to x_t1, which holds the ends of the obstacles [m]; both must outlive the step. `motions`:
-  /// one for each body; empty: nothing is carried.
+  /// Begins a step from x_t0 to x_t1 [m]; of x_t1, only the ends of the obstacles are used. Both must outlive the step.
+  /// `motions`: one for each body; empty: nothing is carried.
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const RigidMotion> motions);
 
-  /// Whether a body moves rigidly in this step.
+  /// Whether a body moves in this step without changing its shape.
   bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
-  /// Starts of the particles after the motion of this body [m]. The body's own vertices are at their end, those of
-  /// other obstacles at their start.
+  /// Starts of the particles, carried by this body [m]. Vertices of the body itself are at their end, those of other
+  /// obstacles at their start.
   std::span<const Vec3> by(std::size_t body) const;
-  /// Computes all starts that of() can return, so that threads can call of() at the same time.
+  /// Computes all starts that of() can return. Threads may then call of() at the same time.
   void make() const;
 
-  /// Start positions for testing a pair: carried by its obstacle if that turns, else `x_t0`.
+  /// Start positions for testing a pair: carried by the obstacle of the pair if this obstacle turns, else `x_t0`.
   std::span<const Vec3> of(const CornerPair& pair, std::span<const Vec3> x_t0) const {
     if (!any_turns_ || !has_obstacle(pair)) return x_t0;
     const std::size_t body = obstacle_of(pair);

@@ -20,7 +20,8 @@ Vec3 normal(const Corners& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]);
 }
 
-/// Both sides of a pair at one time. Neighbouring pieces of a trajectory share it, with the directions computed here.
+/// Corners of both sides of a pair at one time, with directions for planes. Both halves of a trajectory share the
+/// middle.
 struct Sides {
   Corners a, b;
   Vec3 normal_a = normal(a), normal_b = normal(b);
@@ -39,7 +40,7 @@ Sides sides_of(const CornerPair& pair, std::span<const Vec3> x) {
   return {corners(pair.a), corners(pair.b)};
 }
 
-// min over k of height(a, k) − max over k of height(b, k), for corners k = 0 to 2.
+// Gap between side a and side b, for heights of their corners k = 0 to 2: min height(a, k) − max height(b, k).
 template <class Height>
 double least_gap(const Height& height) {
   return std::min({height(&Sides::a, 0), height(&Sides::a, 1), height(&Sides::a, 2)}) -
@@ -50,7 +51,7 @@ double gap_along(const Vec3& n, const Sides& x) {
   return least_gap([&](Corners Sides::*side, std::size_t k) { return n.dot((x.*side)[k]); });
 }
 
-/// Searches for planes over a piece of the trajectory. `end_gap`: minimum gap at its end [m].
+/// Searches for planes over a part of the trajectory. `end_gap`: minimum gap at the end of the part [m].
 class Search {
  public:
   Search(Sides& t0, Sides& t1, double end_gap) : t0_(t0), t1_(t1), end_gap_(end_gap) {}
@@ -62,7 +63,7 @@ class Search {
         try_constant_direction(orient_to_side_a(t1_.normal_b)))
       return found_;
     const bool turning = which != PlaneKinds::constant;
-    // Hulls that intersect at the end have no separating plane.
+    // Triangles that intersect at the end have no separating plane.
     if (turning && t1_.closest() == Vec3::Zero()) return std::nullopt;
     if (turning && (try_turning_direction(of_a, orient_as_at_start(t1_.normal_a, t0_.normal_a)) ||
                     try_turning_direction(of_b, orient_as_at_start(t1_.normal_b, t0_.normal_b)) ||
@@ -78,7 +79,7 @@ class Search {
 
  private:
   Vec3 orient_to_side_a(const Vec3& n) const { return n.dot(t0_.centres) < 0 ? Vec3(-n) : n; }
-  // Orients a normal at the end as the normal of the same triangle was oriented at the start.
+  // Orients the normal of a triangle at the end in the same way as its normal at the start.
   Vec3 orient_as_at_start(const Vec3& later, const Vec3& at_start) const {
     return at_start.dot(t0_.centres) < 0 ? Vec3(-later) : later;
   }

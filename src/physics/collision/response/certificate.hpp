@@ -1,4 +1,4 @@
-// Separating planes that move and turn: prove that two sets of vertices stay apart for a whole step.
+// Separating planes that translate and turn. They prove that two triangles stay apart for a whole step.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@ struct CornerPair {
   friend auto operator<=>(const CornerPair&, const CornerPair&) = default;
 };
 
-/// min_a n·x − max_b n·x [m]: how far side a lies above side b along the unit direction n.
+/// Gap along the unit direction n, from b to a: minimum of n·x over the corners of a minus maximum over those of b [m].
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
 
 /// Whether a plane with the constant normal n, which translates with the pair, separates both sides during the linear
-/// motion from x_t0 to x_t1. The gap along n must be at least kRoundoff at the start (touching vertices are not
-/// separated), and Numerics::Separation::least_gap at the end. Every n·x is linear in time, so the gap is a minimum of
-/// linear functions, hence concave, hence positive in between.
+/// motion from x_t0 to x_t1. The gap along n must be at least kRoundoff at the start (so touching vertices are not
+/// separated), and Numerics::Separation::least_gap at the end. Every n·x is linear in time. So the gap, a minimum of
+/// linear functions, is concave and stays positive in between.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// Which planes are tried. `constant`: those of constant direction. `turning`: also those that turn during the step.
@@ -39,17 +39,17 @@ enum class PlaneKinds { constant, turning, all };
 ///   3. the line between the closest points, constant, then turning;
 ///   4. all again in each half of the trajectory, which is halved at most Numerics::Repair::max_retries times.
 ///
-/// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, t from 0 to 1. For two linearly moving corners with the
-/// difference δ(t), n·δ is quadratic in time, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁; it is
-/// positive if these are. For two layers of any width at a distance g that turn together by an angle θ, the
-/// coefficients are g, g cos θ and g. A plane of constant direction would cut a layer if the width times sin(θ/2)
-/// exceeds g.
+/// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, with t from 0 to 1. Let δ(t) be the difference of two
+/// linearly moving corners. Then n·δ is quadratic in t, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁,
+/// and it is positive if these are. Example: two layers at a distance g turn together by an angle θ. The coefficients
+/// are g, g cos θ and g, whatever the width of the layers. A plane of constant direction would cut a layer if the width
+/// times sin(θ/2) exceeds g.
 ///
-/// Returns the direction at the end of the step, rounded to single precision for storage; nullopt if none is found.
+/// Returns the direction of the plane at the end of the step, in single precision as Planes stores it; nullopt if none.
 std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,
                                           std::span<const Vec3> x_t1, PlaneKinds which = PlaneKinds::all);
 
-/// The closest pair of features of two sides.
+/// The closest pair of features of the two sides of a CornerPair.
 struct ClosestFeatures {
   std::array<Index, 4> vertices{};  ///< global numbers
   ClosestPoints points{};           ///< weights of the vertices; difference points from b to a

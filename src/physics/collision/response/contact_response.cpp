@@ -8,15 +8,15 @@
 namespace weft::collision {
 namespace {
 
-// Index, within a contact with an obstacle, of the particle that has the whole weight; −1 for all other contacts.
+// Index, in a contact with an obstacle, of the particle that has the whole weight of its side; −1 for other contacts.
 int single_particle(const Contact& contact) {
   if (!contact.against_obstacle) return -1;
   const auto found = std::ranges::find_if(contact.weights, [](double w) { return std::abs(w) >= 1 - 1e-9; });
   return found == contact.weights.end() ? -1 : static_cast<int>(found - contact.weights.begin());
 }
 
-// Adds the contact as a wall if one particle is in front of an obstacle, and returns whether it did. A particle behind
-// the obstacle is pinched, and no wall may hold it there.
+// Adds the contact as a wall if it concerns a single particle in front of an obstacle. Returns whether it did. A
+// particle behind the obstacle is pinched: a wall would hold it there.
 bool add_wall_of(const Contact& contact, std::span<const Vec3> x_t0, VelocityConstraints& walls) {
   const int place = single_particle(contact);
   if (place < 0) return false;

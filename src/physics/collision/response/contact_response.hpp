@@ -15,9 +15,9 @@ namespace weft::collision {
 
 enum class ResponseForm { springs, velocity_constraints };
 
-/// The contacts of one step in the form that the solver uses. With velocity constraints, a contact of a single particle
-/// in front of an obstacle is a wall (see VelocityConstraints), which is set and released between the solves of a step.
-/// All other contacts are springs.
+/// The contacts of one step in the form that the solver uses. With velocity constraints, a contact between an obstacle
+/// and a single particle in front of it is a wall (see VelocityConstraints): revise() sets and releases walls between
+/// the solves of a step. All other contacts are springs.
 class ContactResponse {
  public:
   /// `masses`: of the particles [kg]. `stick_speed`: as in ContactSet::set_step() [m/s].
@@ -28,24 +28,24 @@ class ContactResponse {
   /// Call before adding the contacts of a step over h [s].
   void begin_step(double h);
   void add(const Contact& contact, std::span<const Vec3> x_t0);
-  /// Adds a wall for a corner of a triangle that would meet an obstacle, if the corner is in front of the obstacle.
-  /// Only with velocity constraints.
+  /// Adds a wall for a corner of a triangle without a separating plane from an obstacle, if the corner is in front of
+  /// the obstacle. Only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
   /// As VelocityConstraints::predict_wall_contacts; false with springs.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
     return walls_ && walls_->predict_wall_contacts(x_t1, by, predicted);
   }
-  /// Call when all contacts known before the first solve are added.
+  /// Call before the first solve, when its contacts are added. Chooses the walls that hold in this solve.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Particles that the walls constrain in the next solve.
   std::span<const PrescribedParticle> prescribed() const;
   /// After a solve that led to x_end: sets and releases walls. Returns how many particles need another solve.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const VelocityConstraints::ForceOn& force_on);
-  /// Keeps the state of the walls for the next step.
+  /// Keeps the state of the walls for the next step. Call when the step is accepted.
   void accept();
 
-  /// As the functions of ContactSet. Forces and derivatives include the friction of the walls; update(), add_impacts()
+  /// As the functions of ContactSet. Forces and derivatives include the friction of the walls. update(), add_impacts()
   /// and active() concern springs only.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;

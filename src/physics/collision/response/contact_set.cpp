@@ -15,9 +15,8 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// Limits of depth_for_force(): iterations, and relative tolerance of the force. An error of the depth changes the
-// tangent force only by its square, which is below rounding (measured: with 1e-3 the solver misses newton_tolerance
-// 1e-6).
+// Limits of depth_for_force(): number of iterations, and relative error of the force. An error of the depth changes the
+// tangent force only by its square, here less than rounding. (With 1e-3, the solver misses a newton_tolerance of 1e-6.)
 constexpr int kDepthIterations = 30;
 constexpr double kDepthTolerance = 1e-8;
 
@@ -25,7 +24,7 @@ struct NormalForce {
   double force, slope;  // [N], [N/m]
 };
 
-// Normal force at this depth [m]; zero at depths below zero.
+// Normal force at this depth [m]; zero if the depth is negative.
 NormalForce normal_force_at(const Contact& contact, double depth) {
   if (depth <= 0) return {0, contact.stiffness};
   const double full = std::max(contact.full_range, contact.range);
@@ -35,13 +34,13 @@ NormalForce normal_force_at(const Contact& contact, double depth) {
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
 
-// Extrapolates the force `at` depth `depth_at` along the tangent to `depth`; never negative [N].
+// Continues the normal force from `depth_at`, where it is `at`, to `depth` along its tangent; never negative [N].
 double tangent_force(const NormalForce& at, double depth_at, double depth) {
   return std::max(0.0, at.force + at.slope * (depth - depth_at));
 }
 
-// Inverse of the law: the depth with this force, starting from a depth that is not smaller. The law is convex, so
-// Newton's method converges monotonically from above.
+// Inverse of normal_force_at(): the depth with this force. `depth`: a first guess that is not smaller. The force is a
+// convex function of depth, so Newton's method converges monotonically from above.
 double depth_for_force(const Contact& contact, double force, double depth) {
   if (force <= 0) return 0;
   depth = std::min(depth, force / contact.stiffness);
@@ -58,35 +57,36 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
   return weighted_sum(contact, x_end) + contact.obstacle_end;
 }
 
-// Friction / (normal force · slip), for a slip in units of the stick slip: μ (2 − slip) below 1, μ / slip above, where
-// the coefficient μ falls from static to sliding beyond 1. If both coefficients are equal, friction is continuously
-// differentiable.
+// Friction / (normal force · slip), for a slip in units of the stick slip: μ (2 − slip) if slip < 1, else μ / slip. The
+// coefficient μ is that of static friction up to a slip of 1 and falls to that of sliding friction beyond. If both are
+// equal, friction is continuously differentiable.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
   const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));
   return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
 }
 
-// ψ' of friction_tangent(): derivative of 1 / friction_over_slip() by the slip. Ignores the drop from static to sliding
-// friction.
+// ψ' of friction_tangent(): derivative of 1 / friction_over_slip() with respect to the slip. Neglects the drop from
+// static to sliding friction.
 double slope_of_slip_over_friction(const Contact& contact, double slip) {
   if (slip < 1) return 1 / (contact.static_friction * (2 - slip) * (2 - slip));
   return 1 / (slip * friction_over_slip(contact, slip));
 }
 
-// w for a slip in units of the stick slip.
+// w = −friction / normal force for a slip in units of the stick slip.
 Vec3 friction_over_normal_force(const Contact& contact, const Vec3& slip) {
   if (contact.static_friction == 0) return Vec3::Zero();
   return friction_over_slip(contact, slip.norm()) * slip;
 }
 
-// Inverse of friction_over_normal_force: the slip for a w that does not exceed static friction.
+// Inverse of friction_over_normal_force(): the slip that belongs to w. w must not exceed static friction.
 Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
   const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
   return w / friction_over_slip(contact, slip);
 }
 
-// ∂w/∂u for a slip in units of the stick slip. Exact if w belongs to the slip, else a semidefinite approximation.
+// Derivative of w with respect to a slip in units of the stick slip. Exact if w belongs to the slip, else a positive
+// semidefinite approximation.
 Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
   const double size = slip.norm();
   return friction_over_slip(contact, size) *
@@ -94,14 +94,14 @@ Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
                           slope_of_slip_over_friction(contact, size) * w);
 }
 
-// Slip during the step, in the tangent plane [m].
+// Slip of point a relative to point b during the step, in the tangent plane [m].
 Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   const Vec3 slip = relative - contact.relative_start;
   return slip - contact.normal.dot(slip) * contact.normal;
 }
 
-// Degree to which a contact is an impact, 0 to 1, estimated from the motion of its particles up to the start of the
-// step and of the obstacle in the step; see add_impacts().
+// Degree to which a contact is an impact, 0 to 1; see add_impacts(). Estimated from the motion of its particles up to
+// the start of the step, and of the obstacle in the step.
 double impact_fraction(const Contact& contact, const StepStart& start) {
   const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
   const double velocity = along_normal(start.v);
@@ -115,7 +115,7 @@ double impact_fraction(const Contact& contact, const StepStart& start) {
   return opening < 0 ? std::min(1.0, -opening / (start.h * numerics.contact.impact_velocity)) : 0;
 }
 
-// Tangential velocity jump [m/s] in a step that ends at x_end, limited to what friction can cause.
+// Tangential velocity jump of the points [m/s] in a step that ends at x_end, limited to what friction can cause.
 Vec3 tangential_jump(const Contact& contact, std::span<const Vec3> x_end, const StepStart& start) {
   const Vec3 jump =
       (weighted_sum(contact, x_end) - weighted_sum(contact, start.x)) / start.h - weighted_sum(contact, start.v);
@@ -125,7 +125,7 @@ Vec3 tangential_jump(const Contact& contact, std::span<const Vec3> x_end, const 
   return size > max_friction ? Vec3(max_friction / size * across) : across;
 }
 
-// Adds a force on the points of a contact, and the stiffness of that force.
+// Adds a force on the points of a contact to `force`, and its stiffness to `system`.
 void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, std::span<Vec3> force,
               solver::LinearSystem& system) {
   int involved = 0, last = 0;
@@ -142,7 +142,7 @@ void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, s
   }
 }
 
-// Updates the friction of a contact to a slip in units of the stick slip.
+// Updates the friction of a contact, as update() describes. `slip`: in units of the stick slip.
 void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
   const bool turned = slip.dot(lag.slip) < 0;
   lag.slip = slip;

@@ -9,14 +9,14 @@
 namespace weft::collision {
 namespace {
 
-// Normal at positions x of the face that is nearest to p. `faces`: those that reached the cloth.
+// Normal of the face nearest to p at positions x. `faces`: those that reached the cloth.
 Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
   return face_normal(nearest_point(p, faces, x).face, x);
 }
 
 }  // namespace
 
-// Faces of the limb that need a separating plane from the cloth triangle. Bounding boxes separate the others.
+// Faces of the limb that are not separated from the cloth triangle by their bounding boxes.
 std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
                                                std::span<const Vec3> x) const {
   std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, numerics.separation.least_gap);
@@ -30,7 +30,7 @@ bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::spa
   });
 }
 
-// Whether no obstacle contains `place`, the exit. For example, a hip blocks the exit from a hand that is inside it.
+// Whether no obstacle contains `place`, the exit. For example, a hip blocks the exit from a hand inside the hip.
 bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
                                  std::span<const Vec3> x) const {
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface)
@@ -104,7 +104,7 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
     const Vec3& p = x[particle];
     SurfacePoint nearest = nearest_point(p, surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb));
     is_back[corner] = origin.side * nearest.height > 0;
-    // The nearest exit may be through another face and lead to the wrong side of the limb.
+    // The nearest point of the limb may be on another side of it, where the cloth does not belong.
     if (!is_back[corner])
       nearest = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), belongs_to_limb(limb));
     const double height = origin.side * nearest.height;

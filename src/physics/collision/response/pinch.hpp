@@ -1,4 +1,5 @@
-// Pinched cloth, squeezed between obstacles: which triangles may intersect which obstacle, and how they return.
+// Pinched cloth, squeezed between obstacles without space: which triangles may intersect which obstacle, and how they
+// return.
 #pragma once
 
 #include <array>
@@ -16,12 +17,12 @@
 
 namespace weft::collision {
 
-/// Set of cloth triangles, each exempt from one limb of an obstacle (an obstacle without limbs counts as one): the
-/// triangle may intersect the limb, and no separating plane is required. A triangle is removed once it is apart from
-/// the limb and back on its original side. Triangles that share a particle with an exempted one are exempt too, so that
-/// a limb moving along the cloth does not drag the cloth with it. renew() adds those neighbours to the set that meet
-/// the limb or are on its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it and rests
-/// on the other. When the limb that reached it retreats, the cloth comes out on the side where it went in.
+/// The exempted cloth triangles. Each is exempt from one limb of an obstacle (an obstacle without limbs counts as one):
+/// it may intersect the limb, and no separating plane is required. A triangle stays in the set until it is apart from
+/// the limb and back on its original side. Triangles that share a particle with one of the set are exempt, too, so that
+/// a limb that moves along the cloth does not drag the cloth with it. renew() adds such a neighbour to the set if it
+/// meets the limb or is on its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it, and
+/// rests on the other. When the limb that reached it retreats, the cloth returns to the side from which it came.
 class PinchedPairs {
  public:
   struct Key {
@@ -31,16 +32,16 @@ class PinchedPairs {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
-  /// State of the cloth when it was exempted.
+  /// How the limb reached the cloth.
   struct Origin {
-    int side = 0;  ///< where it was: +1 outside the limb, −1 inside or behind an open surface; 0 not known
+    int side = 0;  ///< of the cloth then: +1: outside the limb; −1: inside, or behind an open surface; 0: unknown
     std::vector<Triangle> faces;  ///< faces of the limb that reached the cloth
   };
 
-  /// A pair of points for a contact that pushes a particle, or a point of a triangle, back to its side.
+  /// Two points for a contact that pushes a particle, or a point of a triangle, back to its side.
   struct Push {
     FeaturePair exit_pair;
-    bool is_exit_clear = false;  ///< no obstacle lies at the exit
+    bool is_exit_clear = false;  ///< no obstacle contains the exit, the place where the cloth would be back on its side
   };
 
   PinchedPairs() = default;
@@ -48,40 +49,39 @@ class PinchedPairs {
   PinchedPairs(Index first_obstacle, std::span<const std::size_t> body_of, std::span<const Index> limb_of)
       : first_obstacle_(first_obstacle), body_of_(body_of), limb_of_(limb_of) {}
 
-  /// Whether side a is cloth and side b an obstacle. Other pairs are never exempt.
+  /// Whether side a is cloth and side b an obstacle. No other pairs are exempt.
   bool is_cloth_and_obstacle(const CornerPair& pair) const {
     return pair.a[0] < first_obstacle_ && pair.b[0] >= first_obstacle_;
   }
-  /// Whether the pair is exempt.
   bool exempts(const CornerPair& pair) const {
     return !origins_.empty() && is_cloth_and_obstacle(pair) && std::ranges::any_of(pair.a, [&](Index particle) {
       return particles_.contains({particle, body_of(pair.b[0]), limb_of_[pair.b[0]]});
     });
   }
-  /// Whether two features with these vertices belong to pinched cloth and to the limb that pinches it.
+  /// Whether two features with these vertices belong to pinched cloth and the limb that pinches it.
   bool are_pinched(const std::array<Index, 4>& vertices) const;
+  /// Exempts side a of the pair from the limb of side b. The origin is incomplete until note_origins().
   void add(const CornerPair& pair);
-  /// Adds a triangle whose origin is known.
   void add(const Key& key, const Origin& origin) {
     origins_.emplace(key, origin);
     list_particles();
   }
 
-  // Below, `surfaces` contains all bodies, by number. Positions must lie inside the bounds of its last refit.
+  // In the functions below, `surfaces` contains all bodies, by number. Positions must be inside the bounds of its last
+  // refit.
 
-  /// Records the origin, at x_t0 [m], of triangles that were just exempted.
+  /// Completes the origin of triangles that were just exempted: records their side at x_t0 [m].
   void note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0);
 
-  /// Removes triangles that are apart at x [m] and back on their side, and adds neighbouring triangles that are not.
-  /// `triangles`: of all surfaces, cloth first.
+  /// Removes triangles that at x [m] are apart from their limb and back on their side. Adds neighbouring triangles of
+  /// which this is not true. `triangles`: of all surfaces, cloth first.
   void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
 
-  /// Finds how pinched cloth returns to its side at x [m]. Lists each corner of an exempted triangle whose height above
-  /// the limb's surface (negative on the wrong side) is less than `max_height` [m], with the nearest point of the
-  /// surface. For a corner on the wrong side, faces that point the same way as those that reached it take precedence.
-  /// If all corners of a triangle are on the right side but it still crosses a face of the limb, lists the middle of
-  /// that crossing, with the normal of the face. Side a is the cloth; the normal points to the side where the cloth
-  /// belongs.
+  /// Finds how pinched cloth returns to its side at x [m]. Lists each corner of an exempted triangle with a height
+  /// below `max_height` [m], with the nearest point of the limb. (Height: signed distance from the limb, negative on
+  /// the wrong side.) For a corner on the wrong side, faces that point the same way as those that reached it take
+  /// precedence. If all corners of a triangle are on the right side but it crosses a face, lists the middle of that
+  /// crossing, with the normal of the face. Side a is the cloth; the normal points to the side where the cloth belongs.
   std::vector<Push> find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x, double max_height) const;
 
   bool empty() const { return origins_.empty(); }
@@ -91,7 +91,7 @@ class PinchedPairs {
   std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
   bool is_obstacle(const Surface& surface) const { return surface.first_vertex >= first_obstacle_; }
 
-  /// Saves or restores all triangles and origins. Throws std::runtime_error if they do not fit these bodies.
+  /// Saves or restores the set with its origins. Throws std::runtime_error if they do not fit these bodies.
   template <class Archive>
   void serialize(Archive& archive);
 

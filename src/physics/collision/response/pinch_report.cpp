@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kNoFaces = std::numeric_limits<double>::infinity();
 
-// Distance [m] from the place to the faces of the obstacle with a normal within 60° of this direction. If there are
-// none, the nearest face counts; if that one points the other way, the distance is infinite.
+// Distance [m] from `place` to the faces of the obstacle with a normal within 60° of `direction`. If there are none,
+// the distance to the nearest face, or infinite if that face points the other way.
 double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhase& surfaces, std::size_t obstacle,
                        std::span<const Vec3> x) {
   const SurfacePoint point = nearest_point(place, surfaces, obstacle, x, direction);
@@ -21,7 +21,7 @@ double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhas
   return faces ? std::abs(point.height) : kNoFaces;
 }
 
-// The obstacle that presses the cloth into the one that pinches it.
+// The obstacle that presses the cloth into key.body: the nearest other one, or key.body if two of its parts pinch.
 std::optional<std::size_t> find_other(const PinchedPairs& pinched, const PinchedPairs::Key& key, const Vec3& place,
                                       const Bodies& bodies, const BroadPhase& surfaces, std::span<const Vec3> x) {
   std::optional<std::size_t> other;
@@ -32,8 +32,8 @@ std::optional<std::size_t> find_other(const PinchedPairs& pinched, const Pinched
     if (distance < nearest) nearest = distance, other = b;
   }
   if (bodies[key.body].rigid) return other;
-  // Parts of one deforming body, such as arm and torso, can pinch too. That body then has faces on both sides of the
-  // cloth, and even the farther side is closer than any other obstacle.
+  // Two parts of one deforming body, such as arm and torso, can pinch cloth. In that case, the body has faces on both
+  // sides of the cloth, and even the farther ones are closer than any other obstacle.
   const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
   const double far =
       std::max(distance_facing(place, up, surfaces, key.body, x), distance_facing(place, -up, surfaces, key.body, x));

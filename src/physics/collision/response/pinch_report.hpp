@@ -1,4 +1,4 @@
-// Reports pinched cloth: which cloth, which obstacle, and what presses the cloth into it.
+// Reports pinched cloth: which cloth, which obstacle it intersects, and which other obstacle presses it into that one.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,16 @@ namespace weft::collision {
 /// A cloth that intersects an obstacle because there is no space for it.
 struct Pinch {
   std::size_t cloth = 0, obstacle = 0;  ///< bodies
-  std::optional<std::size_t> other;     ///< nearest other obstacle, if any; `obstacle` if its own parts pinch
-  Vec3 place;                           ///< position of a particle [m]
+  std::optional<std::size_t> other;     ///< obstacle that presses; `obstacle` if two of its own parts pinch
+  Vec3 place;                           ///< position of a pinched particle [m]
 };
 
-/// One entry for each cloth and obstacle, with the place of its first pinched triangle at x [m].
+/// One entry for each pair of a cloth and an obstacle, with `place` at its first pinched triangle at x [m].
 std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
                                 std::span<const Vec3> x);
 
-/// A pair of `pinched` whose obstacle did not pinch that cloth in `before`, with an arbitrary face of the obstacle;
-/// nullopt if there is none.
+/// A pair in `pinched` whose obstacle does not pinch that cloth in `before`, as the triangle of cloth and an arbitrary
+/// face of the obstacle; nullopt if there is none.
 std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
                                          const BroadPhase& surfaces);
 

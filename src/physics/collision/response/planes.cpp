@@ -31,7 +31,7 @@ struct Triangles8 {
 }  // namespace
 
 // Tests face normals and the direction between the centres for eight pairs at once, in float: 5 ns per pair; the
-// branching search in double takes 60. If nothing is found, find_failing() searches later.
+// branching search in double takes 60 ns. If no direction separates a pair, find_failing() searches later.
 void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   const auto gather = [&](bool side_b) {
     Triangles8 result;
@@ -47,9 +47,9 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
     return result;
   };
   Triangles8 a = gather(false), b = gather(true);
-  // Coordinates are rounded twice by 2^-24 of themselves; dot products by a few times as much, while the distance of
-  // the triangles does not exceed the largest coordinate. Half of the minimum gap allows for the length of n. Only
-  // coordinates of the pair enter, so other bodies do not affect the result.
+  // Bound of rounding errors. Coordinates are rounded twice by 2^-24 of themselves, and dot products by a few times as
+  // much, while the distance of the triangles does not exceed the largest coordinate. Half of the least gap is added
+  // for the error of the length of n. Only coordinates of the pair enter, so other bodies do not affect the result.
   Lanes8 rounding = a.corner[0].axis[0];
   for (const Triangles8* side : {&a, &b})
     for (const Points8& corner : side->corner)
@@ -58,7 +58,7 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
         raise_to(rounding, -coordinate);
       }
   rounding = rounding * 0x1p-19F + static_cast<float>(1.5 * numerics.separation.least_gap);
-  // Use coordinates relative to a corner, so that the rounding of dot products scales with the size of the triangles.
+  // Coordinates relative to a corner, so that the rounding of dot products scales with the size of the triangles.
   const Points8 origin = a.corner[0];
   for (int c = 0; c < 3; ++c) a.corner[c] = minus(a.corner[c], origin), b.corner[c] = minus(b.corner[c], origin);
 

@@ -42,7 +42,7 @@ void Separation::watch(std::span<const Vec3> x) {
   set_reference(x);
 }
 
-// Most pairs are collected again from the same start, for another end of the step.
+// Keeps the measures of the stars if x is unchanged, as mostly when pairs are collected for another end of the step.
 void Separation::set_reference(std::span<const Vec3> x) {
   if (std::ranges::equal(reference_, x)) return stars_.forget_tests();
   reference_.assign(x.begin(), x.end());
@@ -96,12 +96,12 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
   return failing_;
 }
 
-// Finds the plane n·x = c for pushing a pair apart: free corners of a move up to c + target / 2, those of b down to c −
-// target / 2. The plane keeps their common centre of mass in place (measured: with a plane midway, 1e-4 of the momentum
-// is lost).
+// Finds the plane n·x = c for pushing a pair apart to the gap `target` [m]: free corners of a are moved up to c +
+// target / 2, those of b down to c − target / 2. This plane keeps their common centre of mass in place. (A plane midway
+// between the triangles loses 1e-4 of the momentum.)
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
-    double limit, mass;  // c above which a corner of a is pushed, or below which a corner of b is [m]; mass [kg]
+    double limit, mass;  // [m], [kg]; a corner of a is pushed if c > limit, a corner of b if c < limit
     bool is_of_a;
   };
   std::array<Corner, 6> all;
@@ -130,10 +130,11 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   return below;
 }
 
-// Of the directions that separate a pair at the start, the one along which its ends overlap least: `closest`, between
-// the closest points of the start, or the normal of a face that stands still. A facet that cloth slides towards lies
-// ahead of it; pushed along `closest`, the cloth would be moved back by as much as it has slid. (Along moving faces,
-// what a fast body has not struck yet would be left beside it, and threads be stretched threefold.)
+// Returns the direction along which to push a pair apart: of `closest`, between the closest points at the start, and
+// the normals of faces that do not move and separate the pair at the start, the one along which the ends overlap least.
+// If cloth slides towards a facet ahead of it, a push along `closest` would move it back by as much as it has slid.
+// Normals of moving faces are not used: with them, a fast body leaves cloth beside it that it has not struck yet, and
+// stretches threads threefold.
 Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, const Step& step) const {
   const std::span<const Vec3> start = step.start_of(pair), end = step.x_t1;
   Vec3 best = closest;
@@ -149,8 +150,8 @@ Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, con
   return best;
 }
 
-// Moves the ends of a pair apart. If vertices that are fixed or belong to a rigid body leave no space, translates the
-// rigid bodies instead. Returns false if the pair touches at the start or neither is possible.
+// Moves the ends of a pair apart. If fixed vertices or those of rigid bodies leave no space, translates the rigid
+// bodies instead. Returns false if the pair touches at the start or neither is possible.
 bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
@@ -159,9 +160,10 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
       std::max(2 * numerics.separation.least_gap, std::min(numerics.separation.restored_gap, 0.5 * start_gap));
   const Vec3 n = push_direction(pair, direction / start_gap, step);
 
-  // `plane` is c of the separating plane n·x = c at the end. The push conserves momentum unless fixed vertices limit c.
+  // `plane`: c of the plane n·x = c that separates the ends. The push conserves momentum, unless fixed vertices limit
+  // c.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double low = -kInfinity, high = kInfinity;  // of c
+  double low = -kInfinity, high = kInfinity;  // bounds of c
   for (int k = 0; k < 3; ++k) {
     const double a = n.dot(step.x_t1[pair.a[k]]), b = n.dot(step.x_t1[pair.b[k]]);
     if (is_fixed(pair.a[k], step)) high = std::min(high, a - 0.5 * target);
@@ -183,7 +185,7 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   return true;
 }
 
-// Moves the rigid bodies of a pair apart along n. Returns false if none of them can move or they are far enough apart.
+// Moves the rigid bodies of a pair apart along n. Returns false if neither can move, or if they are far enough apart.
 bool Separation::translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const {
   const auto free_group = [&](Index v) { return step.movable[v] == kFree ? group_of(v) : nullptr; };
   const RigidGroup *a = free_group(pair.a[0]), *b = free_group(pair.b[0]);
@@ -219,14 +221,15 @@ bool Separation::release_pins(const CornerPair& pair, Step& step) {
   return changed;
 }
 
-// Position to which a vertex is backtracked.
+// Position to which a vertex is backtracked: its start, or its start carried by an obstacle.
 const Vec3& Separation::backtrack_target(Index v, const Step& step) const {
   return carriers_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(carriers_[v]))[v] : step.x_t0[v];
 }
 
-// Chooses where the vertices of a failing pair are backtracked to. Vertices of pairs with an obstacle go where it
-// carries them, and so do vertices that then fail with these vertices. Vertices between two obstacles that would carry
-// them to different places stay at their start. Returns true if something changed; each vertex changes at most twice.
+// Chooses where the free vertices of a failing pair are backtracked to. If the pair has an obstacle that moves rigidly,
+// this obstacle carries them. In a pair without an obstacle, an obstacle that carries one of them carries all. If a
+// vertex would be carried to two places, it (in a pair without an obstacle: all free ones) stays at its start from then
+// on. Returns true if something changed; each vertex changes at most twice.
 bool Separation::choose_backtrack_targets(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
@@ -266,9 +269,9 @@ bool Separation::has_carried_vertex(const CornerPair& pair) const {
   return std::ranges::any_of(pair.a, is_carried) || std::ranges::any_of(pair.b, is_carried);
 }
 
-// Backtracks a pair, entirely or half of the way, each vertex once per round. A pair with a carried vertex is always
-// backtracked entirely, because half of the way guarantees no distance. Returns false if every free vertex is at its
-// target and no target changed.
+// Backtracks a pair, entirely or half of the way, each vertex at most once per round; a pair with a carried vertex
+// always entirely, because halfway it may still meet. Returns false if every free vertex is at its target and no target
+// has changed.
 bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
   bool changed = choose_backtrack_targets(pair, step);
   const double fraction = all_the_way || has_carried_vertex(pair) ? 1 : 0.5;
@@ -304,8 +307,8 @@ bool Separation::backtrack_all(Step& step) const {
   return moved;
 }
 
-// Whether all vertices of a pair are at their start, or where one obstacle, the pair's own if it has one, carries them.
-// If so, they do not meet, however close they are, because they do not meet at the start.
+// Whether all vertices of a pair are at their start, or are all carried by one obstacle: by its own obstacle if it has
+// one. Such a pair does not meet, however close it is, because it does not meet at the start.
 bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const {
   const auto ends_at = [&](std::span<const Vec3> x) {
     const auto is_there = [&](Index v) { return step.x_t1[v] == x[v]; };
@@ -314,7 +317,7 @@ bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const 
   if (ends_at(step.x_t0)) return true;
   const int carrier = carriers_[pair.a[0]];
   if (carrier < 0) return false;
-  // The carrier does not move other obstacles along: they may meet carried vertices.
+  // The carrying obstacle does not move other obstacles along, so these may meet carried vertices.
   const auto obstacle = static_cast<std::size_t>(carrier);
   return (!step.carried->has_obstacle(pair) || step.carried->obstacle_of(pair) == obstacle) &&
          ends_at(step.carried->by(obstacle));
@@ -333,8 +336,8 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
   test_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
-  // The first `rounds` rounds push, half as many then backtrack by halves, and `rounds` more backtrack entirely. After
-  // that all vertices are backtracked.
+  // The first `rounds` rounds push, the next `rounds` / 2 backtrack by halves, the next `rounds` backtrack entirely.
+  // Later rounds backtrack all vertices.
   const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
     bool changed = round_ >= by_halves + rounds && backtrack_all(step);
@@ -354,7 +357,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
         changed = true;
       }
     }
-    // No vertex can move any more: the remaining pairs are forced together.
+    // No vertex can move any more: the remaining pairs cannot be separated.
     if (!changed && is_final) {
       step.report.stuck = failing_.front();
       return step.report;

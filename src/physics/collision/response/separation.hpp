@@ -1,4 +1,4 @@
-// The guarantee: no two triangles meet during a step.
+// Guarantees that no two triangles meet (touch or cross) during a step.
 #pragma once
 
 #include <cstdint>
@@ -15,90 +15,93 @@
 
 namespace weft::collision {
 
-/// Mobility of a vertex: obstacles, and rigid bodies that are held, are fixed; other particles are free; pinned
-/// particles move only if nothing else can.
+/// Mobility of a vertex. Fixed: vertices of obstacles, and of rigid bodies that forces do not move yet. Pinned: pinned
+/// particles, which move only if there is no other way. Free: all other particles.
 enum Movable : std::uint8_t { kFixed = 0, kFree = 1, kPinned = 2 };
 
-/// A pinned particle that had to move, and the pair that would have met otherwise.
+/// A pinned particle that had to move because it obstructed a pair, and that pair.
 struct ObstructedPin {
   Index particle;
   CornerPair pair;
 };
 
 struct SeparationReport {
-  bool separated = false;                      ///< no pair fails: each has a plane, is exempt, or is fully backtracked
+  bool separated = false;                      ///< each pair has a separating plane, is exempt, or is fully backtracked
   int corrected_pairs = 0;                     ///< pairs that needed a correction
   double largest_push = 0;                     ///< longest single push or backtrack [m]
-  std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that could not be held in place
-  CornerPair stuck{};                          ///< if not `separated`: a pair that could not be separated
+  std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that had to move
+  CornerPair stuck{};                          ///< if not `separated`: a pair that is not
 };
 
-/// Vertices that only move together: those of a rigid body and its frame particles.
+/// Vertices that move only together: those of a rigid body, and the particles that carry it (mesh::RigidFrame).
 struct RigidGroup {
   Index first, count;        ///< its surface vertices: the first, and their number
-  Index frame, frame_count;  ///< its frame particles: the first, and their number
+  Index frame, frame_count;  ///< these particles: the first, and their number
   double mass;               ///< [kg]
 };
 
-/// Keeps triangles apart over the linear motion from x_t0 to x_t1, with separating planes that move (certificate.hpp).
-/// Pairs without a common vertex are tested one by one; pairs of a surface that share one vertex are tested by vertex
-/// stars. Triangles that share an edge are not tested: they meet only if folded exactly onto each other.
+/// Keeps triangles apart on the linear motion from x_t0 to x_t1, by separating planes (certificate.hpp). Pairs without
+/// a common vertex are tested one by one. Pairs of a surface with one common vertex are tested by vertex stars.
+/// Triangles with a common edge are not tested: they meet only if they are folded exactly onto each other.
 ///
-/// If a pair has no separating plane, enforce() pushes its end positions apart until a gap remains, along n, the
-/// direction between its closest points at the start or, if this is shorter, the normal of a face that stands still.
-/// Obstacles and held particles do not move. It then tests the moved vertices again, until no pair fails. Particles
-/// that keep failing are backtracked, finally all the way to their start or, if they fail with an obstacle that moves
-/// rigidly, to where the obstacle would have carried them. As no pair met at the start, two triangles do not meet if
-/// all their vertices end at their start, or if one obstacle carries all of them. The set of backtracked particles
-/// grows until no pair fails. A pair that still fails is forced together by obstacles that move differently, or by held
-/// particles. Its cloth can then be exempted from the obstacle.
+/// If a pair has no separating plane, enforce() corrects the ends x_t1 of its vertices:
+///   1. It pushes them apart along a direction n until a gap remains. n is the direction between the closest points at
+///      the start or, if the push along it is shorter, the normal of a face that does not move. It repeats this for the
+///      moved vertices until no pair fails. It never pushes fixed vertices, and pinned ones only if there is no other
+///      way.
+///   2. It backtracks particles that keep failing: moves them back towards their start, finally all the way. Particles
+///      that fail with an obstacle that moves rigidly go to their carried start instead (CarriedStarts). No pair meets
+///      at the start. So two triangles do not meet if all their vertices end at their start, or if one obstacle carries
+///      all of them. The set of backtracked particles grows until no pair fails.
+///   3. A pair that still fails is forced together by fixed vertices that move differently. Cloth can then be exempted
+///      from the obstacle.
 ///
-/// Between cloth and a rigid body, the cloth is pushed as by an obstacle. Rigid bodies are translated away from
-/// obstacles and from each other, the lighter one farther.
+/// Cloth is pushed by a rigid body as by an obstacle. Rigid bodies are translated away from obstacles and from each
+/// other, the lighter one farther.
 class Separation {
  public:
   Separation() = default;
   /// `triangles`: of all surfaces, by global number. `deformable`: surfaces that can collide with themselves. `masses`:
-  /// of the particles [kg], all equal if empty. `triangles` and `masses` must outlive it.
+  /// of the particles [kg]; if empty, all are equal. `triangles` and `masses` must outlive it.
   Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
              std::span<const double> masses = {});
 
-  /// Sets the groups. `vertices`: number of all vertices. Call before the first watch().
+  /// Sets the rigid groups. `vertices`: number of all vertices. Call before the first watch().
   void set_rigid(std::vector<RigidGroup> groups, Index vertices);
 
-  /// Watches these pairs without a common vertex, and all vertex stars, with x [m] as the reference for motion. The
-  /// pairs must include all that can meet. If a vertex moves out of the bounds for which the pairs were collected,
-  /// collect and watch again.
+  /// Sets the pairs to watch (to test for a separating plane), which have no common vertex. x [m] becomes the reference
+  /// for motion, also of the vertex stars. The pairs must include all that can meet. If a vertex moves out of the
+  /// bounds for which the pairs were collected, collect and watch again.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
-  /// Watches the pairs received by exchange().
+  /// As above, for the pairs received by exchange().
   void watch(std::span<const Vec3> x);
   /// As Planes::exchange().
   void exchange(PairList& pairs) { planes_.exchange(pairs); }
 
   /// Number of watched pairs.
   std::size_t pair_count() const { return planes_.size(); }
-  /// Measures how far vertices at x [m] are from the reference, for append_closer(), until pairs are tested.
+  /// Measures how far the vertices at x [m] are from the reference, for append_closer(). Testing pairs overwrites it.
   void measure_motion(std::span<const Vec3> x);
-  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` at that x [m].
+  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m] at that x.
   void append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const {
     planes_.append_closer(radius, begin, end, out);
   }
 
-  /// Returns 1 for a triangle only if, at x [m], its features are farther than `distance` [m] from those of all
-  /// triangles that share a vertex with it. Pairs of features with a common vertex do not count.
+  /// Flags clear triangles by 1: at x [m], their features are farther than `distance` [m] from those of all triangles
+  /// with a common vertex. Pairs of features with a common vertex do not count. May miss clear triangles.
   std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
-  /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1; changes no positions. x_t0 must
-  /// be free of intersections except those of `pinched`, which are skipped. Pairs with an obstacle that turns are
-  /// tested in its frame (`carried`). `which` restricts the planes of pairs that must be tested. Pairs that the last
-  /// call found separated, and whose vertices have not moved since, are not tested again.
+  /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1. Changes no positions. x_t0 must
+  /// be free of intersections, except those of `pinched`, which are skipped. A pair with an obstacle that turns is
+  /// tested in the frame of that obstacle (`carried`). `which`: kinds of planes that are sought. Does not test pairs
+  /// again that the last call found separated and whose vertices have not moved since, whatever `which` was then.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
   /// Changes x_t1 of movable vertices until no pair fails (see SeparationReport). If that is impossible, adds pairs of
   /// cloth and obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last
-  /// call; vertices then keep the obstacles that carry them.
+  /// call; each vertex then remains carried by the same obstacle.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false, PlaneKinds which = PlaneKinds::all);
@@ -110,7 +113,7 @@ class Separation {
   }
 
  private:
-  /// State of enforce().
+  /// Arguments and state of enforce().
   struct Step {
     std::span<const Vec3> x_t0;
     std::span<Vec3> x_t1;
@@ -129,7 +132,7 @@ class Separation {
   const RigidGroup* group_of(Index v) const {
     return group_of_.empty() || group_of_[v] < 0 ? nullptr : &groups_[group_of_[v]];
   }
-  /// Whether push_apart() leaves a vertex in place, or moves it with its rigid body only.
+  /// Whether push_apart() leaves a vertex in place, or moves it only with its rigid body.
   bool is_fixed(Index v, const Step& step) const { return step.movable[v] != kFree || group_of(v) != nullptr; }
   template <class Visit>
   static void for_each_member(const RigidGroup& group, const Visit& visit);
@@ -152,8 +155,8 @@ class Separation {
   std::vector<std::uint8_t> changed_;        // per vertex: has moved since the last test
   std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked; 0: never
   std::vector<RigidGroup> groups_;
-  std::vector<int> group_of_;  // per vertex; −1: none; empty if there are no groups
-  std::vector<int> carriers_;  // per vertex: obstacle that carries it when backtracked, or a constant below
+  std::vector<int> group_of_;  // per vertex: index in groups_, −1: none; empty if there are no groups
+  std::vector<int> carriers_;  // per vertex: obstacle whose carried start is its backtrack target, or a constant below
   static constexpr int kAtStart = -1, kAlwaysAtStart = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;

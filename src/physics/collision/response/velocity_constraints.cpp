@@ -9,20 +9,20 @@
 namespace weft::collision {
 namespace {
 
-// Distance beyond a wall at which to probe whether the wall holds [m].
+// Walls that push a particle still hold it if it passes them when moved against the push by this distance [m].
 double probe_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
-// Smallest penetration that is worth another solve [m].
+// Penetration of a wall below which no further solve is needed [m].
 double tolerated_penetration() {
   return 0.1 * numerics.separation.restored_gap;
 }
-// Minimum cosine between the normals of two walls that count as one.
+// Two walls of a particle count as one if the cosine between their normals is at least this.
 constexpr double kMinSameWallCosine = 1 - 1e-6;
 
 struct HalfSpace {
   Vec3 normal;
-  double bound;  // minimum of n·u
+  double bound;  // minimum of n·u [m]
   int wall;
 };
 
@@ -30,7 +30,7 @@ bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
   return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
 }
 
-// Friction divided by its limit and by the slip, for a slip in units of the stick slip (stick velocity · h).
+// Friction / (maximum friction · slip), for a slip in units of the stick slip (stick velocity · h).
 double friction_over_slip(double slip) {
   return slip < 1 ? 2 - slip : 1 / slip;
 }
@@ -68,10 +68,10 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
   touched.first_wall = static_cast<int>(walls_.size()) - 1;
 }
 
-// The displacement closest to u that passes no wall of the particle; `held`: the walls that limit it, with multipliers.
+// The displacement closest to u that passes no wall of the particle. `held`: the walls that limit it, with multipliers.
 // Tries the Karush-Kuhn-Tucker conditions for every set of up to three of the Numerics::Walls::max_walls walls that u
 // passes farthest. `of_force`: uses only the walls that hold now, moved to the origin; −u is then the direction of a
-// force, and the multipliers are its normal components.
+// force, and the multipliers are its components along the normals.
 Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& u, bool of_force,
                                   ActiveWalls& held) const {
   held = {};
@@ -121,7 +121,7 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
         held = {{all[i].wall, all[j].wall, all[k].wall}, {multipliers[0], multipliers[1], multipliers[2]}, 3};
         return moved;
       }
-  // The walls leave no space: apply only the most violated one. Separation handles the rest.
+  // The walls leave no space: use only the most violated one. Separation ensures that nothing intersects.
   const auto worst =
       std::max_element(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) < missing(b); });
   held = {{worst->wall, -1, -1}, {missing(*worst), 0, 0}, 1};
@@ -133,8 +133,8 @@ int VelocityConstraints::main_wall(const TouchingParticle& particle) const {
   return particle.held.walls[std::max_element(multipliers.begin(), multipliers.end()) - multipliers.begin()];
 }
 
-// Makes these walls hold the particle. `u`: closest displacement that passes none of them. A sticking particle moves
-// with its main wall (that of the largest multiplier), at the distance that this wall prescribes.
+// Makes these walls hold the particle. `u`: displacement that passes none of them. A sticking particle moves with its
+// main wall (the one with the largest multiplier), at the distance that this wall prescribes.
 void VelocityConstraints::hold(TouchingParticle& particle, const Vec3& u, ActiveWalls held) {
   particle.held = held;
   particle.u_held = u;
@@ -201,8 +201,8 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
   return changed;
 }
 
-// Decides which walls hold the particle. `force`: exerted by its walls in the last solve. Returns whether the solve
-// must be repeated; small changes take effect in the next step.
+// Decides which walls hold the particle. `force`: that of its walls in the last solve [N]. Returns whether the solve
+// must be repeated; changes that are too small for this take effect in the next step.
 bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
@@ -215,7 +215,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
     return particle.constraint_changes++ < numerics.walls.flips;
   }
 
-  // Split the force into its components along the normals of the walls and the rest, which is tangential or pulls.
+  // Split the force into components along the normals of the walls and the rest (`left`), which is tangential or pulls.
   ActiveWalls pushing;
   const double size = force.norm();
   const Vec3 left = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
@@ -244,7 +244,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
       particle.overloaded = left.norm() - limit > negligible;
     }
     hold(particle, held_at, next);
-    return passes;  // one step of too much friction does no harm
+    return passes;  // too much friction in a single step does no harm
   }
 
   const bool other_walls = !next.same_walls(particle.held);
@@ -260,8 +260,9 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
 }
 
 void VelocityConstraints::accept() {
-  // If an overloaded particle was released, no particle begins to stick: the released one may have held its slow
-  // neighbours. Without this rule two halves of touching cloth could stick in turn, and hold all of it on any incline.
+  // If an overloaded particle has begun to slide, no particle begins to stick: the sliding one may have held its slow
+  // neighbours. Without this rule, two halves of touching cloth could stick in turn and so hold all of it on any
+  // incline.
   const bool any_overloaded =
       std::ranges::any_of(touched_, [](const TouchingParticle& particle) { return particle.overloaded; });
   for (Index particle : remembered_) memory_[particle] = {};
@@ -274,7 +275,8 @@ void VelocityConstraints::accept() {
   }
 }
 
-// I − Σ q qᵀ over an orthonormal basis q of the normals of the walls that hold.
+// Projector onto the unconstrained directions: I − Σ q qᵀ over an orthonormal basis q of the normals of the holding
+// walls.
 Mat3 VelocityConstraints::free_directions(const TouchingParticle& particle) const {
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
@@ -292,7 +294,7 @@ PrescribedParticle VelocityConstraints::prescription(const TouchingParticle& par
     result.v_end = walls_[main_wall(particle)].motion / step_;
     return result;
   }
-  // Set v_end to v_r along each normal, without changing v_end along the earlier ones.
+  // Make v_end equal v_r along each normal, without changing it along the earlier ones.
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
     const Wall& wall = walls_[particle.held.walls[k]];
@@ -312,7 +314,7 @@ void VelocityConstraints::prescribe() {
     if (particle.memory.state != State::away) prescribed_.push_back(prescription(particle));
 }
 
-// Displacement along the walls relative to the obstacle [m].
+// Displacement of a particle along its walls, relative to the obstacle [m].
 Vec3 VelocityConstraints::slip(const TouchingParticle& particle, const Vec3& x_end) const {
   const Wall& wall = walls_[main_wall(particle)];
   return free_directions(particle) * (x_end - particle.x_t0 - wall.motion);
@@ -325,7 +327,7 @@ VelocityConstraints::Friction VelocityConstraints::friction(const TouchingPartic
   const double limit = walls_[main_wall(particle)].friction * particle.friction_normal_force;
   const double sliding = limit * friction_over_slip(size);
   const Mat3 free = free_directions(particle);
-  // Derivative of slip over friction by the slip.
+  // Derivative of slip / friction with respect to the slip.
   const double growth = size < 1 ? 1 / ((2 - size) * (2 - size)) : 1;
   return {-sliding * slips, sliding / stick_slip * friction_tangent(free, slips, growth * (free * particle.drag))};
 }

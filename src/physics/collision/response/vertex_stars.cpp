@@ -10,7 +10,8 @@
 namespace weft::collision {
 namespace {
 
-/// The triangle with its corners rotated so that `first` comes first. For a piece of rope `first` appears once.
+/// The triangle with its corners rotated so that `first` comes first. For a piece of rope, `first` appears only once in
+/// the result.
 Triangle rotate_to_front(const Triangle& t, Index first) {
   if (t[1] == t[2]) return t[0] == first ? t : Triangle{first, t[0], t[0]};
   return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
@@ -21,9 +22,9 @@ bool share_end(const std::array<Index, 2>& s, const std::array<Index, 2>& t) {
   return s[0] == t[0] || s[0] == t[1] || s[1] == t[0] || s[1] == t[1];
 }
 
-/// Largest distance d that all three corners of a triangle may move while n·(e × f), now `area`, stays positive for
-/// edges e and f taken at any two times. Each edge changes by at most 2 d, so the product changes by at most 2 d (|e| +
-/// |f|) + 4 d². `lengths`: |e| + |f|. −1 if area <= 0.
+/// Largest distance d that each corner of a triangle may move while n·(e × f), now `area`, stays positive for edges e
+/// and f taken at any two times; −1 if area <= 0. `lengths`: |e| + |f| now. Each edge changes by at most 2 d, so the
+/// product changes by at most 2 d (|e| + |f|) + 4 d².
 double allowed_motion(double area, double lengths) {
   return area > 0 ? 0.25 * (std::sqrt(lengths * lengths + 4 * area) - lengths) : -1;
 }
@@ -32,7 +33,7 @@ double allowed_motion(double area, double lengths) {
 
 VertexStars::VertexStars(std::span<const Surface> surfaces) {
   for (const Surface& surface : surfaces) {
-    // Sort triangles by vertex, keeping their order.
+    // List the triangles at each vertex (counting sort), in their order.
     std::vector<std::uint32_t> begin(static_cast<std::size_t>(surface.vertex_count) + 1, 0);
     const auto place = [&](Index v) -> std::uint32_t& {
       return begin[static_cast<std::size_t>(v - surface.first_vertex)];
@@ -56,8 +57,8 @@ VertexStars::VertexStars(std::span<const Surface> surfaces) {
 }
 
 void VertexStars::add_star(Index vertex, std::span<const Triangle> triangles) {
-  // Go from triangle to triangle over shared edges: a closed star returns to its start after all of them. Any other set
-  // is stored without a ring and always tested pair by pair, or not stored if it has no pair to test.
+  // Go from triangle to triangle over common edges. In a closed star, this returns to the first triangle after all of
+  // them. Any other star is stored without a ring and tested pair by pair, or not stored if it has no pair to test.
   std::vector<Index> ring{triangles.empty() ? vertex : triangles.front()[1]};
   while (ring.size() <= triangles.size() && !triangles.empty()) {
     const auto next =
@@ -80,7 +81,7 @@ void VertexStars::add_star(Index vertex, std::span<const Triangle> triangles) {
   begin_.push_back(static_cast<std::uint32_t>(ring_vertices_.size()));
 }
 
-// Calls body(pair) for each pair of an opposite edge and another triangle of the star.
+// Calls body(pair) for each edge opposite to the centre and each triangle of the star that has no vertex of this edge.
 template <class Body>
 void VertexStars::for_each_pair(std::size_t star, const Body& body) const {
   for (std::size_t k = 0; k < edge_count(star); ++k)
@@ -89,8 +90,9 @@ void VertexStars::for_each_pair(std::size_t star, const Body& body) const {
         body(CornerPair{{s[0], s[1], s[1]}, {centres_[star], t[0], t[1]}});
 }
 
-// Whether the star, all of whose triangles are positively oriented along the axis, goes around once. Compares the
-// directions to the ring with the first one: the cross product changes from negative to positive once per turn.
+// Whether the star goes around its centre once. Its triangles must all be positively oriented along the axis. Compares
+// the directions to the ring vertices with the first one: their cross product changes from negative to positive once
+// per turn.
 bool VertexStars::turns_once(std::size_t star, const Vec3& axis, std::span<const Vec3> x) const {
   const auto vertices = ring(star);
   const Vec3& centre = x[centres_[star]];
@@ -137,7 +139,7 @@ VertexStars::StarMeasures VertexStars::measure_star(std::size_t star, std::span<
     e = f;
     e_length = f_length;
   }
-  // A reduction by a thousandth covers all rounding.
+  // The factor 0.999 covers all rounding.
   if (!(slack > 0) || !turns_once(star, axis, x)) return kNone;
   return {static_cast<float>(0.999 * slack), static_cast<float>(0.999 * clearance)};
 }
@@ -164,7 +166,7 @@ bool VertexStars::keeps_orientation(std::size_t star, std::span<const Vec3> x_t0
   }
   for (std::size_t k = 1; k < vertices.size(); ++k) {
     const Vec3 f_t0 = arm(k, x_t0), f_t1 = arm(k, x_t1);
-    // This limit is far above the rounding of these products, and far below any relevant angle.
+    // The limit is far above the rounding of these products, and far below that of any relevant angle.
     const double least = 1e-9 * axis.norm() * (e_t0.norm() + e_t1.norm()) * (f_t0.norm() + f_t1.norm());
     if (axis.dot(e_t0.cross(f_t0)) <= least || axis.dot(e_t1.cross(f_t1)) <= least ||
         axis.dot(e_t0.cross(f_t1) + e_t1.cross(f_t0)) <= least)

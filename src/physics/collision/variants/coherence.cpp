@@ -11,9 +11,10 @@ namespace weft::collision {
 
 namespace {
 
-/// Maximum triangles per group. Smaller ones follow the motion more closely; cost is quadratic in the number of groups.
+/// Maximum number of triangles per group. Cones of smaller groups bound the motion more tightly, but the cost grows
+/// with the square of the number of groups.
 constexpr std::size_t kGroupSize = 128;
-/// After this many updates a new reference is set and all results are dropped, to keep the cones small.
+/// After this many updates, the reference step is set anew and all results are dropped, so that the cones stay small.
 constexpr int kReferenceUpdates = 64;
 
 void append(const PairList& from, PairList& to) {
@@ -38,7 +39,7 @@ CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::vec
   for (const Surface& surface : surfaces) add_groups(surface, x);
 }
 
-// Splits along the longest side until each group is small enough.
+// Divides a surface into groups: splits sets of triangles along their longest side until each is small enough.
 void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3> x) {
   std::vector<Group>& groups = groups_.emplace_back();
   if (surface.triangles.empty()) return;
@@ -94,8 +95,8 @@ void CoherentDetection::update_cones(std::span<const Vec3> x_t0, std::span<const
   }
   for (std::vector<Group>& groups : groups_) {
     for (Group& group : groups) {
-      // Compare the start of the step with the start of the reference step, and the end with its end. The motion during
-      // a step then does not count.
+      // Compare the start of the step with the start of the reference step, and the end with its end. Thus the motion
+      // within a step does not count.
       Vec3 mean = Vec3::Zero();
       group.low.setConstant(INFINITY);
       group.high.setConstant(-INFINITY);
@@ -130,8 +131,8 @@ bool CoherentDetection::is_still_valid(const SurfacePair& pair, KeptResult& kept
   return kept.valid;
 }
 
-// Searches near features once for all these pairs of surfaces, because each search costs time for the whole scene. Then
-// assigns each near pair to its surfaces.
+// Searches the outdated pairs of surfaces together, because each search costs time for the whole scene. Then assigns
+// each near pair to its surfaces.
 void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase,
                                      ProximityFinder& finder, std::span<const Vec3> x_t0) {
   CandidatePairs all;

@@ -6,17 +6,18 @@
 //               detection.proximities()
 //
 // Each surface is divided into groups of triangles. A velocity cone bounds the motion of each group since a common
-// reference. For two groups, these cones give a bound R of the motion of a point of one relative to a point of the
-// other since their pair of surfaces was last searched. Since then, the distance of any point of one group from any
-// point of the other, and the gap between their bounding volumes along any direction, have changed by at most R. Let D
-// be the detection distance. A result is valid while every two groups have R ≤ budget, or had boxes more than D + R
-// apart at that search. While a result is valid:
+// reference step. For two groups, their cones give a bound R of the motion of a point of one group relative to a point
+// of the other since the last search of their surfaces. So since then, the distance between any two points of the
+// groups, and the gap between their bounding volumes along any direction, have changed by at most R. Let D be the
+// detection distance. The result of that search is valid while every two groups have R ≤ budget, or had boxes more than
+// D + R apart at the search. While a result is valid:
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
-//   - the kept closest points of two features, with unchanged weights, are at most 2 R farther apart than the features,
-//     and never closer;
-//   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (They were within
-//     D + R at that search, and the listed pair that represented them was no farther; see ProximityFinder.) A pair of
-// surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
+//   - the kept closest points of two features, with unchanged weights, are at least as far apart as the features, and
+//     at most 2 R farther;
+//   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (At the search,
+//     they were within D + R, and the listed pair that represented them was no farther; see ProximityFinder.)
+//
+// A pair of surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +31,7 @@
 
 namespace weft::collision {
 
-/// Two surfaces that can meet, by number: a < b, or a = b for a surface with itself.
+/// Two surfaces that can meet, by number: a < b, or a = b for a surface that can meet itself.
 struct SurfacePair {
   std::size_t a = 0, b = 0;
 };
@@ -38,7 +39,7 @@ struct SurfacePair {
 struct CoherenceParameters {
   double detection_distance = 0;  ///< [m]
   double budget = 0;              ///< relative motion up to which a result stays valid [m]
-  double min_fold = 0;            ///< of edges, as for ProximityFinder::gather
+  double min_fold = 0;            ///< as for ProximityFinder::gather
 };
 
 class CoherentDetection {
@@ -48,16 +49,16 @@ class CoherentDetection {
   CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> wanted, std::span<const Vec3> x,
                     const CoherenceParameters& parameters);
 
-  /// Updates to the step from x_t0 to x_t1 [m]. Fits all bounds, searches the pairs of surfaces whose result is no
-  /// longer valid, and returns their number. If none, the candidates are unchanged. Call again if the motion changes.
+  /// Updates to the step from x_t0 to x_t1 [m]. Refits all bounds, searches the pairs of surfaces whose result is no
+  /// longer valid, and returns their number; 0: the candidates are unchanged. Call again if the motion changes.
   int update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Candidate pairs of all wanted pairs of surfaces.
   const CandidatePairs& candidates() const { return candidates_; }
-  /// Near pairs, with the distances and normals that their weights give at x_t0. Pairs of an earlier search are listed
-  /// up to a distance of D + 2 R.
+  /// Near pairs, with distances and normals that follow from the kept weights at x_t0. Pairs of an earlier search are
+  /// listed up to a distance of D + 2 R.
   std::span<const Proximity> proximities() const { return proximities_; }
-  /// Largest R of all pairs of groups that are not far apart; at most the budget [m].
+  /// Largest R of all pairs of groups that are not far apart (D + R, see above) [m]; at most the budget.
   double largest_motion() const { return largest_motion_; }
 
   /// Makes the next update search everything, so that nothing depends on earlier steps.
@@ -73,7 +74,7 @@ class CoherentDetection {
     Vec3 low, high;
     VelocityCone cone;
   };
-  /// Result of one wanted pair of surfaces, and the state of their groups when it was found.
+  /// Kept result for one wanted pair of surfaces, and the state of their groups at its search.
   struct KeptResult {
     bool valid = false;
     CandidatePairs candidates;

@@ -16,7 +16,7 @@ bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& a
   centre_t0 /= static_cast<double>(contour.size());
   centre_t1 /= static_cast<double>(contour.size());
 
-  // Count how often the chain crosses one direction of the plane: that is how often it runs around.
+  // All edges turn counter-clockwise, so the edges that cross the line up · p = 0 upwards count the turns.
   const Vec3 up = axis.unitOrthogonal();
   int turns = 0;
   for (const auto& edge : contour) {
@@ -31,7 +31,7 @@ bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& a
   return turns == 1;
 }
 
-/// Finds the contour of P⁺ and the surrounding leaves for each node.
+/// Fills Subtree for each node and leaf.
 template <int K>
 class NormalCones<K>::Builder {
  public:
@@ -48,7 +48,7 @@ class NormalCones<K>::Builder {
     find_border();
   }
 
-  /// Returns the triangles below ref, and fills the data of all its subtrees.
+  /// Fills Subtree for `ref` and all nodes and leaves below it. Returns the triangles below `ref`.
   std::vector<Index> build(Ref ref) {
     std::vector<Index> below;
     if (ref < 0) {
@@ -76,7 +76,7 @@ class NormalCones<K>::Builder {
   std::size_t local(Index v) const { return static_cast<std::size_t>(v - tree_.surface().first_vertex); }
   const Triangle& triangle(Index t) const { return tree_.surface().triangles[t]; }
 
-  /// A vertex is on the border if an edge at it does not have exactly one triangle on each side.
+  /// Marks the border of the surface: vertices at an edge that does not have exactly one triangle on each side.
   void find_border() {
     std::unordered_set<Edge, EdgeHash> all;
     border_.assign(around_.size(), 0);
@@ -150,7 +150,7 @@ NormalCones<K>::NormalCones(const Tree<K>& tree) {
 template <int K>
 void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0,
                               std::span<const Vec3> x_t1, Cone& cone) const {
-  // The normal of a triangle is quadratic in time. These three are its Bernstein coefficients.
+  // During the step, the normal of a triangle is a quadratic function of time. These are its Bernstein coefficients.
   std::array<std::array<Vec3, 3>, kLanes> normals;
   Vec3 sum = Vec3::Zero();
   cone.altitude = 1e300;
@@ -181,7 +181,7 @@ void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<cons
   cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
 }
 
-/// The cone around the mean axis that holds all given cones.
+/// The cone around the mean axis that contains all given cones.
 template <int K>
 typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> cones) {
   Cone all;
@@ -194,8 +194,8 @@ typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> 
   all.axis.normalize();
   all.cosine = 1;
   for (const Cone* part : cones) {
-    // cos(α + β), with α the half-angle of `part` and β the angle between the axes. Both angles are below 90°, so the
-    // cosine of the sum decides.
+    // cos(α + β), where α is the half-angle of `part` and β the angle between the axes. Both angles are below 90°, so a
+    // smaller cosine means a larger sum.
     const double between = all.axis.dot(part->axis);
     if (!(between > 0)) return {};
     const double across = std::sqrt(std::max(0.0, 1 - between * between));
@@ -236,7 +236,7 @@ bool NormalCones<K>::has_nothing_near(const Tree<K>& tree, Ref ref, std::span<co
   return all.cosine > 0 && all.cosine * all.altitude > needed && is_star_shaped(subtree.contour, all.axis, x_t0, x_t1);
 }
 
-/// Marks flat regions top-down. self_pairs() never enters a marked subtree, so the nodes below it stay unmarked.
+/// Marks flat regions top-down. self_pairs() skips a marked subtree as a whole, so nodes below it need no mark.
 template <int K>
 void NormalCones<K>::mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0,
                                        std::span<const Vec3> x_t1, double detection_distance) {

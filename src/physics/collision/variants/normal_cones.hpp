@@ -1,4 +1,4 @@
-// Finds regions of a surface so flat that no two features inside can be near each other.
+// Finds regions of a surface so flat that no two features inside, without a common vertex, can be near each other.
 #pragma once
 
 #include <array>
@@ -13,27 +13,28 @@ namespace weft::collision {
 
 /// Computes the normal cones of a tree's nodes and leaves bottom-up, and the flat regions that follow from them.
 ///
-/// Let P be the triangles below a node and P⁺ all triangles with at least one corner in P. Features of P without a
-/// common vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
+/// Let P be the triangles below a node and P⁺ all triangles that share a vertex with P. Features of P without a common
+/// vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
 ///   1. no corner of P is on the border of the surface, so all triangles around it are in P⁺;
-///   2. the normals of P⁺ lie in a cone around a with a half-angle below 90°, so that, seen against a (in the direction
-///      −a), all of P⁺ faces the viewer;
-///   3. the contour of P⁺, seen against a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
+///   2. the normals of P⁺ lie in a cone around a with a half-angle below 90°, so that a viewer who looks along −a sees
+///      only front sides of P⁺;
+///   3. the contour of P⁺, seen along −a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
 ///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
-///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance. Proof: the degree of
-/// the projection is the winding number of the contour, and every triangle counts +1. By conditions 2 and 3 each point
-/// inside the contour is covered once, so P⁺ projects to a planar triangulation. In that plane, the closest points of
-/// two features of P without a common vertex include a vertex v of one of them. The segment from v to the other feature
-/// leaves the triangles around v, which surround v by condition 1, through an edge opposite to v, so it is at least an
-/// altitude long. Distances in space are no smaller than their projections.
+///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.
 ///
-/// The normal of a triangle is quadratic in time. Over a step, the cone test and the contour test therefore use
-/// Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle does not meet condition
-/// 2.
+/// Proof: the degree of the projection is the winding number of the contour, to which every triangle contributes +1. By
+/// conditions 2 and 3, each point inside the contour is covered once, so P⁺ projects to a planar triangulation. In that
+/// plane, the closest points of two features of P without a common vertex include a vertex v of one of them. By
+/// condition 1, the triangles around v surround v. The segment from v to the other feature leaves them through an edge
+/// opposite to v, so it is at least as long as an altitude. Distances in space are no smaller than their projections.
 ///
-/// Provot (1997), and with him Etzmuß et al. (2001), requires only condition 2, for P instead of P⁺. Condition 2 alone
-/// would also skip near pairs of parts that overlap in projection (a spiral stair) or meet across a border or slit
-/// (measured: 0.6 to 25 % of the skipped pairs were near).
+/// During a step, normals and cross products of edges are quadratic functions of time. The cone test and the contour
+/// test therefore use their Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle
+/// violates condition 2.
+///
+/// Provot (1997), and with him Etzmuß et al. (2001), requires only condition 2, for P instead of P⁺. That would also
+/// skip near pairs of parts that overlap in projection (a spiral stair) or that meet across a border or slit (measured:
+/// 0.6 to 25 % of the pairs that it skips are near).
 template <int K>
 class NormalCones {
  public:
@@ -41,8 +42,8 @@ class NormalCones {
   /// Reads the tree, but keeps no reference to it.
   explicit NormalCones(const Tree<K>& tree);
 
-  /// Finds the flat regions for the motion from x_t0 to x_t1 (global arrays, [m]). Features closer than
-  /// `detection_distance` [m] are near.
+  /// Finds the flat regions for the motion from x_t0 to x_t1 (global arrays, [m]). Features are near if they are closer
+  /// than `detection_distance` [m].
   void update(const Tree<K>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double detection_distance);
 
   const Regions& regions() const { return regions_; }
@@ -55,14 +56,14 @@ class NormalCones {
   struct Cone {
     Vec3 axis = Vec3::Zero();
     double cosine = -1, sine = 0;
-    double altitude = 0;  ///< altitude · cosine is a lower bound of the projected altitudes in the step [m]
+    double altitude = 0;  ///< [m]; altitude · cosine: lower bound of the projected altitudes during the step
   };
 
-  /// Connectivity of a subtree, which does not change.
+  /// Connectivity of a subtree. Does not depend on positions.
   struct Subtree {
-    bool closed = false;                        ///< condition 1
-    std::vector<Ref> ring;                      ///< leaves outside the subtree that have a triangle of P⁺
-    std::vector<std::array<Index, 2>> contour;  ///< directed edges of P⁺ without an opposite edge
+    bool closed = false;                        ///< condition 1 holds
+    std::vector<Ref> ring;                      ///< leaves outside the subtree that contain triangles of P⁺
+    std::vector<std::array<Index, 2>> contour;  ///< directed edges of P⁺ whose reverse is not in P⁺
   };
 
   static std::size_t slot(const Tree<K>& tree, Ref ref);
@@ -79,8 +80,8 @@ class NormalCones {
   Regions regions_;
 };
 
-/// Whether a closed chain of directed edges, seen against the unit axis, runs around its centre exactly once and
-/// counter-clockwise throughout the linear motion.
+/// Whether a closed chain of directed edges, seen along −`axis`, runs around its centre exactly once and
+/// counter-clockwise, throughout the linear motion. `axis`: unit.
 bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
                     std::span<const Vec3> x_t1);
 

@@ -7,18 +7,18 @@
 
 namespace weft::collision {
 
-/// Pairs of subtrees that together cover all pairs of triangles between two trees, or within one tree. The pairs cover
-/// everything whatever the bounds become, so a traversal may start from the entries instead of the roots. Entries only
-/// move down: if the bounds of an entry overlap now, entries for its children replace it. An entry that is lower than
-/// necessary costs one overlap test per traversal until the list is rebuilt. A rebuild is due
-///   - after kWalks traversals, or
-///   - once the list has grown by more than half. These limits keep the useless tests to about half of the useful ones.
+/// Pairs of subtrees at which the last traversal stopped. Together they cover all pairs of triangles between two trees,
+/// or within one tree, whatever the bounds become. So a traversal may start from them instead of the roots. If the
+/// bounds of an entry overlap now, entries for its children replace it. No entry moves up again: one that is lower than
+/// necessary costs one overlap test per traversal until the list is rebuilt. A rebuild is due after kWalks traversals,
+/// or once the list has grown by more than half. These limits keep the unnecessary tests at about half of the necessary
+/// ones.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree
 
-  /// Subtree `query` of one tree does not overlap the children `lanes` (bits) of inner node `node` of the other.
-  /// `query_in_a`: `query` belongs to tree a.
+  /// Subtree `query` of one tree does not overlap some children of the inner node `node` of the other: those whose bits
+  /// are set in `lanes`. `query_in_a`: `query` belongs to tree a.
   struct Missed {
     Ref query, node;
     std::uint16_t lanes;
@@ -43,7 +43,7 @@ class SeparationList {
     closed.clear();
     walks_ = 0;
   }
-  /// Must be called at the end of each traversal.
+  /// Call at the end of each traversal.
   void walked() {
     if (walks_++ == 0) size_when_built_ = size();
   }
@@ -51,7 +51,7 @@ class SeparationList {
   std::vector<Missed> missed;
   std::vector<LeafPair> leaf_pairs;
   std::vector<Ref> self_leaves;  ///< leaves tested with themselves
-  std::vector<Ref> closed;       ///< subtrees not tested with themselves, because they are flat regions
+  std::vector<Ref> closed;       ///< flat regions (NormalCones), which are not tested with themselves
 
  private:
   int walks_ = 0;

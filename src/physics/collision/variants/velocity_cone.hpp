@@ -5,21 +5,21 @@
 
 namespace weft::collision {
 
-/// All motions of a set lie in the ball around `mean` with `radius`. Seen from the origin, that ball is the cone of the
-/// paper. A ball is stored because two balls bound a relative motion without trigonometry. Motions are displacements
-/// [m] over one common time.
+/// Bounds the motions of a set of points: displacements [m] over one common time. All of them are in the ball around
+/// `mean` with `radius`. Seen from the origin, this ball is the cone of the paper. Two balls, unlike two cones, bound a
+/// relative motion without trigonometry.
 struct VelocityCone {
   Vec3 mean = Vec3::Zero();
   double radius = 0;
 
-  /// Bound of the difference of two motions of one point, the earlier one in `then` and the later one in `now`.
+  /// Bound of the difference between a later motion and an earlier one of the same points.
   friend VelocityCone operator-(const VelocityCone& now, const VelocityCone& then) {
     return {now.mean - then.mean, now.radius + then.radius};
   }
 
-  /// Bound of the motion of a point of one set relative to a point of the other [m]: 0 for equal translations.
+  /// Bound of the motion of a point of one set relative to a point of the other [m]; 0 if both only translate equally.
   friend double relative_motion(const VelocityCone& a, const VelocityCone& b) {
-    constexpr double kRoundUp = 1 + 0x1p-48;  // a few roundings of sums and roots
+    constexpr double kRoundUp = 1 + 0x1p-48;  // exceeds the rounding of a few sums and roots
     return ((a.mean - b.mean).norm() + a.radius + b.radius) * kRoundUp;
   }
 };

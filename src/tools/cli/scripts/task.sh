@@ -1,20 +1,20 @@
 # The rest is the same for all farms. Usage: task.sh unpack | simulate RUN | draw RUN PART | join RUN | report
 #
-# A complete task ends at once, a stopped one resumes, and a task may run twice at the same time: a file gets its name
-# when it is complete. Missing numbers are those of the task in an array of Slurm.
-pause=${WEFT_PAUSE:-10} # before the next try, times the number of the try [s]
+# A complete task ends at once, and a stopped one resumes. A task may run twice at the same time, since each file gets
+# its name when it is complete. Without RUN or PART, the index in the job array of Slurm is used.
+pause=${WEFT_PAUSE:-10} # the pause before retry n is n times this [s]
 stopped= child=
 
 echo "== $(date -u '+%F %T') $label on $(uname -n)"
 code_file=farm/log/$label.code
-echo '    ' >"$code_file" # room for the exit code, also where the disk is full by then
+echo '    ' >"$code_file" # reserves space for the exit code, since the disk may be full at the end
 
-# Before a time limit, the current frame is finished, and the task is queued again. Schedulers that end a task signal
-# all of its processes.
+# Slurm sends USR1 before the time limit: the child finishes its current frame, and the task is queued again. At TERM or
+# INT, the child needs no signal from here, since schedulers signal all processes of a task.
 trap 'stopped=again; [ -z "$child" ] || kill -TERM "$child"' USR1
 trap 'stopped=yes' TERM INT
 
-# Tries again if that may help: after a killed process or a full disk.
+# Runs a command, and again if that may help: after a killed process or a full disk.
 attempt() {
   tries=0
   while :; do
@@ -32,7 +32,7 @@ attempt() {
     if [ -n "$stopped" ] || [ "$tries" -gt "$retries" ]; then return; fi
     echo "exit code $code: try $tries of $retries follows in $((pause * tries)) s"
     sleep $((pause * tries))
-    if [ -n "$stopped" ]; then return; fi # by a signal in the pause
+    if [ -n "$stopped" ]; then return; fi # by a signal during the pause
   done
 }
 
@@ -72,7 +72,7 @@ case $task in
 esac
 
 case $code in
-  0 | 2 | 3 | 4 | 5 | 9) ;; # no other place would change that
+  0 | 2 | 3 | 4 | 5 | 9) ;; # another machine would give the same exit code
   *)
     if [ "$stopped" = again ] && [ "${SLURM_RESTART_COUNT:-0}" -lt 100 ]; then
       echo "the time limit is near: the task continues from here in a new place in the queue"

@@ -16,7 +16,7 @@ FOLDER = os.path.dirname(os.path.abspath(__file__))
 
 
 def world_from_scene():
-    """z is up in Blender."""
+    """Transform of the scene to Blender's axes, where z is up."""
     return Matrix.Identity(4) if FILM["z_up"] else Matrix.Rotation(math.pi / 2, 4, "X")
 
 
@@ -42,7 +42,7 @@ def link(item, collection):
 
 
 def lay_pictures(mesh, pictures):
-    """Texture coordinates of their own, for a picture may be turned as well as scaled."""
+    """Adds texture coordinates for the pictures, since a mapping may rotate and scale a picture."""
     if not pictures:
         return
     pattern = mesh.uv_layers.active
@@ -65,7 +65,7 @@ def lay_picture(material, picture):
     places, image = nodes.new("ShaderNodeUVMap"), nodes.new("ShaderNodeTexImage")
     places.uv_map = "picture"
     image.image = bpy.data.images.load(os.path.join(FOLDER, picture["file"]), check_existing=True)
-    if picture["extension"] in image.bl_rna.properties["extension"].enum_items:  # MIRROR came after 3.4
+    if picture["extension"] in image.bl_rna.properties["extension"].enum_items:  # Blender 3.4 has no MIRROR
         image.extension = picture["extension"]
     links.new(places.outputs["UV"], image.inputs["Vector"])
     surface = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
@@ -108,7 +108,7 @@ def add_mesh(film_object, collection):
 
 
 def animate(item, path, index, frames, values):
-    """One value for each frame, straight lines between; none where all are the same."""
+    """Adds an animation curve with one value per frame, linear between frames; none if all values are equal."""
     if all(value == values[0] for value in values):
         return
     if not item.animation_data:
@@ -147,7 +147,7 @@ def add_camera(film_camera, collection):
 
 
 def add_light(film_light, collection):
-    """As bright as there: a white matte surface that faces it comes out white at a strength of 1."""
+    """Adds a light. At strength 1, a white matte surface that faces the light appears white, as in Weft's pictures."""
     sun = film_light["kind"] == "sun"
     light = bpy.data.lights.new(film_light["name"], "SUN" if sun else "SPOT")
     lamp = bpy.data.objects.new(film_light["name"], light)
@@ -168,7 +168,7 @@ def add_light(film_light, collection):
 def main():
     if bpy.context.mode != "OBJECT":
         bpy.ops.object.mode_set(mode="OBJECT")
-    for name in ("Cube", "Camera", "Light"):  # of a new file
+    for name in ("Cube", "Camera", "Light"):  # objects of a new Blender file
         if name in bpy.data.objects:
             bpy.data.objects.remove(bpy.data.objects[name])
     scene = bpy.context.scene

@@ -11,12 +11,12 @@ namespace weft {
 
 struct Picture {
   int width = 0, height = 0;       ///< [pixels]
-  std::vector<std::uint8_t> rgba;  ///< rows from the top, bytes R G B A per pixel, sRGB, alpha not premultiplied
+  std::vector<std::uint8_t> rgba;  ///< bytes R G B A of each pixel, top row first; sRGB, alpha not premultiplied
 };
 
-/// Sets the decoder of pictures. The library has none of its own, so that it needs no image libraries. A scene with
-/// pictures (masks of pins, prints on cloth) needs a decoder of PNG, JPEG or TGA. `decode` gets the bytes of a file; it
-/// must throw std::runtime_error with the reason if it cannot decode them.
+/// Sets the decoder of PNG, JPEG or TGA files, which scenes with pictures need. The library has no decoder of its own,
+/// so that it needs no image libraries. `decode` gets the bytes of a file. If it cannot decode them, it must throw
+/// std::runtime_error with the reason.
 WEFT_API void set_picture_decoder(std::function<Picture(std::string_view bytes)> decode);
 
 }  // namespace weft

@@ -12,24 +12,25 @@
 
 namespace weft {
 
-/// A checked scene. It never changes. Copies share the data of one scene, and any thread may read them.
+/// A scene without mistakes. It never changes. Copies share its data, and any thread may read them.
 class WEFT_API Scene {
  public:
-  /// Reads a file. `changes`: "path.to.key=value", as for `--set` on the command line, such as
+  /// Reads a file. Each of `changes` is "path.to.key=value", as for `--set` on the command line, such as
   /// "cloth.band.material.fabric=silk". Throws SceneError with all mistakes.
   static Scene load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
-  /// The same for the text of a file. Relative paths in the text start at the folder of `name`, which need not exist.
+  /// The same for the text of a file. `name`: path of that file, which need not exist; relative paths in the text start
+  /// at its folder.
   static Scene parse(std::string_view toml, const std::vector<std::string>& changes = {},
                      const std::filesystem::path& name = "scene.toml");
-  /// This scene with further changes, checked again. Throws SceneError.
+  /// Returns this scene with further changes, checked again. Throws SceneError.
   Scene with(const std::vector<std::string>& changes) const;
 
-  const std::string& name() const;  ///< file name without its ending
-  double fps() const;               ///< frames per second
-  int frames() const;               ///< number of frames; frame k is the state at time k / fps, frame 0 the start
+  const std::string& name() const;             ///< file name without its ending
+  double fps() const;                          ///< frames per second
+  int frames() const;                          ///< number of frames; frame k shows time k / fps, frame 0 the start
   std::vector<std::string> cloths() const;     ///< names, in the order of the scene
   std::vector<std::string> obstacles() const;  ///< names, in the order of the scene
-  /// The scene as TOML. Keys that the scene leaves out have their default values.
+  /// The scene as TOML, completed with the default values of all keys that it leaves out.
   std::string text() const;
 
   struct Data;
@@ -41,8 +42,8 @@ class WEFT_API Scene {
   std::shared_ptr<const Data> data_;
 };
 
-/// A measured fabric, such as "silk", for cloths of a Model. Throws std::invalid_argument with all names if there is
-/// none of this name.
+/// A measured fabric, such as "silk", for cloths of a Model. If there is none of this name, throws
+/// std::invalid_argument with all names.
 WEFT_API Material fabric(std::string_view name);
 
 }  // namespace weft

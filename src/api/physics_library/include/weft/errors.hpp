@@ -10,10 +10,10 @@
 namespace weft {
 
 struct Mistake {
-  std::string file;          ///< of the scene, as it was given
-  int line = 0, column = 0;  ///< counted from 1; 1:1: what the scene lacks; 0: not in the text of the file
-  std::string change;        ///< the override "key=value" that caused the mistake; empty: none did
-  std::string key;           ///< such as "cloth.band.material.thickness"; empty: the file as a whole
+  std::string file;          ///< path of the scene, as it was given
+  int line = 0, column = 0;  ///< counted from 1; 1 and 1 if the scene lacks something; 0: not in the text of the file
+  std::string change;        ///< the change "key=value" that caused the mistake; empty if the file did
+  std::string key;           ///< such as "cloth.band.material.thickness"; empty for the file as a whole
   std::string text;          ///< such as "expected > 0 m, got -0.001"
 };
 
@@ -23,14 +23,14 @@ class WEFT_API SceneError : public std::runtime_error {
  public:
   SceneError(const std::string& text, std::vector<Mistake> mistakes)
       : std::runtime_error(text), mistakes_(std::move(mistakes)) {}
-  /// All mistakes in the order of the file, then those of the changes.
+  /// All mistakes: first those in the file, in its order, then those in the changes.
   const std::vector<Mistake>& mistakes() const { return mistakes_; }
 
  private:
   std::vector<Mistake> mistakes_;
 };
 
-/// A mesh, motion or picture that the scene names cannot be used. what() names the file.
+/// A mesh, motion or picture file that the scene names cannot be used. what() names the file.
 class WEFT_API FileError : public SceneError {
  public:
   using SceneError::SceneError;

@@ -7,21 +7,21 @@
 
 namespace weft {
 
-/// Version of the library: "0.1.0".
+/// Version of the library, such as "0.1.0".
 WEFT_API const char* version();
 
-/// Sets the largest number of threads; 0: as many as there are processors. Results do not depend on it.
-/// Throws std::invalid_argument for a number below 0.
+/// Sets the maximum number of threads; 0: as many as there are processors. Results do not depend on this number.
+/// Throws std::invalid_argument if the number is below 0.
 WEFT_API void set_threads(int threads);
 
-/// Sends each message about a model or scene to `handle`, instead of standard error. `handle` is called by the
-/// thread that loads or simulates. If several threads do so, calls may be concurrent. An empty function restores
-/// standard error.
+/// Passes each message about a model or scene to `handle`, instead of printing it to standard error. The thread that
+/// loads or simulates calls `handle`; if several threads load or simulate, these calls may be concurrent. An empty
+/// function restores standard error.
 WEFT_API void set_warning_handler(std::function<void(std::string_view warning)> handle);
 
-/// Calls `check` many times a second while a simulation computes, in the thread that called it. To interrupt a frame,
-/// `check` throws: Simulation::advance() then throws the same, and frame() stays as it was. An empty function ends
-/// this.
+/// Sets a function that simulations call many times a second while they compute, in the thread that uses them. To
+/// interrupt a frame, `check` throws: Simulation::advance() then throws the same exception, and Simulation::frame()
+/// stays as it was. An empty function removes the check.
 WEFT_API void set_interrupt_check(std::function<void()> check);
 
 }  // namespace weft

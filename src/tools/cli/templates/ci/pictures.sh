@@ -1,8 +1,8 @@
 #!/bin/sh
-# Draws every scene below scenes/ into out/, a video and a picture of each tenth frame, and compares all of them with
-# references/. What differs is in report/, statistics of each run are in report/stats/. People and the workflow run just
-# this. Options go to the simulations, such as --threads 4. If a scene fails, the others go on. Exit codes: that of the
-# first scene that failed, else 0 all as it was, 7 a picture differs or is missing, 8 a picture has no reference.
+# Draws each scene below scenes/ into out/ (a video, and a picture of every tenth frame), and compares out/ with
+# references/. Differences go to report/, statistics of each run to report/stats/. Arguments such as --threads 4 go to the
+# simulations. If a scene fails, the others are still drawn. Exit code: that of the first scene that failed; else 0 if all
+# pictures match, 7 if a picture differs or is missing, 8 if a picture has no reference.
 cd -- "$(dirname -- "$0")" || exit 2
 weft=${WEFT:-weft}
 size=480x270

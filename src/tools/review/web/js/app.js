@@ -1,6 +1,6 @@
-// Selects the page that the address names, and makes the bar at the top and the keys that work on all pages.
+// Opens the page that the fragment of the URL names. Makes the bar at the top and the keys that work on all pages.
 //
-// Addresses: #run=ID (&with=ID&view=slider&frame=12), #compare=ID&compare=ID (&left=ID&right=ID&view=side&frame=12),
+// Fragments: #run=ID (&with=ID&view=slider&frame=12), #compare=ID&compare=ID (&left=ID&right=ID&view=side&frame=12),
 // else the overview (#chosen=ID&sort=strain).
 "use strict";
 {
@@ -8,9 +8,9 @@
   const content = document.getElementById("content");
   const themeSwitch = document.getElementById("theme-switch");
   let page = null;
-  let written = null; // the address that the page itself wrote last
+  let written = null; // the fragment that replaceAddress() wrote last
 
-  // Writes the state of the page to its address without opening the page again.
+  // Writes the state of the page to the fragment of the URL without opening the page again.
   review.replaceAddress = (address) => {
     written = `#${address}`;
     if (location.hash.replace(/^#?$/, "#") === written) return;
@@ -23,7 +23,7 @@
     return new review.OverviewPage(address);
   };
 
-  // The runs whose details a page shows.
+  // The runs whose details the page needs.
   const shown = (address) => {
     const run = review.model.find(address.get("run"));
     const ids = run ? [run.id, address.get("with") ?? run.referenceId] : address.getAll("compare");
@@ -34,7 +34,7 @@
     const asked = location.hash;
     const address = new URLSearchParams(asked.slice(1));
     await Promise.all(shown(address).map((run) => run.load()));
-    if (location.hash !== asked) return; // the address has changed meanwhile; its own event opens that page
+    if (location.hash !== asked) return; // the address has changed meanwhile, and its own event opens the page
     page?.close();
     const firstTime = page === null;
     page = makePage(address);

@@ -41,7 +41,7 @@
       return h("div.page-head", {}, h("h1", {}, "Comparison"), h("ul.members", {}, members),
         h("div.page-tools", {}, this.buildSides(), rest.length > 0 && add));
     }
-    // Selects the two runs that the viewer shows.
+    // Lists from which the reader selects the two runs that the viewer shows.
     buildSides() {
       const shown = this.runs.filter((run) => run.hasPictures);
       if (shown.length < 3) return null;
@@ -104,7 +104,7 @@
         rows.length === 0 ? h("p.nothing", {}, "The scenes are equal.")
           : h("div.table-frame", { tabindex: 0, "aria-label": "Differences of the scenes" }, h("table.differences.scenes", {}, this.tableHead(`${rows.length} of ${keys.length} values`), h("tbody", {}, rows))));
     }
-    // One row for each name whose texts are not all the same.
+    // One row for each name whose text differs between the runs.
     differingRows(names, textOf) {
       return names.map((name) => {
         const texts = this.runs.map((_, i) => textOf(name, i));

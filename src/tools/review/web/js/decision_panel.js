@@ -1,17 +1,17 @@
-// On the page of a run: its decision, notes with marks on the picture, and the command line that accepts it.
+// On the page of a run: its decision, notes with marks on the picture, and the command that accepts its pictures.
 "use strict";
 {
   const { h, svg } = review;
   const { date, plural } = review.format;
   const WORDS = { open: "Open", "needs work": "Needs work", approved: "Approved" };
-  const LEAST_MOVE = 0.004; // between two points of a mark, as a fraction of the picture
+  const LEAST_MOVE = 0.004; // smallest distance of two consecutive points of a mark, as a fraction of the picture
 
-  /** The marks on the picture of a viewer: those of the notes at its frame, and those that are being drawn. */
+  /** The marks on the picture of a viewer: those of the notes at its frame, and new ones that have no note yet. */
   review.Marks = class {
     constructor(viewer) {
       this.viewer = viewer;
       this.width = 1000 * viewer.runs[0].aspect;
-      this.lines = []; // being drawn
+      this.lines = []; // lines that the reader has drawn, but not yet saved with a note
       this.element = svg("svg", { class: "drawn", viewBox: `0 0 ${this.width} 1000`, "aria-hidden": "true" });
       viewer.blend.append(this.element);
       this.element.addEventListener("pointerdown", (event) => this.begin(event));
@@ -26,7 +26,7 @@
       return [share(point.x / this.width), share(point.y / 1000)];
     }
     begin(event) {
-      event.stopPropagation(); // the slider follows the pointer too
+      event.stopPropagation(); // else the slider moves too
       this.element.setPointerCapture(event.pointerId);
       this.lines.push([this.at(event)]);
       this.draw();
@@ -55,7 +55,7 @@
   };
 
   review.DecisionPanel = class {
-    /** `viewer` may be null: then notes do not lead to a frame. */
+    /** If `viewer` is null, a click on a note does not show its frame. */
     constructor(run, viewer) {
       this.run = run;
       this.viewer = viewer;
@@ -106,7 +106,7 @@
         h("span.note-text", {}, note.text, " ", h("small", {}, of.filter(Boolean).join(", "))),
         h("button.remove", { type: "button", "aria-label": `Remove the note at frame ${note.frame}`, onclick: () => review.decisions.remove(this.run, i) }, "×"));
     }
-    // Another frame is shown.
+    // Call it when the viewer shows another frame.
     showFrame() {
       this.addButton.textContent = `Add note at frame ${this.frame}`;
       this.showMarks();
@@ -139,7 +139,7 @@
         await navigator.clipboard.writeText(this.line.textContent);
         this.copied.textContent = "copied";
       } catch {
-        getSelection().selectAllChildren(this.line); // selects the line, to be copied by hand
+        getSelection().selectAllChildren(this.line); // if the browser denies access to the clipboard
         this.copied.textContent = "selected: copy it with the keys of your system";
       }
     }

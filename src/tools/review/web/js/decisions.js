@@ -1,5 +1,6 @@
-// Decisions about runs: those of review.json when the page was written, and changes made on the page since then. The
-// browser stores these changes until the downloaded file is in its folder and the page is written again.
+// Decisions about runs: those that review.json had when weft review wrote the page, and later changes made on the page.
+// The browser stores these changes until the reader puts the downloaded file into its folder and weft review writes the
+// page again.
 "use strict";
 {
   const FORMAT = "weft review 1";
@@ -19,15 +20,15 @@
     try {
       localStorage.setItem(key, JSON.stringify(value));
     } catch {
-      // as above
+      // the browser refuses storage
     }
   };
 
-  let own = stored(place, {}); // changes by home (folder) and key of the run
+  let own = stored(place, {}); // changes, by the searched folder (home) and the key of the run
   let author = stored("weft-review-author", "");
 
   const ownOf = (run) => own[run.home]?.[run.key];
-  // The later of two entries; dates are ISO 8601 in UTC and sort as text.
+  // Whether the change is later than the entry of review.json. Dates are ISO 8601 in UTC, so they compare as text.
   const isPending = (run) => ownOf(run) !== undefined && (ownOf(run).date ?? "") > (run.filed?.date ?? "");
   const entryOf = (run) => (isPending(run) ? ownOf(run) : run.filed) ?? { state: "open", notes: [] };
 
@@ -48,12 +49,12 @@
     },
     notes: (run) => entryOf(run).notes ?? [],
     entry: entryOf,
-    /** One of STATES, or "changed" if the decision is about other pictures. */
+    /** One of STATES, or "changed" if the pictures have changed since the decision. */
     state(run) {
       const { state, of } = entryOf(run);
       return state !== "open" && of !== run.of ? "changed" : state;
     },
-    /** {level, text, note} for a chip; null without a decision. */
+    /** {level, text, note} for a label that shows the decision; null if there is none. */
     chip(run) {
       const { state, by, date } = entryOf(run);
       const note = [by && `by ${by}`, date && review.format.date(new Date(date))].filter(Boolean).join(", ");
@@ -87,7 +88,7 @@
   };
 
   const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-  /** The command that makes the run's pictures the reference; an approval's last note is the reason. null: no pictures. */
+  /** The command that makes the run's pictures the reference; its reason is the last note of an approval. null: no pictures. */
   review.acceptLine = (run) => {
     const { file, prefix, reference } = run.accept ?? {};
     if (!file && !prefix) return null;
@@ -95,7 +96,7 @@
     return `weft accept ${quoted(reference)} ${file ? quoted(file) : `${quoted(prefix)}[0-9]*.png`} --reason ${quoted(reason || "WHY")}`;
   };
 
-  /** A button for each folder whose review.json lacks changes, which downloads the new file. */
+  /** One button for each folder whose review.json lacks changes; it downloads the new file. */
   review.downloads = () => {
     const element = review.h("span.downloads", { role: "status" });
     const show = () => element.replaceChildren(...[...review.decisions.pending].map(([home, count]) =>

@@ -1,4 +1,4 @@
-// Elements in one expression: h("button.small", { type: "button", onclick: go }, "Go"). Text is always text, never HTML.
+// Makes an element: h("button.small", { type: "button", onclick: go }, "Go"). Text children are never read as HTML.
 "use strict";
 {
   const setProperty = (element, name, value) => {
@@ -24,7 +24,7 @@
     return make(element, properties, children);
   };
 
-  // Allows line breaks in names after separators.
+  // Allows line breaks after the separators in a name.
   review.breakable = (name) => name.split(/(?<=[/_.-])/).flatMap((part) => [part, document.createElement("wbr")]);
 
   review.svg = (tag, attributes, ...children) =>

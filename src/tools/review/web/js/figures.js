@@ -1,18 +1,18 @@
-// The figures of a run that fit into one line each. All pages and tables use these.
+// The single-value figures of a run. All pages and tables use them.
 "use strict";
 {
   const { known, count, milliseconds, seconds, millimetres, percent, joule, bytes } = review.format;
 
   const sum = (run, name) => run.digest[name]?.sum;
 
-  // The extreme value, and its frame.
+  // The smallest or largest value (`which`: "min" or "max"), and its frame.
   const extreme = (name, which) => (run) => {
     const value = run.digest[name]?.[which];
     return { value, frame: value !== 0 ? (run.digest[name]?.[`${which}_frame`] ?? undefined) : undefined };
   };
   const largest = (name) => extreme(name, "max");
   const smallest = (name) => extreme(name, "min");
-  // Of the pictures compared with the reference.
+  // The worst value among the pictures that were compared with the reference. `sign`: 1 if larger is worse, else -1.
   const worst = (name, sign) => (run) => {
     const [first, ...rest] = run.comparison;
     if (!first) return {};
@@ -20,15 +20,15 @@
     return { value: pair[name], frame: pair.verdict === "same" ? undefined : run.frameOf(pair.picture) };
   };
   const last = (name) => (run) => ({ value: run.digest[name]?.last });
-  // Without simulated frames, all totals are 0; the value is then undefined.
+  // Undefined without simulated frames, since all totals are 0 then.
   const total = (name) => (run) => ({ value: run.digest.frame ? run.totals[name] : undefined });
   const perFrame = (name) => (run) => {
-    const frames = (run.digest.frame?.count ?? 0) - 1; // frame 0 is given, not computed
+    const frames = (run.digest.frame?.count ?? 0) - 1; // frame 0 is the initial state; it costs no time
     return { value: known(run.totals[name]) && frames > 0 ? (1e3 * run.totals[name]) / frames : undefined };
   };
   const ratio = (part, whole) => (known(part) && known(whole) && whole > 0 ? part / whole : undefined);
 
-  // Names for narrow tables.
+  // Short labels for narrow tables.
   const SHORT = { strain: "Strain", distance: "Distance", error: "Error", newton: "Newton/step", cpu_frame: "CPU/frame" };
   const figure = (key, label, of, format, note) => ({ key, label, short: SHORT[key] ?? label, of, format, note });
 

@@ -1,10 +1,10 @@
-// Keyboard: `?` lists the keys that a page binds.
+// Keyboard: pages bind keys to actions; the key `?` lists them.
 "use strict";
 {
   const { h } = review;
   let bindings = [];
 
-  // Elements in which letters are typed or arrow keys have another meaning.
+  // Whether the focused element itself uses the key: text fields, lists, sliders, buttons.
   const takesKey = (target, key) => {
     if (target.matches("textarea, select, input[type=search], input[type=text], input[type=number]")) return key !== "Escape";
     if (target.matches("input[type=range]")) return /^(Arrow|Page|Home|End)/.test(key) && !target.matches(".scrubber");

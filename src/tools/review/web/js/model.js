@@ -1,12 +1,12 @@
-// The runs of this page, as index.html carries them.
+// The runs of this page; index.html contains their data.
 //
 // A *frame* is a state of the simulation, at frame / fps. A *picture* is what the video or the stills show of it: the
-// k-th picture shows frame first + k * step. All parts of the page refer to the time of the frame.
+// k-th picture shows frame first + k * step. All parts of the page use the time of the frame.
 "use strict";
 {
   const { known, plural } = review.format;
   const EXIT_CODES = { 1: "own fault", 2: "command line", 3: "scene", 4: "asset", 5: "simulation", 6: "output", 75: "interrupted" };
-  const ASSUMED_FPS = 25; // of a video without a known rate [pictures per second]
+  const ASSUMED_FPS = 25; // for a video whose rate is unknown [pictures per second]
 
   class Run {
     constructor(data) {
@@ -16,24 +16,24 @@
       this.stats = data.stats;
       this.totals = data.stats.totals ?? {};
       this.digest = data.digest; // summary of the columns, for the figures
-      this.columns = {}; // empty, like the scene, until the run is loaded
+      this.columns = {}; // empty until load(), like `effective`
       this.effective = null;
       this.pictures = data.pictures;
       this.sheet = data.sheet ?? [];
       this.poster = data.poster ?? null;
       this.referenceId = data.reference ?? null;
-      this.comparison = data.comparison ?? []; // of the pictures of the contact sheet with the reference
+      this.comparison = data.comparison ?? []; // the pictures of the contact sheet, compared with the reference
       this.isReference = data.id.startsWith("references/");
       this.date = data.date ? new Date(data.date) : null;
       this.of = data.of ?? ""; // fingerprint of its pictures
       this.home = data.home;
       this.key = data.key;
-      this.filed = data.decision ?? null; // of review.json
+      this.filed = data.decision ?? null; // entry of review.json
       this.accept = data.accept ?? null;
-      this.values = data.values ?? {}; // of a sweep: what it changed, by key
+      this.values = data.values ?? {}; // for a sweep: changed values, by key
     }
 
-    /** Loads, once, the data of the run's own page. A page that is opened from a file may load only scripts. */
+    /** Loads the data for the run's own page, once. They are a script, since a page opened from a file may load nothing else. */
     load() {
       this.loading ??= new Promise((resolve) => {
         const script = document.createElement("script");
@@ -56,7 +56,7 @@
     get scene() {
       return this.stats.scene ?? this.name;
     }
-    /** Label of a run of a sweep: its values, since all runs have the same scene. */
+    /** The name. For a run of a sweep, without its last part: the scene's name, which all runs of the sweep share. */
     get title() {
       return Object.keys(this.values).length > 0 ? this.name.replace(/\/[^/]*$/, "") : this.name;
     }
@@ -117,7 +117,7 @@
     get warnings() {
       return this.stats.warnings ?? [];
     }
-    /** Why the run ended early, and its warnings. */
+    /** The message that says why the run ended early, if it did, and the warnings. */
     get reasons() {
       return this.stats.message ? [this.stats.message, ...this.warnings] : this.warnings;
     }
@@ -139,7 +139,7 @@
 
   runs.forEach((run, place) => (run.place = place));
 
-  // Keys with several values among the runs of a sweep. Texts keep the order of the sweep, numbers are sorted by value.
+  // Keys with several values among the runs of a sweep. Numbers are sorted by value, texts stay in the order of the sweep.
   const keys = [...new Set(runs.flatMap(({ values }) => Object.keys(values)))];
   const swept = keys.filter((key) => new Set(runs.map(({ values }) => values[key])).size > 1).map((key) => {
     const texts = [...new Set(runs.map(({ values }) => values[key]))];
@@ -150,7 +150,7 @@
   });
 
   const age = (run) => run.date?.getTime() ?? 0;
-  // A run of a sweep is a version of another run only if both have the same values.
+  // What makes runs versions of each other: the same scene and, in a sweep, the same values.
   const shot = (run) => JSON.stringify([run.scene, run.values]);
   /** Runs of the same scene, the newest first. */
   const versions = (run) => runs.filter((other) => shot(other) === shot(run)).sort((a, b) => age(b) - age(a));

@@ -1,10 +1,10 @@
-// All runs at a glance: verdict, picture, key figures. Chosen runs go on to be compared.
+// Table of all runs: verdict, picture, key figures. The reader chooses runs here to compare them.
 "use strict";
 {
   const { h } = review;
   const { date, plural } = review.format;
   const ALL_COLUMNS = ["frames", "particles", "strain", "distance", "error", "newton", "cpu_frame"].map((key) => review.figure[key]);
-  // For a sweep, its keys get columns, and columns with the same value in all runs are hidden.
+  // For a sweep, each key has a column, and columns with the same value in all runs are hidden.
   const tells = ({ of }) => new Set(review.model.runs.map((run) => of(run).value).filter((value) => value !== undefined)).size > 1;
   const SWEPT = review.model.swept.length > 0;
   const COLUMNS = SWEPT ? ALL_COLUMNS.filter(tells) : ALL_COLUMNS;
@@ -20,7 +20,7 @@
     return h("span.no-picture", {}, "no picture");
   };
 
-  // How the CPU time of a run is divided.
+  // How the CPU time of a run is divided between stages.
   const shares = (run) => {
     const [simulate, collide, render, encode] = STAGES.map((stage) => run.totals[stage] ?? 0);
     const parts = [simulate - collide, collide, render, encode];
@@ -39,7 +39,7 @@
       this.rows = review.model.runs.map((run) => {
         try {
           return this.buildRow(run);
-        } catch (error) { // in one run; the other runs are still shown
+        } catch (error) { // shows the other runs although the data of one are invalid
           return this.buildBrokenRow(run, error);
         }
       });

@@ -1,4 +1,5 @@
-// Shows pictures of one run, or of several side by side in time. The first track leads; the others follow its time.
+// Shows the pictures of one run, or of several at the same time. Each run has a track. The time of the first track sets
+// that of the others.
 "use strict";
 {
   const { h } = review;
@@ -7,8 +8,8 @@
   const REASONS = { 1: "it was interrupted", 2: "the file cannot be read", 3: "the file is damaged", 4: "the file is not there, or this browser does not know how its pictures are coded" };
   const reasonOf = (error) => [REASONS[error?.code] ?? "unknown reason", error?.message].filter(Boolean).join("; ");
 
-  // A video of constant frame rate. Picture k lasts from k / fps to (k + 1) / fps: the player seeks the middle, so that
-  // rounding cannot lead to a neighbour. data-picture is the index of the picture on screen.
+  // A video of constant frame rate. Picture k lasts from k / fps to (k + 1) / fps. The player seeks the middle, so that
+  // rounding cannot select a neighbour. The attribute data-picture is the index of the picture on screen.
   class VideoTrack {
     constructor(run, { onCount, onError }) {
       this.run = run;
@@ -32,7 +33,7 @@
       this.wanted = picture;
       if (this.sought === null && this.element.readyState > 0) this.seek();
     }
-    // One seek at a time: a scrubber moves faster than a browser seeks.
+    // Starts only one seek at a time, since a reader moves the scrubber faster than the browser seeks.
     seek() {
       this.sought = this.wanted;
       this.element.currentTime = (this.sought + 0.5) / this.run.fps;
@@ -48,7 +49,7 @@
       const { element } = this;
       element.playbackRate = rate;
       element.onended = onEnd;
-      element.play().catch(() => {}); // paused again before it began
+      element.play().catch(() => {}); // play() fails if the video is paused before it starts
       const report = (time) => {
         if (element.paused) return;
         this.wanted = Math.min(this.run.pictures.count - 1, Math.max(0, time));
@@ -91,7 +92,7 @@
       new Image().src = this.run.pictures.files[Math.min(picture + 1, this.run.pictures.files.length - 1)];
     }
     play(rate, onPicture, onEnd) {
-      if (!onPicture) return; // a follower is shown each picture by stayNear
+      if (!onPicture) return; // if this is not the first track, stayNear() shows the pictures
       const first = this.wanted;
       let start = null;
       const tick = (now) => {

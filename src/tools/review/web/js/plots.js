@@ -1,4 +1,4 @@
-// Plots over time, with a line at the picture that is shown. A click shows the picture at that time, a drag zooms all
+// Plots over time, with a line at the picture that is shown. A click shows the picture at that time, dragging zooms all
 // plots, a double click resets the zoom.
 "use strict";
 {
@@ -26,7 +26,7 @@
       series("error_estimate_m", "time steps", 1e3), series("solver_error_m", "solver", 1e3)] },
   ];
 
-  /** One curve for each series of a run, drawn with solid lines, and dashed ones of `reference`. */
+  /** One solid curve for each series of `run`, and a dashed one for each series of `reference`. */
   review.curvesOfRun = (plot, run, reference) => {
     const curves = [];
     plot.series.forEach((entry, i) => {
@@ -41,7 +41,7 @@
     return curves;
   };
 
-  /** One curve for each run: its first series, or the sum of those that are stacked. */
+  /** One curve for each run: the first series of `plot`, or the sum of all series if they are stacked. */
   review.curvesOfRuns = (plot, runs) => runs.flatMap((run, i) => {
     const parts = (plot.stacked ? plot.series : plot.series.slice(0, 1)).map((entry) => entry.of(run)).filter(Boolean);
     if (parts.length === 0) return [];
@@ -71,7 +71,7 @@
         this.canvas);
     }
 
-    // A logarithmic axis needs a value above zero.
+    // Whether a logarithmic axis can be chosen: it needs a value above zero.
     get hasLog() {
       return this.definition.log && this.curves.some(({ values }) => values.some((value) => value > 0));
     }
@@ -88,7 +88,7 @@
       this.draw();
     }
 
-    // Data for uPlot: sums for stacked curves, gaps for values without a logarithm.
+    // Data for uPlot: cumulative sums for stacked curves; on a logarithmic axis, gaps for values up to zero.
     get drawn() {
       const [times, ...columns] = this.values;
       if (this.stacked) return [times, ...columns.map((_, i) => sums(columns.slice(0, i + 1)))];
@@ -115,7 +115,7 @@
         hooks: { setScale: [() => this.place()], setSize: [() => this.place()], ready: [(plot) => this.ready(plot)] },
       };
     }
-    // The range starts at zero, since these are amounts, and has a margin above.
+    // The range starts at zero, or below for negative values, and has a margin above.
     range(low, high) {
       if (!known(low) || !known(high)) return [0, 1];
       return [Math.min(0, low), high > 0 ? 1.05 * high : 1];
@@ -132,7 +132,7 @@
 
     ready(plot) {
       plot.over.append(this.playhead);
-      queueMicrotask(() => this.showTime(this.time)); // otherwise uPlot shows no values until the mouse enters
+      queueMicrotask(() => this.showTime(this.time)); // else uPlot shows no values until the pointer enters
       plot.over.addEventListener("click", () => {
         if (plot.select.width < 3 && known(plot.cursor.left)) this.onSeek(plot.posToVal(plot.cursor.left, "x"));
       });
@@ -165,7 +165,7 @@
   }
 
   review.Plots = class {
-    /** `curvesOf(plot)` gives the curves of one entry of PLOTS; plots without curves are left out. */
+    /** `curvesOf(plot)` returns the curves of one entry of PLOTS. If it returns none, the plot is not shown. */
     constructor(curvesOf, { sync, onSeek, caption = () => undefined }) {
       this.plots = review.PLOTS.map((definition) => ({ definition, curves: curvesOf(definition) }))
         .filter(({ curves }) => curves.length > 0)
@@ -176,7 +176,7 @@
     get empty() {
       return this.plots.length === 0;
     }
-    /** Call it once the element is in the document, and again when colours have changed. */
+    /** Call it when the element is in the document, and again when the colours change. */
     draw() {
       for (const plot of this.plots) plot.draw();
       this.observer.observe(this.element);

@@ -80,7 +80,7 @@
       if (rows.length === 0) return null;
       return review.section("Figures", h("table.figures", {}, h("tbody", {}, rows)));
     }
-    // The verdict of weft diff for each compared picture; a click shows the map.
+    // The verdict of weft diff for each compared picture; a click shows the heat map.
     buildComparison() {
       const { comparison } = this.run;
       if (comparison.length === 0 || this.other !== this.run.reference) return null;

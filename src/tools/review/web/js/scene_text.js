@@ -1,10 +1,10 @@
-// The effective scene: TOML as text with line numbers, searchable.
+// Shows the effective scene: TOML with coloured syntax, line numbers and a search.
 "use strict";
 {
   const { h } = review;
   const { plural } = review.format;
 
-  // [class, pattern], tried in order at the start of the rest of a line.
+  // [class, pattern]. The first pattern that matches at the start of the remaining line is taken.
   const TOKENS = [
     ["comment", /^#.*/],
     ["key", /^[\w."-]+(?=\s*=)/],

@@ -1,7 +1,7 @@
-// Dark or light: as in the system unless the reader has chosen. Runs before anything is drawn.
+// Dark or light colours: as the system, unless the reader has chosen. Runs before the browser draws the page.
 "use strict";
 
-const review = {}; // the one name that the scripts of this page share
+const review = {}; // the only global name of the scripts of this page
 
 {
   const KEY = "weft-review-theme";
@@ -20,7 +20,7 @@ const review = {}; // the one name that the scripts of this page share
     try {
       localStorage.setItem(KEY, choice);
     } catch {
-      // as above
+      // the browser refuses storage
     }
   };
 

@@ -1,4 +1,5 @@
-// The picture area: one run, or two side by side, under a slider, blinking, or as their difference; with the controls.
+// The picture area with its controls. Shows one run, or two runs: side by side, divided by a slider, alternating, or as
+// their difference.
 "use strict";
 {
   const { h, svg } = review;
@@ -10,15 +11,15 @@
     { id: "slider", name: "Slider", key: "3" },
     { id: "blink", name: "Blink", key: "4" },
     { id: "difference", name: "Difference", key: "5" },
-    { id: "heat", name: "Heat map", key: "6" }, // of FLIP, only of pictures that were compared with the reference
+    { id: "heat", name: "Heat map", key: "6" }, // FLIP map; only for pictures that were compared with the reference
   ];
   const RATES = [0.1, 0.25, 0.5, 1, 2];
   const GAINS = [1, 4, 16];
   const BLINK_MS = 500;
-  // Colours of the difference from none to most, dark to bright also without colour vision.
+  // Colour scale of the difference, from none to the largest. Its lightness increases, so it needs no colour vision.
   const HEAT = [[0, 0, 0.03], [0.26, 0.04, 0.41], [0.58, 0.15, 0.4], [0.87, 0.32, 0.23], [0.99, 0.65, 0.04], [1, 1, 0.75]];
 
-  // The mean of the three channels, times the gain, as a colour of HEAT.
+  // SVG filter that shows the mean of the three channels, times the gain, as a colour of HEAT.
   const heatFilter = (gain) => {
     const row = `${gain / 3} ${gain / 3} ${gain / 3} 0 0`;
     const table = (channel) => ({ type: "table", tableValues: HEAT.map((color) => color[channel]).join(" ") });
@@ -37,8 +38,7 @@
   };
   const icon = (name) => svg("svg", { viewBox: "0 0 16 16", "aria-hidden": "true", class: "icon" }, svg("path", { d: ICONS[name] }));
 
-  // Pictures of the leading run in which cloth is in a pinched region (no space between bodies), as ranges [first,
-  // last].
+  // Pictures of the first run in which cloth is in a pinched region (no space between bodies), as ranges [first, last].
   const pinchedRanges = (run) => {
     const ranges = [];
     for (let picture = 0; picture < run.pictures.count; ++picture) {
@@ -51,7 +51,7 @@
   };
 
   review.Viewer = class {
-    /** `other` may be null; `mode` is one of MODES, used only with an `other`. */
+    /** `other`: the second run; may be null. `mode`: one of MODES; used only if there is a second run. */
     constructor(lead, other, { mode = "slider", onMode = () => {} } = {}) {
       this.runs = other ? [lead, other] : [lead];
       this.onMode = onMode;
@@ -142,7 +142,7 @@
       return this.tiles.length > 0 && h("div.sheet", { role: "group", "aria-label": "Contact sheet" }, this.tiles);
     }
 
-    // Below a tile: whether its picture matches the reference.
+    // The mark below a tile that says whether its picture matches the reference.
     likenessMark(picture) {
       const [lead, other] = this.runs;
       const pair = other && other === lead.reference && lead.comparison.find((entry) => entry.picture === picture);
@@ -152,7 +152,7 @@
     followPointer() {
       const move = (event) => {
         if (this.mode !== "slider" || event.target === this.split || event.buttons === 0) return;
-        if (event.type === "pointerdown") this.stage.setPointerCapture(event.pointerId); // also outside of the element
+        if (event.type === "pointerdown") this.stage.setPointerCapture(event.pointerId); // to receive moves outside of the element too
         const box = this.blend.getBoundingClientRect();
         this.setSplit((100 * (event.clientX - box.left)) / box.width);
       };
@@ -176,7 +176,7 @@
     blinkOnce() {
       this.stage.dataset.blink = this.stage.dataset.blink === "b" ? "a" : "b";
     }
-    // The map of the compared picture nearest to the one that is shown.
+    // Shows the heat map of the compared picture that is nearest to the current one.
     showHeat() {
       const lead = this.runs[0];
       const pair = lead.comparedNear(this.player.picture);
