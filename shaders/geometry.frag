@@ -2,7 +2,7 @@
 // 4x4 block for every triangle that touches it, which for the small triangles of cloth is about eight times the visible
 // pixels. The floor writes only distance_surface.
 #include "frame.glsl"
-const float kMostRise = 0.02;  // limit on rise() [m], for triangles at folds, whose corner normals differ too much
+const float kMaxRise = 0.02;  // limit on rise() [m], for triangles at folds, whose corner normals differ too much
 in vec3 surface_normal_world;
 in vec2 surface_uv;
 in float surface_heat;
@@ -37,7 +37,7 @@ layout(binding = 12) uniform sampler2D peeled;  // distance of the layer drawn l
 float rise(vec3 n) {
   vec3 p = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0 / gl_FragCoord.w));
   vec3 products = normal_products.zxy * p.yzx + normal_products.yzx * p.zxy;
-  return clamp(dot(n, plane - normal_squares * p - products), -kMostRise, kMostRise);
+  return clamp(dot(n, plane - normal_squares * p - products), -kMaxRise, kMaxRise);
 }
 
 void main() {

@@ -101,7 +101,7 @@ bool prepare_once(const fs::path& folder, std::error_code& error) {
 }
 
 std::mutex g_kept_mutex;
-std::set<fs::path> g_kept;  // absolute paths; see keep_if_made_meanwhile()
+std::set<fs::path> g_kept;  // absolute paths; see protect_missing_file()
 
 fs::path normalise(const fs::path& file) {
   std::error_code error;
@@ -207,7 +207,7 @@ void TemporaryFile::commit(Flush flush) {
   g_kept.erase(normalise(final_name_));
 }
 
-void keep_if_made_meanwhile(const fs::path& file) {
+void protect_missing_file(const fs::path& file) {
   const std::lock_guard lock(g_kept_mutex);
   g_kept.insert(normalise(file));
 }

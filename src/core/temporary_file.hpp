@@ -59,8 +59,8 @@ class TemporaryFile {
 
 /// Call it if `file` does not exist when the command begins and the command must not replace files. If another process
 /// creates `file` later, that file stays, and commit() fails. In effect until this process has written `file`.
-void keep_if_made_meanwhile(const std::filesystem::path& file);
-/// False while keep_if_made_meanwhile() is in effect for `file`.
+void protect_missing_file(const std::filesystem::path& file);
+/// False while protect_missing_file() is in effect for `file`.
 bool may_replace(const std::filesystem::path& file);
 
 /// The final name (or its hash) that a temporary name contains; empty if `temporary_name` is no temporary name.

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "film/character/limb_clearance.hpp"
 #include "film/character/mannequin.hpp"
-#include "film/character/room.hpp"
 #include "physics/mesh/topology.hpp"
 #include "physics/mesh/triangle_grid.hpp"
 #include "posed_mannequin.hpp"
@@ -117,7 +117,7 @@ class RoomOfAMannequin : public ::testing::Test {
     skin(body_, pose, x);
     return x;
   }
-  Room room(std::vector<Ground> grounds = {}, double width = kRoom) const {
+  LimbClearance clearance(std::vector<Ground> grounds = {}, double width = kRoom) const {
     return {{body_, joints_},
             VertexMask(body_.mesh.positions.size(), 1),
             std::vector<float>(body_.mesh.positions.size(), 1),
@@ -137,7 +137,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
-  room().make(pose, after);
+  clearance().move_skin(pose, after);
   EXPECT_GT(crossings(before), 100u);
   // Measured: 546 before, 464 after. Bent fingers have many small triangles, and if only one of two limbs detects the
   // other, only half of the clearance is made.
@@ -170,7 +170,7 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   pose.nodes[thigh].rotation = (turn * pose.nodes[thigh].rotation).normalized();
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
-  const Moved moved = room({}, 0.016).make(pose, after);
+  const Moved moved = clearance({}, 0.016).move_skin(pose, after);
   EXPECT_GT(crossings(before), 10u);
   EXPECT_LE(crossings(after), crossings(before));
   EXPECT_GT(moved.distance, 0);
@@ -181,7 +181,7 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
 TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
-  room({}, 0.1).make(rest_pose(body_), after);
+  clearance({}, 0.1).move_skin(rest_pose(body_), after);
   EXPECT_EQ(after, before);
 }
 
@@ -190,8 +190,8 @@ TEST_F(RoomOfAMannequin, LeavesSkinWithoutClothToTheBit) {
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
   const VertexMask all(before.size(), 1);
-  const Room bare({body_, joints_}, all, std::vector<float>(before.size(), 0), kRoom, {});
-  EXPECT_EQ(bare.make(pose, after).distance, 0);
+  const LimbClearance bare({body_, joints_}, all, std::vector<float>(before.size(), 0), kRoom, {});
+  EXPECT_EQ(bare.move_skin(pose, after).distance, 0);
   EXPECT_EQ(after, before);
 }
 
@@ -203,8 +203,8 @@ TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   std::vector<float> near_cloth(before.size());
   for (std::size_t v = 0; v < before.size(); ++v) near_cloth[v] = limbs[v] == Limb::trunk && before[v].x() > 0 ? 1 : 0;
   std::vector<Vec3> after = before;
-  const Room dressed({body_, joints_}, VertexMask(before.size(), 1), near_cloth, kRoom, {});
-  const Moved moved = dressed.make(pose, after);
+  const LimbClearance dressed({body_, joints_}, VertexMask(before.size(), 1), near_cloth, kRoom, {});
+  const Moved moved = dressed.move_skin(pose, after);
   double left = 0, right = 0, most = 0;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double distance = (after[v] - before[v]).norm();
@@ -259,7 +259,7 @@ TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
   skin(body, pose, x);
   std::vector<float> near_cloth(x.size(), 0);
   std::fill_n(near_cloth.begin() + 4, 6, 1.0F);
-  const Moved moved = Room({body, joints}, VertexMask(x.size(), 1), near_cloth, 0.01, {}).make(pose, x);
+  const Moved moved = LimbClearance({body, joints}, VertexMask(x.size(), 1), near_cloth, 0.01, {}).move_skin(pose, x);
   EXPECT_EQ(moved.vertex, 3);
   EXPECT_EQ(moved.limb, "left upper leg");
   EXPECT_EQ(moved.away_from, "trunk");
@@ -277,7 +277,7 @@ TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   }
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
-  const Moved moved = room({}, 0.016).make(pose, after);
+  const Moved moved = clearance({}, 0.016).move_skin(pose, after);
   EXPECT_GT(crossings(before), 100u);
   EXPECT_GT(moved.distance, 0.01);
   EXPECT_LT(moved.distance, 0.08) << "half of a trunk that is 0.3 m wide";
@@ -297,7 +297,7 @@ TEST_F(RoomOfAMannequin, FlattensItAboveTheGroundButForItsFeet) {
   double back = 0;
   for (const Vec3& x : before) back = std::max(back, x.z() > 0.3 ? x.y() : 0);
   const Ground wall{Vec3(0, -1, 0), 0.03 - back};
-  room({wall}).make(rest_pose(body_), after);
+  clearance({wall}).move_skin(rest_pose(body_), after);
   double nearest = 1;
   for (std::size_t v = 0; v < after.size(); ++v) {
     if (before[v].z() < 0.07) {

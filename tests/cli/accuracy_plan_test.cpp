@@ -97,8 +97,8 @@ TEST(AccuracyReference, IsAsUncertainAsItsCrossChecksShow) {
   Errors uncertainty{};
   uncertainty.fill(0.22e-3);
   CrossCheck agrees, differs;
-  agrees.apart.fill(1e-3), agrees.doubt.fill(0.9e-3);
-  differs.apart.fill(2.1e-3), differs.doubt.fill(0.1e-3);
+  agrees.difference.fill(1e-3), agrees.uncertainty.fill(0.9e-3);
+  differs.difference.fill(2.1e-3), differs.uncertainty.fill(0.1e-3);
   raise_uncertainty(uncertainty, {agrees});
   EXPECT_DOUBLE_EQ(at(uncertainty, Quantity::position), 0.22e-3);
   raise_uncertainty(uncertainty, {agrees, differs});

@@ -194,8 +194,8 @@ TEST(AccuracyOfASheet, ThatTheStepDecidesIsShownByATenfoldSmallerTolerance) {
       const bench::Run& tighter = *grid[k + 1];
       EXPECT_EQ(tighter.setting.step, grid[k]->setting.step);
       EXPECT_NEAR(tighter.setting.newton_tolerance, 0.1 * grid[k]->setting.newton_tolerance, 1e-15);
-      EXPECT_LE(grid[k]->change,
-                std::max(0.1 * error_of(tighter, Quantity::position), measured().doubt(tighter, Quantity::position)));
+      EXPECT_LE(grid[k]->change, std::max(0.1 * error_of(tighter, Quantity::position),
+                                          measured().uncertainty_of(tighter, Quantity::position)));
     }
   }
 }
@@ -207,16 +207,17 @@ TEST(AccuracyOfASheet, ErrorsFallWithTheTolerancesOfStepsAndSolver) {
   const bench::Run &loose = *measured().series(Axis::grid, Integrator::bdf2).front(),
                    &exact = *measured().decided(Integrator::bdf2).front();
   EXPECT_EQ(loose.setting.step, exact.setting.step);
-  EXPECT_LE(exact.left, loose.left);
+  EXPECT_LE(exact.solver_error, loose.solver_error);
 }
 
 TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
   const Accuracy& accuracy = measured();
   EXPECT_EQ(accuracy.reference.setting.integrator, Integrator::implicit_midpoint);
   EXPECT_EQ(accuracy.second.setting.integrator, Integrator::bdf2);
-  EXPECT_LT(at(accuracy.reference.doubt(), Quantity::position), at(accuracy.second.doubt(), Quantity::position));
-  EXPECT_GE(at(accuracy.uncertainty, Quantity::position), at(accuracy.reference.doubt(), Quantity::position));
-  EXPECT_GT(at(accuracy.apart, Quantity::position), 0);
+  EXPECT_LT(at(accuracy.reference.uncertainty(), Quantity::position),
+            at(accuracy.second.uncertainty(), Quantity::position));
+  EXPECT_GE(at(accuracy.uncertainty, Quantity::position), at(accuracy.reference.uncertainty(), Quantity::position));
+  EXPECT_GT(at(accuracy.difference, Quantity::position), 0);
   // The reference is compared with a run of twice its step. Relative to the error of the finest run the difference is
   // 1/16 − 1/64 = 3/64, and as much again comes from the solver.
   EXPECT_LT(at(accuracy.uncertainty, Quantity::position),
@@ -236,11 +237,11 @@ TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
 // The cheapest row with error and uncertainty within the target, if those of all finer rows are too.
 struct Row {
   std::string axis, integrator;
-  double step, tolerance, newton, cpu, error, doubt;
+  double step, tolerance, newton, cpu, error, uncertainty;
   bool failed;
 };
 
-std::vector<Row> rows_of(const std::string& csv, const std::string& error, const std::string& doubt) {
+std::vector<Row> rows_of(const std::string& csv, const std::string& error, const std::string& uncertainty) {
   std::istringstream lines(csv);
   std::string line;
   std::map<std::string, std::size_t> columns;
@@ -258,13 +259,13 @@ std::vector<Row> rows_of(const std::string& csv, const std::string& error, const
       return field.empty() ? std::numeric_limits<double>::quiet_NaN() : std::stod(field);
     };
     rows.push_back({fields.at(0), fields.at(1), number("step_s"), number("tolerance_m"), number("newton_tolerance"),
-                    number("cpu_s"), number(error), number(doubt), !fields.at(columns.at("failure")).empty()});
+                    number("cpu_s"), number(error), number(uncertainty), !fields.at(columns.at("failure")).empty()});
   }
   return rows;
 }
 
 std::string cheapest_of(const std::vector<Row>& rows, double target) {
-  const auto reaches = [&](const Row& row) { return row.error + row.doubt <= target; };
+  const auto reaches = [&](const Row& row) { return row.error + row.uncertainty <= target; };
   const auto finer = [](const Row& a, const Row& b) {
     if (a.axis != b.axis || a.integrator != b.integrator) return false;
     return a.axis == "tolerance" ? a.tolerance < b.tolerance : a.step <= b.step && a.newton <= b.newton;
@@ -296,7 +297,7 @@ TEST(AccuracyOfASheet, ConclusionFollowsFromTheTable) {
   });
   ASSERT_NE(at_scene_settings, rows.end());
   const auto& run = measured().runs[static_cast<std::size_t>(at_scene_settings - rows.begin())];
-  EXPECT_NE(text.find(fmt::format("the solver {:.1e} m", run.left)), std::string::npos) << text;
+  EXPECT_NE(text.find(fmt::format("the solver {:.1e} m", run.solver_error)), std::string::npos) << text;
 }
 
 TEST(AccuracyWithContact, ComparesMediansOfSeveralStarts) {
@@ -309,7 +310,7 @@ TEST(AccuracyWithContact, ComparesMediansOfSeveralStarts) {
   for (const bench::Run& run : accuracy.runs) {
     EXPECT_EQ(error_of(run, Quantity::position), run.axis == Axis::mesh ? error_of(run, Quantity::position) : 0);
     spread = spread || at(run.spread, Quantity::centre) > 0;
-    EXPECT_LE(at(run.spread, Quantity::centre), accuracy.doubt(run, Quantity::centre));
+    EXPECT_LE(at(run.spread, Quantity::centre), accuracy.uncertainty_of(run, Quantity::centre));
   }
   EXPECT_TRUE(spread);
   EXPECT_EQ(accuracy_markdown("x", accuracy, "a", "b").find("position ["), std::string::npos);

@@ -47,7 +47,7 @@ TEST(Companions, TellTheErrorWithinAFactorOfThree) {
           swinging({fmt::format("time.integrator={}", integrator), fmt::format("time.step={}", step)});
       const Trajectory run = follow(scene);
       const ErrorEstimate estimate = estimate_error(scene, run);
-      EXPECT_FALSE(estimate.start_matters) << integrator << " " << step;
+      EXPECT_FALSE(estimate.is_chaotic) << integrator << " " << step;
       const double ratio = at(estimate.all, Quantity::position) / at(compare(run, truth()), Quantity::position);
       EXPECT_GT(ratio, 1 / 3.0) << integrator << " " << step;
       EXPECT_LT(ratio, 3.0) << integrator << " " << step;
@@ -117,7 +117,7 @@ scene::Scene undecided() {
 
 TEST(Companions, SayWherePathsPart) {
   const ErrorEstimate estimate = estimate_of(undecided());
-  EXPECT_TRUE(estimate.start_matters);
+  EXPECT_TRUE(estimate.is_chaotic);
   EXPECT_GT(part_of(estimate, ErrorSource::start), 1e-4);
   const std::string text = cli::error_sentence(estimate, 0.3);
   EXPECT_NE(text.find("the motion is chaotic: a start moved by 1 µm alone moves positions by"), std::string::npos)

@@ -22,7 +22,7 @@ class Ledger : public support::TestFolder {
     paths_.reads_folder(folder_ / "cache", "the cache");
     paths_.searches(folder_ / "runs", "a folder of runs");
     paths_.writes("-o", folder_ / "out");
-    paths_.fills("--cache", folder_ / "made");
+    paths_.register_output_folder("--cache", folder_ / "made");
   }
   void expect_refused(const fs::path& path, std::string_view words) {
     support::expect_error(ExitCode::usage, words, [&] { paths_.writes("--stats", path); });

@@ -152,7 +152,7 @@ TEST(Summary, SaysWhatCompanionsHaveMeasured) {
             std::string::npos)
       << summary(report);
   EXPECT_EQ(summary(report).find("--error estimates"), std::string::npos);
-  report.error->start_matters = true;
+  report.error->is_chaotic = true;
   EXPECT_NE(summary(report).find("the motion is chaotic"), std::string::npos);
 }
 

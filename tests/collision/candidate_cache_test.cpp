@@ -129,7 +129,7 @@ TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
   cache.collect(layers.x, fast);
   EXPECT_TRUE(cache.covers_start(layers.x));
   EXPECT_FALSE(cache.covers_start(inside));
-  cache.drop();
+  cache.invalidate();
   EXPECT_FALSE(cache.covers_start(layers.x));
 
   CandidateCache every_step(layers.bodies, {.reuse = false}, layers.x, kReach);
@@ -150,7 +150,7 @@ TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   EXPECT_FALSE(cache.covers_end(end));
   end[4] = layers.x[4] + Vec3(1.5 * kReach, 0, 0);
   EXPECT_FALSE(cache.covers_end(end));  // halfway
-  cache.drop();
+  cache.invalidate();
   EXPECT_FALSE(cache.covers_end(to));
 }
 

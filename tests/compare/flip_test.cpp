@@ -51,10 +51,10 @@ TEST(Flip, DistanceAddsLightnessAndChroma) {
 // The curve consists of two straight lines over distance^0.7; green to blue is the largest distance.
 TEST(Flip, RemappedDistancesMeetTheirThreePoints) {
   const float largest = flip::hyab(flip::hunt_lab({0, 1, 0}), flip::hunt_lab({0, 0, 1}));
-  EXPECT_NEAR(flip::remapped(0), 0, 1e-6);
-  EXPECT_NEAR(flip::remapped(largest * std::pow(0.4f, 1 / 0.7f)), 0.95, 1e-5);
-  EXPECT_NEAR(flip::remapped(largest * std::pow(0.7f, 1 / 0.7f)), 0.975, 1e-5);
-  EXPECT_NEAR(flip::remapped(largest), 1, 1e-6);
+  EXPECT_NEAR(flip::remap_distance(0), 0, 1e-6);
+  EXPECT_NEAR(flip::remap_distance(largest * std::pow(0.4f, 1 / 0.7f)), 0.95, 1e-5);
+  EXPECT_NEAR(flip::remap_distance(largest * std::pow(0.7f, 1 / 0.7f)), 0.975, 1e-5);
+  EXPECT_NEAR(flip::remap_distance(largest), 1, 1e-6);
 }
 
 // Value of the filtered channel in the middle of a plane with a grating of amplitude 1.
@@ -64,7 +64,7 @@ double gain(int channel, double cycles_per_degree) {
   for (int y = 0; y < plane.height; ++y) {
     for (int x = 0; x < plane.width; ++x) plane.row(y)[x] = static_cast<float>(wave(x - 200));
   }
-  return static_cast<double>(flip::as_seen(plane, channel).row(4)[200]);
+  return static_cast<double>(flip::filter_by_contrast_sensitivity(plane, channel).row(4)[200]);
 }
 
 // Without discretisation, a channel with one Gaussian of Table 1 of the paper multiplies a grating by exp(-b f²). A
@@ -85,7 +85,7 @@ TEST(Flip, FlatPlanesPassTheFilterUnchanged) {
   Plane<float> plane(30, 20);
   std::fill(plane.values.begin(), plane.values.end(), 7.5f);
   for (int channel = 0; channel < 3; ++channel) {
-    for (const float value : flip::as_seen(plane, channel).values) ASSERT_NEAR(value, 7.5, 1e-4);
+    for (const float value : flip::filter_by_contrast_sensitivity(plane, channel).values) ASSERT_NEAR(value, 7.5, 1e-4);
   }
 }
 
@@ -209,7 +209,7 @@ TEST(Flip, ChannelsAreSeenThroughThePapersKernels) {
   for (float& value : plane.values) value = static_cast<float>(noise.below(101));
   for (int channel = 0; channel < 3; ++channel) {
     const paper::Map expected = paper::as_seen(size, paper::Map(plane.values.begin(), plane.values.end()), channel);
-    const Plane<float> found = flip::as_seen(plane, channel);
+    const Plane<float> found = flip::filter_by_contrast_sensitivity(plane, channel);
     for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found.values[i], expected[i], 1e-3) << i;
   }
 }

@@ -106,7 +106,7 @@ TEST_F(TemporaryFileTest, ReplacesAnOlderFileInOneGo) {
 
 TEST_F(TemporaryFileTest, AFileThatSomebodyMakesMeanwhileStays) {
   const fs::path file = folder_ / "a.txt";
-  keep_if_made_meanwhile(file);
+  protect_missing_file(file);
   EXPECT_FALSE(may_replace(folder_ / "sub" / ".." / "a.txt")) << "the same by another name";
   {
     TemporaryFile temporary(file);

@@ -131,7 +131,7 @@ std::string fabric_measurements() {
       "| fabric | g/m² | extension at 490 N/m, weft, warp % | shear G N/m | B weft, warp µN·m | HB/B 1/m | mm | drape "
       "% | "
       "source |\n|---|---|---|---|---|---|---|---|---|\n";
-  const auto text = [](const scene::Figure& figure, double unit) {
+  const auto text = [](const scene::MeasuredValue& figure, double unit) {
     return fmt::format("{}{:.3g}", figure.estimated ? "~" : "", unit * figure.value);
   };
   for (const scene::Fabric& fabric : scene::fabrics()) {

@@ -36,7 +36,7 @@ class Acting : public support::TestFolder {
     file_.path = folder_ / "rod.x";
   }
 
-  Actor make(std::span<const FollowingPin> following = {}) {
+  Actor make(std::span<const FollowerPoints> following = {}) {
     character_.source = file_;
     scene_.characters[0] = character_;
     return make_actor(scene_, character_, following);
@@ -146,7 +146,7 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
   character_.parts = {part("spine"), part("lower"), part("Hips")};
   character_.parts[1].bone = "Hips";
   character_.parts[1].collide = false;
-  const Actor actor = make(std::vector<FollowingPin>{{"torso", {}}});
+  const Actor actor = make(std::vector<FollowerPoints>{{"torso", {}}});
   ASSERT_EQ(actor.parts.size(), 4u);
   const auto count = [&](std::size_t p) { return std::ranges::count(actor.parts[p].vertices, 1); };
   EXPECT_EQ(count(0), 3);
@@ -207,7 +207,7 @@ TEST_F(Acting, CarriesWhatFollowsAPart) {
   file_.clip = "Wave";
   character_.pose.position = {10, 0, 0};
   const Vec3 place(9.8, 0.3, 1.9);
-  const std::vector<FollowingPin> following{{"Spine", {place}}, {"", {place, Vec3(10.1, 0, 0)}}, {"Hips", {place}}};
+  const std::vector<FollowerPoints> following{{"Spine", {place}}, {"", {place, Vec3(10.1, 0, 0)}}, {"Hips", {place}}};
   const Actor actor = make(following);
   ASSERT_EQ(actor.mesh.positions.size(), 5u) << "followers are not drawn";
   const auto moved = [&](std::size_t follower, double t) {
@@ -377,7 +377,7 @@ TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   file_.clip = "Wave";
   character_.speed = 12;
   character_.keys_per_second = 120;
-  const std::vector<FollowingPin> following{{"Spine", std::vector<Vec3>(95, Vec3(0, 0, 1.9))}};
+  const std::vector<FollowerPoints> following{{"Spine", std::vector<Vec3>(95, Vec3(0, 0, 1.9))}};
   EXPECT_TRUE(make(following).warnings.empty());
 
   character_.speed = 1;

@@ -14,9 +14,9 @@
 namespace weft::environment {
 namespace {
 
-std::map<Index, double> shares_of(const std::vector<model::Chosen>& chosen) {
+std::map<Index, double> shares_of(const std::vector<model::WeightedParticle>& chosen) {
   std::map<Index, double> shares;
-  for (const model::Chosen& one : chosen) shares.emplace(one.particle, one.share);
+  for (const model::WeightedParticle& one : chosen) shares.emplace(one.particle, one.fraction);
   EXPECT_EQ(shares.size(), chosen.size()) << "each once";
   return shares;
 }

@@ -92,7 +92,7 @@ TEST(StretchLimit, OfShearAloneOrOfStretchAloneLeavesTheOther) {
 /// The force plus what its linearisation adds [N].
 Positions linear_force(const StretchLimit& limit, const Positions& x, const LockLinearisation& lag) {
   Positions force = testing::force_of(limit, x, testing::zeros(x));
-  limit.add_lag(x, lag, force);
+  limit.add_linearisation_difference(x, lag, force);
   return force;
 }
 
@@ -110,8 +110,8 @@ TEST(StretchLimit, IsLinearisedWhereItsThreadsHaveTheTensionForeseen) {
       EXPECT_LT((linear[i] - foreseen / lock.stress(0.2) * itself[i]).norm(), 1e-9 * Lock::kTension) << i;
     limit->update(far, false, lag);
     const double tension = kBelow.weft * 0.2 + foreseen;
-    ASSERT_FALSE(lag.near.empty());
-    for (const std::uint32_t t : lag.near) {
+    ASSERT_FALSE(lag.beyond_onset.empty());
+    for (const std::uint32_t t : lag.beyond_onset) {
       const double e = lag.extensions[t];
       EXPECT_LT(e, 0.2);
       EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);  // twice the tolerance of the search
@@ -129,7 +129,7 @@ TEST(StretchLimit, IsItselfWhereItIsLinearisedAndBelowTheOnset) {
       LockLinearisation lag;
       limit->begin(x, lag);
       limit->update(x, true, lag);
-      EXPECT_EQ(lag.near.empty(), weft < 1.05);
+      EXPECT_EQ(lag.beyond_onset.empty(), weft < 1.05);
       const Positions force = testing::force_of(*limit, x, testing::zeros(x)), linear = linear_force(*limit, x, lag);
       for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((linear[i] - force[i]).norm(), 1e-9 * Lock::kTension);
     }

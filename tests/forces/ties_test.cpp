@@ -26,17 +26,17 @@ double pull(const Ties& ties, double distance) {
 
 TEST(Ties, PullUpToTheirStrengthAndDoNotPush) {
   Ties ties = tie_of(kNever, kNever);
-  ties.use(0, 1);
+  ties.set_strengths(0, 1);
   EXPECT_EQ(pull(ties, 0.5 * Ties::kRest), 0);
   EXPECT_NEAR(pull(ties, 1.5 * Ties::kRest), 0.5 * kPull, 1e-6);
   EXPECT_NEAR(pull(ties, 5 * Ties::kRest), kPull, 1e-6);
-  ties.use(0, 0.25);  // during sewing
+  ties.set_strengths(0, 0.25);  // during sewing
   EXPECT_NEAR(pull(ties, 5 * Ties::kRest), 0.25 * kPull, 1e-6);
 }
 
 TEST(Ties, ForceIsMinusTheGradientOfTheEnergy) {
   Ties ties = tie_of(kNever, kNever);
-  ties.use(0, 1);
+  ties.set_strengths(0, 1);
   for (const double distance : {0.5, 1.5, 5.0}) {
     std::vector<solver::PaddedVec3<double>> x{solver::padded<double>(Vec3(0, 0, 0)),
                                               solver::padded<double>(Vec3(0, distance * Ties::kRest, 0))};
@@ -59,7 +59,7 @@ TEST(Ties, KnowWhetherTheyOpenOrCloseBetweenTwoTimes) {
 TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   const auto held = [](double open, double closed, double t) {
     Ties ties = tie_of(open, closed);
-    ties.use(t, 1);
+    ties.set_strengths(t, 1);
     return pull(ties, 1);
   };
   constexpr double kAfter = 1 + Ties::kClosing;  // time when a tie that closes at 1 s has its full strength [s]
@@ -88,18 +88,18 @@ TEST(Ties, OfSeamsThatTearPartForGoodOnceTheyHaveHeld) {
     ties.accept(x);
     return ties.measure_seams(x).at(0);
   };
-  ties.use(0, 0.5);
+  ties.set_strengths(0, 0.5);
   accept(1.5);
-  ties.use(0, 1);
+  ties.set_strengths(0, 1);
   EXPECT_TRUE(accept(5).holds) << "was sewn already, but had not held yet";
   EXPECT_NEAR(accept(1.5).load, 0.5 * kPull, 1e-12);
   EXPECT_FALSE(accept(2).holds);
   EXPECT_EQ(accept(1.5).load, 0);
-  ties.use(0, 1);
+  ties.set_strengths(0, 1);
   EXPECT_EQ(pull(ties, 1.5 * Ties::kRest), 0);
   Ties others(sheet, 0);
   others.copy_state_from(ties);
-  others.use(0, 1);
+  others.set_strengths(0, 1);
   EXPECT_EQ(pull(others, 1.5 * Ties::kRest), 0);
 }
 
@@ -110,7 +110,7 @@ TEST(Ties, OfSeamsThatTearMayOpenAndCloseAgain) {
   Ties ties(sheet, 0);
   const auto accept = [&](double t, double distance) {
     const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, distance * Ties::kRest, 0)};
-    ties.use(t, 1);
+    ties.set_strengths(t, 1);
     ties.accept(x);
     return ties.measure_seams(x).at(0).holds;
   };

@@ -78,7 +78,7 @@ TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
   ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
   const Pattern& pattern = read.pattern;
   ASSERT_EQ(pattern.panels.size(), 3U);  // sorted by name
-  EXPECT_TRUE(pattern.wraps());
+  EXPECT_TRUE(pattern.has_bent_panels());
   EXPECT_NEAR(length_of(pattern, "skirt_front.1"), 0.5, 1e-12);
   // A parabola 30 mm deep, measured with 256 chords: s/w = ½√(1+q²) + asinh(q)/(2q), q = 4h/w.
   const double q = 4 * 0.03 / 0.6;
@@ -88,7 +88,7 @@ TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
   // Without "right" the arc runs clockwise: the top of the front, drawn to the left, curves downward.
   const auto& top = pattern.panels[2].edges[pattern.find("skirt_front.2").second].curves[0];
   EXPECT_LT(top.at(0.5).y(), 0.5);
-  for (const Seam& seam : pattern.seams) EXPECT_FALSE(seam.closure());
+  for (const Seam& seam : pattern.seams) EXPECT_FALSE(seam.is_closure());
   EXPECT_EQ(pattern.seams[0].a, "skirt_front.1");
   EXPECT_EQ(pattern.seams[0].b, "skirt_back.2");
   // Seen from behind, the left of the back lies to the wearer's left.

@@ -78,7 +78,7 @@ TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
 TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   // In free fall Euler's method moves every free particle too far by ½ g h².
   testing::Spring nothing(0, {1, 3, 2});
-  nothing.linear_system().parts = {{0, 2}, {2, 3}};
+  nothing.linear_system().blocks = {{0, 2}, {2, 3}};
   const Vec3 g(0, 0, -10);
   const double h = 0.1, ahead = 0.5 * h * h * 10;
   const State now{std::vector<Vec3>(3, Vec3::Zero()), std::vector<Vec3>(3, Vec3::Zero())};

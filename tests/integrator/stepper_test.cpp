@@ -122,10 +122,10 @@ TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
 // Two uncoupled springs; records where Newton's method evaluated them.
 class TwoParts : public testing::Particles {
  public:
-  TwoParts() : Particles({1, 1}) { linear_system().parts = {{0, 1}, {1, 2}}; }
+  TwoParts() : Particles({1, 1}) { linear_system().blocks = {{0, 1}, {1, 2}}; }
   void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) override {
     evaluated_at.emplace_back(at.x.begin(), at.x.end());
-    for (solver::DiagonalBlock& part : linear_system().parts) ++part.version;
+    for (solver::DiagonalBlock& part : linear_system().blocks) ++part.version;
     Particles::linearise(at, iteration, force);
   }
   std::vector<std::vector<Vec3>> evaluated_at;

@@ -45,8 +45,8 @@ std::vector<frame::FrameSnapshot> walk(const frame::Camera& camera) {
 
 CameraPath path_of(const std::vector<frame::FrameSnapshot>& run) {
   CameraPath path("", kAspect);
-  for (const frame::FrameSnapshot& snapshot : run) path.see(snapshot);
-  path.find();
+  for (const frame::FrameSnapshot& snapshot : run) path.add_frame(snapshot);
+  path.compute_cameras();
   return path;
 }
 

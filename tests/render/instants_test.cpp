@@ -53,7 +53,7 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   settings.motion_blur = 180;
   Renderer renderer(settings);
   renderer.draw(now, &before);
-  const image::Image16 image = renderer.deep();
+  const image::Image16 image = renderer.image16();
   const double white = linear_at(image, 110);
   EXPECT_GT(white, 0.8);
   // 0.1 m are 14.2 pixels: the right edge moved from 114.2 to 134.2, the left one from 85.8 to 105.8.
@@ -81,7 +81,7 @@ TEST(Instants, LensBlursWhatIsOutOfFocus) {
   Renderer renderer(small_settings());
   const auto middle_of_edge = [&] {
     renderer.draw(snapshot);
-    const image::Image16 image = renderer.deep();
+    const image::Image16 image = renderer.image16();
     int shaded = 0;
     for (int x = kInstantWidth / 2; x < kInstantWidth; ++x)
       shaded += linear_at(image, x) > 0.03 && linear_at(image, x) < 0.97 * linear_at(image, kInstantWidth / 2);
@@ -160,7 +160,7 @@ TEST(Looks, ExposureIsInStops) {
     snapshot.stage = stage;
     Renderer renderer(small_settings());
     renderer.draw(snapshot);
-    return linear_at(renderer.deep(), 100);
+    return linear_at(renderer.image16(), 100);
   };
   // The fitted curve of sRGB is off by 0.1 levels, which is 0.2 % here.
   EXPECT_NEAR(light(1) / light(0), 2, 0.01);

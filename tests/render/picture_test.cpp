@@ -362,8 +362,8 @@ TEST(Picture, SameSnapshotGivesSameBytesWhateverWasDrawnBefore) {
   frame::FrameSnapshot other = facing_square(frame::ObjectKind::cloth, 0.3, kRed);
   Renderer first(settings()), second(settings());
   CameraPath path("", settings().aspect());
-  path.see(snapshot);
-  path.find();
+  path.add_frame(snapshot);
+  path.compute_cameras();
   second.set_camera_path(path);
   second.draw(other);
   const image::Image a = first.draw(snapshot), b = second.draw(snapshot), c = first.draw(snapshot);

@@ -76,13 +76,13 @@ TEST_F(Pictures, BrokenFilesAreErrors) {
 
 TEST(SameMoment, IsTheNearestPictureOfTheOther) {
   const PictureTimes every{0, 1, 100, 50}, third{6, 3, 30, 50.0 / 3}, slow{0, 1, 100, 25};
-  EXPECT_EQ(same_moment(7, every, every), 7);
-  EXPECT_EQ(same_moment(0, third, every), 6) << "the first of the sparse ones shows frame 6";
-  EXPECT_EQ(same_moment(4, third, every), 18);
-  EXPECT_EQ(same_moment(18, every, third), 4);
-  EXPECT_EQ(same_moment(0, every, third), -2) << "before the other begins";
-  EXPECT_EQ(same_moment(8, every, slow), 4);
-  EXPECT_EQ(same_moment(5, every, {0, 1, 100, 0}), 5) << "without a rate, by number";
+  EXPECT_EQ(index_at_same_time(7, every, every), 7);
+  EXPECT_EQ(index_at_same_time(0, third, every), 6) << "the first of the sparse ones shows frame 6";
+  EXPECT_EQ(index_at_same_time(4, third, every), 18);
+  EXPECT_EQ(index_at_same_time(18, every, third), 4);
+  EXPECT_EQ(index_at_same_time(0, every, third), -2) << "before the other begins";
+  EXPECT_EQ(index_at_same_time(8, every, slow), 4);
+  EXPECT_EQ(index_at_same_time(5, every, {0, 1, 100, 0}), 5) << "without a rate, by number";
 }
 
 TEST_F(Pictures, AreComparedMomentByMoment) {

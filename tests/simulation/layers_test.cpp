@@ -100,7 +100,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   const std::vector<scene::Layer> layers = scene::list_layers(scene);
   ASSERT_EQ(layers.size(), 3U);
   EXPECT_EQ(layers[1].first_frame, -6);
-  EXPECT_EQ(layers[1].dressed, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(layers[1].put_on, (std::vector<std::size_t>{1, 2}));
   EXPECT_EQ(layers[2].cloths, std::vector<std::size_t>{0});
   // Until the shirt is dressed, the vest falls as it does alone.
   scene::Scene alone = scene;

@@ -127,7 +127,7 @@ TEST_F(StepProblems, ChangeWhatForcesDependOnOnlyWhereTheyAreLinearised) {
   EXPECT_EQ(after.linearised_at, before.linearised_at);
   EXPECT_EQ(after.contacts.normal_forces, before.contacts.normal_forces);
   EXPECT_EQ(after.contacts.updates, before.contacts.updates);
-  EXPECT_EQ(after.system.parts[0].version, before.system.parts[0].version);
+  EXPECT_EQ(after.system.blocks[0].version, before.system.blocks[0].version);
   EXPECT_EQ(blocks(problem), matrix);
 
   // A copy with the same memory gives the same result.
@@ -150,7 +150,7 @@ TEST_F(StepProblems, PutTheRowsOfAClothTogetherAnewWhereItHasMovedAndAllInEachSt
   StepProblem used = problem();
   linearise(used, x_);
   const std::vector<Mat3> start = blocks(used);
-  const auto version = [&](std::size_t sheet) { return used.memory().system.parts[sheet].version; };
+  const auto version = [&](std::size_t sheet) { return used.memory().system.blocks[sheet].version; };
   const auto first = version(0), second = version(1);
   linearise(used, moved(1, 0.004));  // the limit is 0.005
   EXPECT_EQ(blocks(used), start);
@@ -205,7 +205,7 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
     const std::vector<Vec3>& x = model.cloths[0].start;
     const std::vector<Vec3> still(x.size(), Vec3::Zero());
     std::vector<integrator::HeldParticle> pinned;
-    for (const model::Chosen& chosen : model.cloths[0].pins[0].particles)
+    for (const model::WeightedParticle& chosen : model.cloths[0].pins[0].particles)
       pinned.push_back({{chosen.particle, Mat3::Zero()}, x[chosen.particle], Vec3::Zero()});
     ClothSystem cloth(model);
     StepProblem problem(cloth);

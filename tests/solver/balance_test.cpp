@@ -80,8 +80,8 @@ TEST(Balance, LeavesConstrainedDirectionsAndOtherPartsAsTheyAre) {
   std::vector<Vec3> x(b.size());
   ConjugateGradient cg;
   cg.prepare(system);
-  const std::vector<std::size_t> parts{0, 2};
-  cg.solve(b, {}, 4, x, {.motion = motion}, parts);
+  const std::vector<std::size_t> blocks{0, 2};
+  cg.solve(b, {}, 4, x, {.motion = motion}, blocks);
   for (std::size_t i = 20; i < 40; ++i) EXPECT_EQ(x[i], Vec3::Zero());
   for (const ParticleConstraint& c : system.constraints) {
     const Vec3& entry = x[c.particle];

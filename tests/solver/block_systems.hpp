@@ -133,9 +133,9 @@ inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
   system.aggregate_levels.clear();
   Index members = system.matrix.rows();
   for (Index count : counts) {
-    Aggregates grouping{{}, count};
-    for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
-    system.aggregate_levels.push_back(std::move(grouping));
+    Aggregates aggregates{{}, count};
+    for (Index i = 0; i < members; ++i) aggregates.of.push_back(i * count / members);
+    system.aggregate_levels.push_back(std::move(aggregates));
     members = count;
   }
 }
@@ -169,7 +169,7 @@ inline LinearSystem system_of_parts(Random& random) {
     system.matrix.add(system.matrix.slot(i, j), block);
     system.matrix.add(system.matrix.slot(j, i), block);
   }
-  for (Index p = 0; p < 3; ++p) system.parts.push_back({kPart * p, kPart * (p + 1)});
+  for (Index p = 0; p < 3; ++p) system.blocks.push_back({kPart * p, kPart * (p + 1)});
   return system;
 }
 

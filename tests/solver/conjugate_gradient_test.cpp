@@ -77,8 +77,8 @@ TEST(ConjugateGradient, PartsAreSolvedAsIfAllOthersWereHeld) {
     std::vector<Vec3> x(b.size(), Vec3::Constant(7));
     ConjugateGradient cg;
     cg.prepare(system);
-    const std::vector<std::size_t> parts{0, 2};
-    EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {}, parts).converged);
+    const std::vector<std::size_t> blocks{0, 2};
+    EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {}, blocks).converged);
 
     LinearSystem held = system;
     std::erase_if(held.constraints, [](const auto& c) { return c.particle >= 20 && c.particle < 40; });
@@ -97,7 +97,7 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
   ConjugateGradient used, fresh;
   used.prepare(system);
   for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), 1000);
-  ++system.parts[1].version;
+  ++system.blocks[1].version;
   used.prepare(system);
   fresh.prepare(system);
   EXPECT_EQ(norm(used, b), norm(fresh, b));

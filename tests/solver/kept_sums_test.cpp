@@ -22,7 +22,7 @@ TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
   const auto b = random.vectors(system.matrix.rows());
   const auto stiffen = [&](double by) {
     for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), by);
-    ++system.parts[1].version;
+    ++system.blocks[1].version;
   };
   const auto solution = [&](ConjugateGradient& cg, double relative_error) {
     std::vector<Vec3> x(b.size());

@@ -29,10 +29,10 @@ Eigen::MatrixXd diagonal_blocks(const Eigen::MatrixXd& a) {
 }
 
 // One damped Jacobi step, factor 1/2, on piecewise constants: each member gets the mean of its neighbours' aggregates.
-Eigen::MatrixXd interpolation(const Aggregates& grouping, const Eigen::MatrixXd& neighbours) {
-  const auto members = static_cast<Eigen::Index>(grouping.of.size());
-  Eigen::MatrixXd constants = Eigen::MatrixXd::Zero(members, grouping.count), means = constants;
-  for (Eigen::Index m = 0; m < members; ++m) constants(m, grouping.of[m]) = 1;
+Eigen::MatrixXd interpolation(const Aggregates& aggregates, const Eigen::MatrixXd& neighbours) {
+  const auto members = static_cast<Eigen::Index>(aggregates.of.size());
+  Eigen::MatrixXd constants = Eigen::MatrixXd::Zero(members, aggregates.count), means = constants;
+  for (Eigen::Index m = 0; m < members; ++m) constants(m, aggregates.of[m]) = 1;
   for (Eigen::Index m = 0; m < members; ++m)
     means.row(m) = neighbours.row(m).sum() > 0
                        ? Eigen::RowVectorXd(neighbours.row(m) * constants / neighbours.row(m).sum())
@@ -78,29 +78,29 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   std::iota(group_of.begin(), group_of.end(), 0);
   Eigen::MatrixXd from_groups = Eigen::MatrixXd::Identity(rows, rows);
   double coupling_factor = 1;
-  for (const Aggregates& grouping : system.aggregate_levels) {
+  for (const Aggregates& aggregates : system.aggregate_levels) {
     const Eigen::MatrixXd step =
-        interpolation(grouping, stiff ? Eigen::MatrixXd::Zero(neighbours.rows(), neighbours.cols()) : neighbours);
+        interpolation(aggregates, stiff ? Eigen::MatrixXd::Zero(neighbours.rows(), neighbours.cols()) : neighbours);
     from_groups *= step;
-    for (Index& group : group_of) group = grouping.of[group];
+    for (Index& group : group_of) group = aggregates.of[group];
     if (!stiff) coupling_factor *= 0.5;
-    const Eigen::MatrixXd r = restriction(group_of, grouping.count);
+    const Eigen::MatrixXd r = restriction(group_of, aggregates.count);
     const Eigen::MatrixXd coarse = r * (coupling_factor * s * (matrix - norm_weights) * s + lasting) * r.transpose();
     const Eigen::MatrixXd p = threefold(from_groups);
     Eigen::MatrixXd block = coarse + p.transpose() * s * (all - matrix) * s * p;
-    if (&grouping != &system.aggregate_levels.back()) {
+    if (&aggregates != &system.aggregate_levels.back()) {
       block = diagonal_blocks(coarse);
-      for (Eigen::Index g = 0; g < grouping.count; ++g)
+      for (Eigen::Index g = 0; g < aggregates.count; ++g)
         for (Eigen::Index i = 0; i < rows; ++i)
           block.block<3, 3>(3 * g, 3 * g) += from_groups(i, g) * lumped.block<3, 3>(3 * i, 3 * i);
     }
     sum += p * block.inverse() * p.transpose();
 
     // Aggregates are neighbours if members of them are.
-    Eigen::MatrixXd next = Eigen::MatrixXd::Zero(grouping.count, grouping.count);
+    Eigen::MatrixXd next = Eigen::MatrixXd::Zero(aggregates.count, aggregates.count);
     for (Eigen::Index i = 0; i < neighbours.rows(); ++i)
       for (Eigen::Index j = 0; j < neighbours.cols(); ++j)
-        if (neighbours(i, j) != 0 && grouping.of[i] != grouping.of[j]) next(grouping.of[i], grouping.of[j]) = 1;
+        if (neighbours(i, j) != 0 && aggregates.of[i] != aggregates.of[j]) next(aggregates.of[i], aggregates.of[j]) = 1;
     neighbours = next;
   }
   return s * sum * s;
@@ -116,8 +116,8 @@ LinearSystem system_with_contacts(Random& random) {
 }
 
 template <class Real>
-Eigen::VectorXd apply(Preconditioner<Real>& preconditioner, const std::vector<Vec3>& r, std::size_t parts) {
-  std::vector<std::size_t> all(parts);
+Eigen::VectorXd apply(Preconditioner<Real>& preconditioner, const std::vector<Vec3>& r, std::size_t blocks) {
+  std::vector<std::size_t> all(blocks);
   std::iota(all.begin(), all.end(), std::size_t{0});
   std::vector<PaddedVec3<Real>> z(r.size());
   preconditioner.apply(testing::quads<Real>(r), z, all);
@@ -174,7 +174,7 @@ TEST(Preconditioner, IsAsIfSetUpAnewWhateverWasKept) {
       if (random.below(5) == 0) links.emplace_back(i, j);
   system.matrix = BlockMatrix(60, links);
   for (Index i = 0; i < 60; ++i) system.matrix.add(system.matrix.diagonal(i), random.definite(20));
-  for (Index p = 0; p < 3; ++p) system.parts.push_back({20 * p, 20 * p + 20});
+  for (Index p = 0; p < 3; ++p) system.blocks.push_back({20 * p, 20 * p + 20});
   testing::cut_groups(system, {30, 6, 3});
   const auto r = random.vectors(60);
 
@@ -196,7 +196,7 @@ TEST(Preconditioner, IsAsIfSetUpAnewWhateverWasKept) {
   system.diagonal_terms.clear();
   check("terms have gone");
   for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), 7);
-  ++system.parts[1].version;
+  ++system.blocks[1].version;
   check("a part has changed");
   system.constraints.push_back({50, Mat3::Zero()});
   check("a particle is held");

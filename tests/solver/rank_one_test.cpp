@@ -65,7 +65,7 @@ TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
   Random random(31);
   LinearSystem system = testing::system_of_parts(random);
   cut_groups(system, {30, 6});
-  for (const DiagonalBlock& part : std::vector<DiagonalBlock>(system.parts))
+  for (const DiagonalBlock& part : std::vector<DiagonalBlock>(system.blocks))
     add_term(system, part.begin, part.end, 1e3, random);
   const auto b = random.vectors(system.matrix.rows());
   std::vector<Vec3> x(b.size());
@@ -77,9 +77,9 @@ TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
   LinearSystem held = system;
   held.constraints.clear();
   for (const ParticleConstraint& c : system.constraints)
-    if (c.particle >= system.parts[1].begin && c.particle < system.parts[1].end) held.constraints.push_back(c);
+    if (c.particle >= system.blocks[1].begin && c.particle < system.blocks[1].end) held.constraints.push_back(c);
   for (Index i = 0; i < system.matrix.rows(); ++i)
-    if (i < system.parts[1].begin || i >= system.parts[1].end) held.constraints.push_back({i, Mat3::Zero()});
+    if (i < system.blocks[1].begin || i >= system.blocks[1].end) held.constraints.push_back({i, Mat3::Zero()});
   const Eigen::VectorXd expected = dense_solution(held, b);
   EXPECT_LT((flat(x) - expected).norm(), 1e-9 * expected.norm());
 }

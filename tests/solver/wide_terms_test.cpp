@@ -41,9 +41,9 @@ LinearSystem system_with_bodies(Random& random) {
       }
     }
   system.norm_weights.assign(kRows + 8, 0.1);
-  system.parts = {{.begin = 0, .end = kRows},
-                  {.begin = kRows, .end = kRows + 4, .is_small = true},
-                  {.begin = kRows + 4, .end = kRows + 8, .is_small = true}};
+  system.blocks = {{.begin = 0, .end = kRows},
+                   {.begin = kRows, .end = kRows + 4, .is_small = true},
+                   {.begin = kRows + 4, .end = kRows + 8, .is_small = true}};
   for (int contact = 0; contact < 6; ++contact) {
     WideTerm& term = system.wide_terms.emplace_back();
     for (Index k = 0; k < 4; ++k) {
@@ -56,10 +56,10 @@ LinearSystem system_with_bodies(Random& random) {
   }
   Index members = kRows;
   for (const Index count : {20, 6}) {
-    Aggregates& grouping = system.aggregate_levels.emplace_back();
-    for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
-    for (Index body = 0; body < 8; ++body) grouping.of.push_back(count + body);
-    grouping.count = count + 8;
+    Aggregates& aggregates = system.aggregate_levels.emplace_back();
+    for (Index i = 0; i < members; ++i) aggregates.of.push_back(i * count / members);
+    for (Index body = 0; body < 8; ++body) aggregates.of.push_back(count + body);
+    aggregates.count = count + 8;
     members = count;
   }
   return system;

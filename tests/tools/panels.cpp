@@ -117,7 +117,7 @@ int main(int count, char** arguments) try {
   scene::Scene scene;
   scene.characters.emplace_back().source = scene::Mannequin{};
   environment::Wearers wearers(scene);
-  const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(scene::Cloth{}, arguments[1]) : nullptr;
+  const garment::Wearer* wearer = pattern.has_bent_panels() ? &wearers.of(scene::Cloth{}, arguments[1]) : nullptr;
   const garment::Garment garment = garment::sew(pattern, spacing, arguments[1], wearer);
   write_file(arguments[3], picture(pattern, garment));
   fmt::print("{}: {}\n", arguments[1], quality(garment, spacing));

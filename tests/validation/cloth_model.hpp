@@ -33,7 +33,7 @@ class ClothModel {
     const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};
     held_.resize(x.size());
     for (const auto& pin : cloth.pins)
-      for (const model::Chosen& chosen : pin.particles) held_[chosen.particle] = 1;
+      for (const model::WeightedParticle& chosen : pin.particles) held_[chosen.particle] = 1;
     if (cloth.sheet.triangles.empty()) {
       masses = forces::lumped_masses(cloth.grid, m.density);
       forces_.push_back(std::make_unique<forces::Stretch>(cloth.grid, 0, stretch));

@@ -46,7 +46,7 @@ ErrorEstimate estimate_error(const Scene& public_scene, bool with_mesh_error) {
     const scene::Scene& scene = public_scene.data().scene;
     const run_error::ErrorEstimate estimate =
         run_error::estimate_error(scene, run_error::follow(scene), {.mesh = with_mesh_error});
-    ErrorEstimate result{errors_of(estimate.all), {}, estimate.start_matters, estimate.cpu_s};
+    ErrorEstimate result{errors_of(estimate.all), {}, estimate.is_chaotic, estimate.cpu_s};
     for (const run_error::ErrorPart& part : estimate.parts)
       result.parts[std::string(name_of(part.source))] =
           part.missing.empty() ? std::optional(errors_of(part.errors)) : std::nullopt;

@@ -49,7 +49,7 @@ LoadedCharacter finish(const Source& source, ReadCharacter read, const FileAxes&
   for (const std::string& warning : read.warnings) loaded.warnings.push_back(source.describe(warning));
   if (is_bvh(source.file)) add_bvh_offsets(loaded.character);
   const int up = axes.up == scene::FileUp::as_file ? read.up.value_or(kUsualUp) : static_cast<int>(axes.up) - 1;
-  transform(loaded.character, loaded.scale, turn_up(up, axes.scene_up));
+  transform(loaded.character, loaded.scale, rotation_to_scene_axes(up, axes.scene_up));
   return loaded;
 }
 
@@ -74,7 +74,7 @@ bool is_bvh(const std::filesystem::path& file) {
   return ending == ".bvh";
 }
 
-Mat3 turn_up(int up, scene::UpAxis scene_up) {
+Mat3 rotation_to_scene_axes(int up, scene::UpAxis scene_up) {
   const int to = scene_up == scene::UpAxis::z ? 2 : 1;
   // Between y and z, a quarter turn about x; otherwise, a cyclic permutation of the axes.
   Mat3 turn = Mat3::Zero();

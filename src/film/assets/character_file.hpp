@@ -41,6 +41,6 @@ bool is_bvh(const std::filesystem::path& file);
 void transform(character::Character& character, double scale, const Mat3& axes);
 
 /// The rotation from the axes of a file to those of the scene. `up`: up axis of the file (0 x, 1 y, 2 z).
-Mat3 turn_up(int up, scene::UpAxis scene_up);
+Mat3 rotation_to_scene_axes(int up, scene::UpAxis scene_up);
 
 }  // namespace weft::assets

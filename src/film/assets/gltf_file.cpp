@@ -33,8 +33,8 @@ constexpr std::string_view kStart = "glTF";
 constexpr std::size_t kHeader = 12, kChunkHeader = 8;
 
 /// Parts of names of extensions that a file may require: they change only the appearance, or are supported.
-constexpr std::array kRead = {"_materials_",           "_texture_", "_technique", "_lights_", "_xmp",
-                              "KHR_mesh_quantization", "VRM"};
+constexpr std::array kAllowedExtensions = {"_materials_",           "_texture_", "_technique", "_lights_", "_xmp",
+                                           "KHR_mesh_quantization", "VRM"};
 
 /// The two parts of a glTF file.
 struct Gltf {
@@ -84,7 +84,8 @@ void check_extensions(const Json& gltf) {
   for (const Json& required : part_of(gltf, "extensionsRequired")) {
     if (!required.is_string()) continue;
     const std::string name = required;
-    if (std::ranges::any_of(kRead, [&](const char* part) { return name.find(part) != std::string::npos; })) continue;
+    if (std::ranges::any_of(kAllowedExtensions, [&](const char* part) { return name.find(part) != std::string::npos; }))
+      continue;
     const bool packs = name.find("compression") != std::string::npos;
     throw std::runtime_error(fmt::format("expected {}, got {}, which is not read; export the file without it",
                                          packs ? "meshes without compression" : "no extension that the file requires",

@@ -171,7 +171,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (up == scene::FileUp::as_file)
     up = soup.up.empty() ? axes.default_up : static_cast<scene::FileUp>(soup.up.front() + 1);
   Mat3 turn = Mat3::Identity();
-  if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
+  if (up != scene::FileUp::as_file) turn = rotation_to_scene_axes(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {
     x = axes.scale * (turn * x);
     // The bound also keeps products of squared lengths finite.

@@ -78,7 +78,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
     constexpr int kUsualUp = 1;  // y
     const int stated_up = soup.up.empty() ? kUsualUp : soup.up.front();
     const int up = axes.up == scene::FileUp::as_file ? stated_up : static_cast<int>(axes.up) - 1;
-    const Mat3 turn = axes.scale.value_or(1) * turn_up(up, axes.scene_up);
+    const Mat3 turn = axes.scale.value_or(1) * rotation_to_scene_axes(up, axes.scene_up);
     for (Vec3& x : soup.positions) {
       x = turn * x;
       if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))

@@ -107,10 +107,10 @@ std::string usual_bvh(std::string_view text) {
 
 std::optional<std::string> readable_text(const std::filesystem::path& file) {
   const std::string ending = lower_case(file.extension().string());
-  const bool is_marked = read_start(file, kByteOrderMark.size()) == kByteOrderMark;
-  if (!is_marked && ending != ".obj" && ending != ".bvh") return std::nullopt;
+  const bool has_byte_order_mark = read_start(file, kByteOrderMark.size()) == kByteOrderMark;
+  if (!has_byte_order_mark && ending != ".obj" && ending != ".bvh") return std::nullopt;
   const std::string bytes = read_bytes(file);
-  const std::string_view text = std::string_view(bytes).substr(is_marked ? kByteOrderMark.size() : 0);
+  const std::string_view text = std::string_view(bytes).substr(has_byte_order_mark ? kByteOrderMark.size() : 0);
   std::string readable = ending == ".obj"   ? change_lines(text, without_comment)
                          : ending == ".bvh" ? usual_bvh(text)
                                             : std::string(text);

@@ -156,7 +156,7 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const simulation::FrameRe
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
   // The lock keeps other Weft processes out, so another program has made a file that appears only now; keep it.
-  if (own_frames_.insert(snapshot.frame).second) keep_if_made_meanwhile(folder_ / frame_file(snapshot.frame));
+  if (own_frames_.insert(snapshot.frame).second) protect_missing_file(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();
 }

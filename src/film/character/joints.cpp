@@ -346,7 +346,7 @@ std::vector<Index> find_prefixed_joints(const Character& character) {
 std::vector<Index> find_joints(const Character& character) {
   std::vector<Index> joints = find_prefixed_joints(character);
   if (has_all_limbs(joints)) return joints;
-  const std::vector<Index> nameless = find_nameless_joints(character);
+  const std::vector<Index> nameless = find_joints_by_structure(character);
   for (std::size_t j = 0; j < joints.size(); ++j)
     if (joints[j] < 0 && std::ranges::find(joints, nameless[j]) == joints.end()) joints[j] = nameless[j];
   determine_trunk(character.nodes, joints);

@@ -307,7 +307,7 @@ class NamelessFinder {
 
 }  // namespace
 
-std::vector<Index> find_nameless_joints(const Character& character) {
+std::vector<Index> find_joints_by_structure(const Character& character) {
   return NamelessFinder(character).find();
 }
 

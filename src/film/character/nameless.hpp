@@ -20,7 +20,7 @@ namespace weft::character {
 /// - Neck and head: the chain that reaches highest among the other children of the common node of the arms.
 /// Leaf nodes that neither influence skin nor move in a clip are end markers of bones and do not count.
 /// All -1 if there are not two arms and two legs, or if the left side cannot be determined.
-std::vector<Index> find_nameless_joints(const Character& character);
+std::vector<Index> find_joints_by_structure(const Character& character);
 
 /// First nodes of the index and the little finger; -1 if fewer than four chains leave the hand. The thumb is the
 /// shortest chain. Of the other chains, index and little finger are the two farthest apart; the index is on the side of

@@ -153,15 +153,16 @@ void add_followers(Character& character, const Pose& pose, const VertexMask& par
 }
 
 bool has_fingers(const Character& character, std::span<const Index> nodes) {
-  std::vector<bool> holds(character.nodes.size(), false);  // per node: whether it or a node below it influences skin
-  for (const Influence& influence : character.influences) holds[character.bones[influence.bone].node] = true;
-  for (std::size_t n = holds.size(); n-- > 0;)
-    if (holds[n] && character.nodes[n].parent >= 0) holds[character.nodes[n].parent] = true;
+  // Per node: whether it or a node below it influences skin.
+  std::vector<bool> influences_skin(character.nodes.size(), false);
+  for (const Influence& influence : character.influences) influences_skin[character.bones[influence.bone].node] = true;
+  for (std::size_t n = influences_skin.size(); n-- > 0;)
+    if (influences_skin[n] && character.nodes[n].parent >= 0) influences_skin[character.nodes[n].parent] = true;
   constexpr int kFewest = 3;
   return std::ranges::any_of(joints_of_part("hands"), [&](Index joint) {
     int chains = 0;
-    for (std::size_t n = 0; n < holds.size(); ++n)
-      chains += nodes[joint] >= 0 && character.nodes[n].parent == nodes[joint] && holds[n];
+    for (std::size_t n = 0; n < influences_skin.size(); ++n)
+      chains += nodes[joint] >= 0 && character.nodes[n].parent == nodes[joint] && influences_skin[n];
     return chains >= kFewest;
   });
 }

@@ -7,7 +7,7 @@
 namespace weft::character {
 
 double clip_time(const Timing& timing, double t) {
-  const double elapsed = t - timing.dressing;
+  const double elapsed = t - timing.motion_start;
   if (elapsed <= 0) return timing.start;
   if (elapsed >= timing.blend) return timing.start + timing.speed * (elapsed - timing.blend / 2);
   // The integral of ease(): the speed rises smoothly from 0.
@@ -63,11 +63,11 @@ Pose Performance::at_clip_time(double t) const {
 
 Pose Performance::at(double t) const {
   const Timing& timing = playing_.timing;
-  if (playing_.stance && t <= timing.dressing) return *playing_.stance;
+  if (playing_.stance && t <= timing.motion_start) return *playing_.stance;
   Pose pose = at_clip_time(clip_time(timing, t));
   translate(pose, shift_);
-  if (playing_.stance && t < timing.dressing + timing.blend)
-    pose = blend(*playing_.stance, pose, ease((t - timing.dressing) / timing.blend));
+  if (playing_.stance && t < timing.motion_start + timing.blend)
+    pose = blend(*playing_.stance, pose, ease((t - timing.motion_start) / timing.blend));
   return pose;
 }
 

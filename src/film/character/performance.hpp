@@ -10,10 +10,10 @@ namespace weft::character {
 
 /// Timing of a clip in the scene.
 struct Timing {
-  double dressing = 0;  ///< scene time at which the clip begins to move [s]: the end of the character's `dressing`
-  double blend = 0;     ///< time after `dressing` in which the clip accelerates to `speed` [s]
-  double start = 0;     ///< time of the clip at which it begins to play [s]
-  double speed = 1;     ///< seconds of clip time per second of scene time
+  double motion_start = 0;  ///< scene time at which the clip begins to move [s]: the end of the character's `dressing`
+  double blend = 0;         ///< time after `motion_start` in which the clip accelerates to `speed` [s]
+  double start = 0;         ///< time of the clip at which it begins to play [s]
+  double speed = 1;         ///< seconds of clip time per second of scene time
 };
 
 /// Time of the clip [s] at time t of the scene [s]; twice continuously differentiable if `blend` is positive.

@@ -19,13 +19,13 @@ constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 
 // before and after: 5 cm in 0.2 s. In walking and running, hands move by 20 to 60 cm in this time.
 constexpr double kMaxRestMotion = 0.09, kRestTime = 0.1;
 
-class Puller {
+class HandDisplacement {
  public:
-  Puller(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
-         const Proportions& proportions)
+  HandDisplacement(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
+                   const Proportions& proportions)
       : theirs_(theirs), ours_(ours), both_(both), proportions_(proportions) {}
 
-  Vec3 pull(bool right, double rests) {
+  Vec3 compute(bool right, double rests) {
     const auto at = [&](Joint left) { return joint_index(on_side(left, right)); };
     const auto across = [&](Joint left) { return joint_index(on_side(left, !right)); };
     const std::size_t shoulder = at(Joint::left_upper_arm), elbow = at(Joint::left_lower_arm);
@@ -69,8 +69,8 @@ class Puller {
 std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
                                    const Proportions& proportions, const std::array<double, 2>& rests) {
   if (!(proportions.their_arm > 0)) return {Vec3::Zero(), Vec3::Zero()};
-  Puller puller(theirs, ours, both, proportions);
-  return {puller.pull(false, rests[0]), puller.pull(true, rests[1])};
+  HandDisplacement displacement(theirs, ours, both, proportions);
+  return {displacement.compute(false, rests[0]), displacement.compute(true, rests[1])};
 }
 
 std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> postures, std::span<const double> times,

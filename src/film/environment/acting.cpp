@@ -15,11 +15,11 @@
 #include "film/character/dressing.hpp"
 #include "film/character/gait.hpp"
 #include "film/character/joints.hpp"
+#include "film/character/limb_clearance.hpp"
 #include "film/character/mannequin.hpp"
 #include "film/character/parts.hpp"
 #include "film/character/performance.hpp"
 #include "film/character/retarget.hpp"
-#include "film/character/room.hpp"
 #include "film/character/travel.hpp"
 #include "film/environment/body_parts.hpp"
 #include "film/environment/cast.hpp"
@@ -78,7 +78,7 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::v
 
 /// Loads a motion file. If it is BVH and the scene does not state its up axis, this axis is z if bodies in the file
 /// stand along z, else y.
-assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
+assets::LoadedCharacter load_upright(const Cast& cast, const scene::SkeletonMotion& acting,
                                      std::vector<std::string>& warnings) {
   const auto load = [&](scene::FileUp up) {
     return assets::load_motion(*acting.motion, {{}, up, cast.scene.up}, cast.where);
@@ -89,7 +89,8 @@ assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acti
       joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, acting.motion->string());
   const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, acting.motion->string());
   const Vec3 trunk = character::mean_trunk({motion.character, joints}, clip);
-  const Mat3 from_y = assets::turn_up(1, cast.scene.up), from_z = assets::turn_up(2, cast.scene.up);
+  const Mat3 from_y = assets::rotation_to_scene_axes(1, cast.scene.up),
+             from_z = assets::rotation_to_scene_axes(2, cast.scene.up);
   const double along_y = trunk.dot(cast.up()), along_z = (from_z * from_y.transpose() * trunk).dot(cast.up());
   if (along_z < kMinUprightness || along_y > along_z) return motion;
   warnings.push_back(
@@ -105,7 +106,7 @@ double leg_length(const character::Rig& rig) {
 }
 
 /// The clip with the travel that the scene asks for. `size`: ratio of leg lengths, body / skeleton of the clip.
-character::Clip travel(const Cast& cast, const scene::Acting& acting, const character::Rig& rig,
+character::Clip travel(const Cast& cast, const scene::SkeletonMotion& acting, const character::Rig& rig,
                        const character::Clip& clip, double size, std::vector<std::string>& warnings) {
   if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
   if (acting.travel.kind == scene::Travel::Kind::none) return character::in_place(rig, clip, cast.up());
@@ -138,7 +139,7 @@ void put_on_floor(const Cast& cast, Body& body) {
                   body.source, std::abs(soles), soles < 0 ? "below" : "above"));
 }
 
-character::Clip retarget_motion(const Cast& cast, const scene::Acting& acting, Body& body) {
+character::Clip retarget_motion(const Cast& cast, const scene::SkeletonMotion& acting, Body& body) {
   const std::string file = acting.motion->string();
   assets::LoadedCharacter motion = load_upright(cast, acting, body.warnings);
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
@@ -190,7 +191,7 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
     body.character.clips.push_back(character::make_walk(
         body.character,
         {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
-  // The same rotation as in turned_up() (orientation.cpp).
+  // The same rotation as in rotate_to_up_axis() (orientation.cpp).
   const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
   if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
   return body;
@@ -216,9 +217,9 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds the points of a FollowingPin to a body with `vertices` own vertices. `start`: pose at the start of the run.
-void add_following_pin(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts,
-                       const character::Pose& start, std::size_t vertices, character::Character& body) {
+/// Adds the points of a FollowerPoints to a body with `vertices` own vertices. `start`: pose at the start of the run.
+void add_follower_points(const Cast& cast, const FollowerPoints& pin, const std::vector<Part>& parts,
+                         const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);
   if (!pin.part.empty()) mask = std::ranges::find(parts, pin.part, &Part::name)->vertices;
   const scene::Pose& pose = cast.settings.pose;
@@ -343,13 +344,14 @@ StandingBody make_standing(const Cast& cast, const scene::MeshSequence& /*source
               where, cast.settings.name);
 }
 
-/// Makes the Room that leaves space for cloth; none if there is no clip, no clearance or no cloth near the body.
+/// Makes the LimbClearance for cloth; none if there is no clip, no clearance or no cloth near the body.
 template <class Source>
-std::optional<character::Room> room_of(const Cast& cast, const Source& source, const Body& body,
-                                       const character::Performance& performance, const std::vector<Part>& parts,
-                                       std::span<const ClothAtStart> cloths) {
-  const double room = clearance_between_limbs(cast);
-  if (room == 0 || !body.clip) return std::nullopt;
+std::optional<character::LimbClearance> limb_clearance_of(const Cast& cast, const Source& source, const Body& body,
+                                                          const character::Performance& performance,
+                                                          const std::vector<Part>& parts,
+                                                          std::span<const ClothAtStart> cloths) {
+  const double clearance = clearance_between_limbs(cast);
+  if (clearance == 0 || !body.clip) return std::nullopt;
   std::vector<float> near_cloth = nearness_of_cloths(cast, body.character, performance, cloths);
   if (std::ranges::all_of(near_cloth, [](float near) { return near <= 0; })) return std::nullopt;
   character::VertexMask touched(body.character.mesh.positions.size(), 1);
@@ -357,7 +359,8 @@ std::optional<character::Room> room_of(const Cast& cast, const Source& source, c
     for (std::size_t v = 0; v < part.vertices.size(); ++v)
       if (!part.collide && part.vertices[v] != 0) touched[v] = 0;
   const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
-  return character::Room({body.character, joints}, touched, std::move(near_cloth), room, static_grounds(cast));
+  return character::LimbClearance({body.character, joints}, touched, std::move(near_cloth), clearance,
+                                  static_grounds(cast));
 }
 
 /// The largest displacement of skin over all keys, with its time and its place.
@@ -385,8 +388,8 @@ std::optional<std::string> describe(const Cast& cast, const MaxDisplacement& mos
 }
 
 template <class Source>
-Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following,
-          std::span<const ClothAtStart> cloths) {
+Actor make_actor_of(const Cast& cast, const Source& source, std::span<const FollowerPoints> following,
+                    std::span<const ClothAtStart> cloths) {
   Body body = make_playing_body(cast, source);
   check_size(cast, source, body);
   const character::Clip still;
@@ -399,11 +402,12 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
                     cast.where, clip.name, gap));
   std::vector<Part> parts = parts_of(cast, source, following, body);
   const std::size_t vertices = body.character.mesh.positions.size();
-  const std::optional<character::Room> room = room_of(cast, source, body, performance, parts, cloths);
+  const std::optional<character::LimbClearance> clearance =
+      limb_clearance_of(cast, source, body, performance, parts, cloths);
   MaxDisplacement moved;
   std::vector<Index> limbs = shells_of_limbs(cast, source, body);
   const character::Pose start = performance.at(begin_of(cast.scene));
-  for (const FollowingPin& pin : following) add_following_pin(cast, pin, parts, start, vertices, body.character);
+  for (const FollowerPoints& pin : following) add_follower_points(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
   std::vector<Vec3> bones;  // per vertex of the body (not of pins): the point from which it grows
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
@@ -414,7 +418,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     const character::Pose pose = performance.at(t);
     character::skin(body.character, pose, x);
     if (grounds.size() == 1) lowest.push_back(height_over(grounds[0], std::span(x).first(vertices)));
-    if (room) moved.add(room->make(pose, x), t, x);
+    if (clearance) moved.add(clearance->move_skin(pose, x), t, x);
     const double since = t - begin_of(cast.scene);
     if (since >= cast.settings.grow) return;
     for (std::size_t v = 0; v < bones.size(); ++v)
@@ -437,8 +441,8 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
           std::move(body.warnings), std::move(notes), std::move(coloring)};
 }
 
-Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following,
-          std::span<const ClothAtStart> /*cloths*/) {
+Actor make_actor_of(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowerPoints> following,
+                    std::span<const ClothAtStart> /*cloths*/) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
   if (!cast.settings.parts.empty() || !std::ranges::all_of(following, [](const auto& pin) { return pin.part.empty(); }))
@@ -475,10 +479,11 @@ KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
 
 }  // namespace
 
-Actor make_actor(const scene::Scene& scene, const scene::Character& character, std::span<const FollowingPin> following,
-                 std::span<const ClothAtStart> cloths) {
+Actor make_actor(const scene::Scene& scene, const scene::Character& character,
+                 std::span<const FollowerPoints> following, std::span<const ClothAtStart> cloths) {
   const Cast cast = make_cast(scene, character);
-  return std::visit([&](const auto& source) { return act(cast, source, following, cloths); }, character.source);
+  return std::visit([&](const auto& source) { return make_actor_of(cast, source, following, cloths); },
+                    character.source);
 }
 
 StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character,

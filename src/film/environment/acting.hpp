@@ -32,7 +32,7 @@ struct Part {
 
 /// Start positions [m] of points that follow a character: of the particles of a pin, or of the four points that give
 /// the frame of an obstacle or camera (parents.hpp).
-struct FollowingPin {
+struct FollowerPoints {
   std::string part;  ///< of the character; empty: the whole character
   std::vector<Vec3> places;
 };
@@ -47,7 +47,7 @@ struct ClothAtStart {
 /// A body that moves by key frames of its vertices, computed before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
-  KeyFrames keys;            ///< of the vertices; for a body with bones, then of the points of each FollowingPin
+  KeyFrames keys;            ///< of the vertices; for a body with bones, then of the points of each FollowerPoints
   std::vector<Part> parts;   ///< see parts_of()
   std::vector<Index> limbs;  ///< per vertex: its shell (shells_of_limbs()); for a sequence: its component
   std::vector<std::string> warnings;
@@ -60,7 +60,7 @@ struct Actor {
 /// has one key. If a body with bones plays a clip, its skin leaves space for `cloths` near it (character::Room). Throws
 /// Error(asset_unreadable, scene_invalid) that names the scene line, the file, and the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
-                 std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
+                 std::span<const FollowerPoints> following = {}, std::span<const ClothAtStart> cloths = {});
 
 /// A body with bones at the start of a run, before the preroll.
 struct StandingBody {

@@ -14,7 +14,7 @@ namespace {
 /// Finds the vertices of a part by its bone, material or name.
 class PartFinder {
  public:
-  PartFinder(const Cast& cast, const scene::Acting& acting, const Body& body)
+  PartFinder(const Cast& cast, const scene::SkeletonMotion& acting, const Body& body)
       : cast_(cast),
         body_(body),
         joints_(joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source)) {}
@@ -74,8 +74,8 @@ scene::BodyPart part_named(const std::string& name) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::span<const FollowingPin> following,
-                           Body& body) {
+std::vector<Part> parts_of(const Cast& cast, const scene::SkeletonMotion& acting,
+                           std::span<const FollowerPoints> following, Body& body) {
   const PartFinder finder(cast, acting, body);
   std::vector<scene::BodyPart> wanted = cast.settings.parts;
   if (!has_hand_settings(wanted) && cast.settings.collide && finder.has_fingers()) {
@@ -86,7 +86,7 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::s
                     "collide, write [[character.part]] name = \"hands\"",
                     cast.where));
   }
-  for (const FollowingPin& pin : following)
+  for (const FollowerPoints& pin : following)
     if (!pin.part.empty() && std::ranges::find(wanted, pin.part, &scene::BodyPart::name) == wanted.end())
       wanted.push_back(part_named(pin.part));
   std::vector<Part> parts;
@@ -95,7 +95,7 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::s
   return parts;
 }
 
-std::vector<Index> shells_of_limbs(const Cast& cast, const scene::Acting& acting, const Body& body) {
+std::vector<Index> shells_of_limbs(const Cast& cast, const scene::SkeletonMotion& acting, const Body& body) {
   const std::vector<character::Limb> limbs = character::limbs_of(
       body.character, joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source));
   std::vector<Index> shells = mesh::components(body.character.mesh.topology.triangles, limbs.size());

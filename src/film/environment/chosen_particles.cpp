@@ -18,7 +18,7 @@
 namespace weft::environment {
 namespace {
 
-using model::Chosen;
+using model::WeightedParticle;
 
 // Minimum fraction of a particle that counts: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
@@ -50,7 +50,7 @@ class ParticleFinder {
       : from_file_(cloth.shape == scene::ClothShape::mesh), file_(file), cloth_(made.cloth), details_(made.details) {}
 
   /// Particles of a region, with their fractions. `key`: key of the region in the scene, for messages.
-  std::vector<Chosen> part(const scene::ClothPart& part, const std::string& key) const {
+  std::vector<WeightedParticle> part(const scene::ClothPart& part, const std::string& key) const {
     std::vector<double> fractions(details_.fractions.size());
     if (part.at) {
       along_rope(*part.at, fractions);
@@ -64,7 +64,7 @@ class ParticleFinder {
     if (!part.edge.empty()) on_edge(part.edge, key, fractions);
     if (part.vertex_color != scene::VertexColor::none) by_color(part.vertex_color, key, fractions);
     if (!part.vertex_group.empty()) by_group(part.vertex_group, key, fractions);
-    std::vector<Chosen> chosen;
+    std::vector<WeightedParticle> chosen;
     for (std::size_t i = 0; i < fractions.size(); ++i)
       if (fractions[i] > 0) chosen.push_back({static_cast<Index>(i), std::min(1.0, fractions[i])});
     return chosen;
@@ -190,7 +190,7 @@ class RestDistances {
   /// Appends to the region `part` the particles that are nearer to it than `fade` [m]. Their fraction falls from that
   /// of the nearest particle of the region to 0 at this distance, with zero slope at both ends. Shortest paths: E. W.
   /// Dijkstra, "A note on two problems in connexion with graphs", 1959.
-  void fade(double fade, std::vector<Chosen>& part) const {
+  void fade(double fade, std::vector<WeightedParticle>& part) const {
     struct FrontParticle {
       double distance;
       Index particle;
@@ -208,7 +208,7 @@ class RestDistances {
       distance = candidate.distance;
       front.push(candidate);
     };
-    for (const Chosen& chosen : part) visit({0, chosen.particle, chosen.share});
+    for (const WeightedParticle& chosen : part) visit({0, chosen.particle, chosen.fraction});
     while (!front.empty()) {
       const FrontParticle here = front.top();
       front.pop();
@@ -248,8 +248,8 @@ void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, cons
                       const std::string& where, MadeCloth& made) {
   const ParticleFinder finder(cloth, file, made);
   const auto part_at = [&](const scene::ClothPart& part, const std::string& key, double min_fraction) {
-    std::vector<Chosen> chosen = finder.part(part, key);
-    std::erase_if(chosen, [&](const Chosen& one) { return one.share < min_fraction; });
+    std::vector<WeightedParticle> chosen = finder.part(part, key);
+    std::erase_if(chosen, [&](const WeightedParticle& one) { return one.fraction < min_fraction; });
     if (chosen.empty())
       throw Error(ExitCode::scene_invalid,
                   "{}: expected a part that holds at least one particle, got one that holds none{}", key,

@@ -17,8 +17,8 @@ namespace {
 /// layers, cloth was pinched in 13 of 51 frames of a film with such a shirt.
 constexpr double kLayersBetweenLimbs = 8;
 
-/// Distance up to which skin counts as near cloth [m]. character::Room moves two limbs apart only if cloth is near one
-/// of them.
+/// Distance up to which skin counts as near cloth [m]. character::LimbClearance moves two limbs apart only if cloth is
+/// near one of them.
 constexpr double kNearCloth = 0.05;
 
 /// Maximum distance between samples on cloth [m], except on edges longer than kMaxEdgeSamples times this distance.

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "film/character/room.hpp"
+#include "film/character/limb_clearance.hpp"
 #include "film/environment/acting.hpp"
 #include "film/environment/cast.hpp"
 

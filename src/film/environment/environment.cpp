@@ -24,7 +24,7 @@ struct MakeMesh {
   const scene::Scene& scene;
   const scene::Obstacle& obstacle;
 
-  mesh::Mesh upright(mesh::Mesh mesh) const { return turned_up(std::move(mesh), scene.up); }
+  mesh::Mesh upright(mesh::Mesh mesh) const { return rotate_to_up_axis(std::move(mesh), scene.up); }
 
   mesh::Mesh operator()(const scene::Sphere& s) const { return mesh::make_sphere(s.radius, obstacle.segments); }
   mesh::Mesh operator()(const scene::BoxShape& s) const { return mesh::make_box(s.size, s.bevel, obstacle.segments); }
@@ -128,10 +128,10 @@ std::optional<std::size_t> number_of(const std::string& name, const Objects& obj
 }
 
 /// Mean start position of the particles of the region of a pin, including those that another pin holds.
-Vec3 middle_of(std::span<const model::Chosen> particles, std::span<const Vec3> start) {
+Vec3 middle_of(std::span<const model::WeightedParticle> particles, std::span<const Vec3> start) {
   Vec3 middle = Vec3::Zero();
   std::size_t count = 0;
-  for (const model::Chosen& chosen : particles) {
+  for (const model::WeightedParticle& chosen : particles) {
     if (chosen.faded) break;  // faded particles come last
     middle += start[static_cast<std::size_t>(chosen.particle)];
     ++count;

@@ -41,7 +41,7 @@ class Environment {
 
  private:
   /// For each scene::Attachment of one cloth, its particles.
-  using Attached = std::vector<std::vector<model::Chosen>>;
+  using Attached = std::vector<std::vector<model::WeightedParticle>>;
   std::vector<Attached> add_cloths(const scene::Scene& scene);
   void add_parents(const scene::Scene& scene);
   void add_characters(const scene::Scene& scene);

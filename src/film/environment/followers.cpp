@@ -5,8 +5,8 @@
 namespace weft::environment {
 namespace {
 
-FollowingPin frame_at(const std::string& part, const Vec3& origin) {
-  FollowingPin frame{part, {origin}};
+FollowerPoints frame_at(const std::string& part, const Vec3& origin) {
+  FollowerPoints frame{part, {origin}};
   for (int axis = 0; axis < 3; ++axis) frame.places.push_back(origin + kFrameAxis * Vec3::Unit(axis));
   return frame;
 }
@@ -22,7 +22,7 @@ Followers followers_of(const scene::Scene& scene, const std::vector<model::Cloth
                        const std::string& character) {
   Followers followers;
   std::size_t first = 0;
-  const auto add = [&](FollowingPin points) {
+  const auto add = [&](FollowerPoints points) {
     first += points.places.size();
     followers.points.push_back(std::move(points));
   };
@@ -30,8 +30,8 @@ Followers followers_of(const scene::Scene& scene, const std::vector<model::Cloth
     for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
       const scene::Followed followed = scene::followed(scene.cloths[c].pins[p].follow);
       if (followed.body != character) continue;
-      FollowingPin pin{followed.part, {}};
-      for (const model::Chosen& chosen : cloths[c].pins[p].particles)
+      FollowerPoints pin{followed.part, {}};
+      for (const model::WeightedParticle& chosen : cloths[c].pins[p].particles)
         pin.places.push_back(cloths[c].start[chosen.particle]);
       followers.pins.push_back({c, p, first});
       add(std::move(pin));

@@ -82,7 +82,7 @@ void use_triangles(mesh::Mesh mesh, MadeCloth& made) {
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
-  const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
+  const garment::Wearer* wearer = pattern.has_bent_panels() ? &wearers.of(cloth, where) : nullptr;
   const garment::Wearer* fitted = cloth.fit ? &wearers.of(cloth, where) : nullptr;
   Vec2 factors(cloth.scale, cloth.scale);
   if (fitted != nullptr) {
@@ -116,7 +116,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   if (wearer == nullptr && fitted != nullptr)
     for (Vec3& x : made.cloth.mesh.positions) x = fitted->to_world * x;
   else if (wearer == nullptr)
-    made.cloth.mesh = turned_up(std::move(made.cloth.mesh), scene.up);
+    made.cloth.mesh = rotate_to_up_axis(std::move(made.cloth.mesh), scene.up);
   made.cloth.sheet = std::move(garment.sheet);
   made.cloth.spacing = std::numbers::sqrt2 * mesh::min_height(made.cloth.sheet);
   for (const scene::PanelPaint& panel : cloth.look.panels)
@@ -226,7 +226,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   return loaded;
 }
 
-bool meets_obstacles(const scene::Scene& scene) {
+bool can_touch_obstacles(const scene::Scene& scene) {
   return scene.contact.obstacles &&
          (std::ranges::any_of(scene.obstacles, [](const scene::Obstacle& o) { return o.collide; }) ||
           std::ranges::any_of(scene.characters, [](const scene::Character& c) { return c.collide; }));
@@ -249,7 +249,7 @@ void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
 }  // namespace
 
 void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
-  if (!meets_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
+  if (!can_touch_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
   const mesh::Grid grid = grid_of(cloth);
   const double longest = std::max({grid.du(0), grid.du(grid.nu - 2), grid.dv(0), grid.dv(grid.nv - 2)});
   if (longest <= mesh::kMaxUnevenness * grid.min_spacing()) return;
@@ -297,7 +297,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
       break;
   }
   choose_particles(scene, cloth, file, where, made);
-  if (meets_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(made.cloth.sheet, where);
+  if (can_touch_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(made.cloth.sheet, where);
   for (Vec3& x : made.cloth.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   made.cloth.start = start_positions(scene.up, cloth, made.cloth.mesh);
   made.cloth.velocity = cloth.velocity;

@@ -33,7 +33,8 @@ struct ClothDetails {
 struct MadeCloth {
   model::Cloth cloth;
   ClothDetails details;
-  std::vector<std::vector<model::Chosen>> attachments;  ///< particles of each scene::Attachment that names this cloth
+  /// Particles of each scene::Attachment that names this cloth.
+  std::vector<std::vector<model::WeightedParticle>> attachments;
 };
 
 /// Particle counts, spacings and gradings of a rectangular cloth.

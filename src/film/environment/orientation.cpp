@@ -6,7 +6,7 @@
 
 namespace weft::environment {
 
-mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
+mesh::Mesh rotate_to_up_axis(mesh::Mesh mesh, scene::UpAxis up) {
   if (up == scene::UpAxis::y)
     for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), -x.y());
   return mesh;

@@ -11,7 +11,7 @@ namespace weft::environment {
 
 /// Turns the mesh of a shape, which is made with its axis along z, to the up axis. If y is up, rotates it by −90° about
 /// x: z becomes y, x stays.
-mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up);
+mesh::Mesh rotate_to_up_axis(mesh::Mesh mesh, scene::UpAxis up);
 
 /// The axes of a mesh file. If a character uses the same file, its up axis applies, unless `up` states one. If nothing
 /// states the up axis, it is y for the file of a character, and the up axis of the scene for other files.

@@ -36,7 +36,7 @@ class Sewing {
       : pattern_(pattern), spacing_(spacing), where_(where), wearer_(wearer) {}
 
   Garment sew() {
-    if (pattern_.wraps() && wearer_ == nullptr)
+    if (pattern_.has_bent_panels() && wearer_ == nullptr)
       refuse("expected a wearer, as panels start around parts of a body; got none");
     count_segments();
     mesh_panels();
@@ -127,7 +127,7 @@ class Sewing {
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
-      if (seam.closure()) continue;
+      if (seam.is_closure()) continue;
       const auto [p, e] = pattern_.find(seam.a);
       const auto [q, f] = pattern_.find(seam.b);
       const std::vector<Index> a = chain(p, e);
@@ -330,7 +330,7 @@ class Sewing {
   void add_bands() {
     std::size_t s = 0;
     for (const Seam& seam : pattern_.seams) {
-      if (seam.closure()) continue;
+      if (seam.is_closure()) continue;
       const SewnSeam& sewn = garment_.seams[s++];
       if (seam.allowance == 0 || sewn.vertices.size() < 2) continue;
       // The length of an eased-in seam is the mean of its two edges.
@@ -356,7 +356,7 @@ class Sewing {
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
-      if (!seam.closure()) continue;
+      if (!seam.is_closure()) continue;
       if (seam.tearing_load) garment_.sheet.tearing_seams.push_back(seam.a + " + " + seam.b);
       const std::vector<Index>& a = garment_.edges.at(seam.a);
       std::vector<Index> b = garment_.edges.at(seam.b);
@@ -433,7 +433,7 @@ FlatMesh mesh_of(const Panel& panel, const std::vector<int>& segments, double sp
 }
 
 Garment sew(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer) {
-  return Sewing(pattern, spacing, where, pattern.wraps() ? wearer : nullptr).sew();
+  return Sewing(pattern, spacing, where, pattern.has_bent_panels() ? wearer : nullptr).sew();
 }
 
 }  // namespace weft::garment

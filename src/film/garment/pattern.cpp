@@ -337,7 +337,7 @@ void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_dr
 
 }  // namespace
 
-bool Pattern::wraps() const {
+bool Pattern::has_bent_panels() const {
   return std::ranges::any_of(panels, [](const Panel& p) { return p.around != Around::none || p.angle; });
 }
 

@@ -66,7 +66,7 @@ struct Seam {
   std::optional<double> tearing_load;  ///< force per length at which ties of the seam break for ever [N/m]
   double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
 
-  bool closure() const { return buttons > 0 || open || closed || tearing_load; }
+  bool is_closure() const { return buttons > 0 || open || closed || tearing_load; }
 };
 
 /// An elastic band that gathers an edge.
@@ -101,7 +101,7 @@ struct Pattern {
   std::vector<Hem> hems;
 
   /// Whether panels start bent around parts of the wearer; otherwise they start flat.
-  bool wraps() const;
+  bool has_bent_panels() const;
   /// Multiplies outlines and start positions by `factors` (across and up the drawings), and `depth` by the factor
   /// across. All other members keep their values.
   void scale_by(const Vec2& factors);

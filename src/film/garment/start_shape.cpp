@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "film/garment/joined_places.hpp"
+#include "film/garment/least_squares_positions.hpp"
 
 namespace weft::garment {
 namespace {
@@ -53,7 +53,7 @@ void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector
 }  // namespace
 
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices) {
-  JoinedPlaces<2> places(vertices, kAnchorWeight);
+  LeastSquaresPositions<2> places(vertices, kAnchorWeight);
   for (const LaidPanel& panel : panels)
     for (std::size_t t = 0; t < panel.triangles.size(); ++t) places.add(panel.triangles[t], panel.corners[t]);
   return places.solve();

@@ -28,8 +28,9 @@ constexpr std::array<std::pair<double, const char*>, 4> kUnits{
 constexpr double kMaxSizeRatio = 100;
 // Rounds of iteratively reweighted least squares for the scale.
 constexpr int kScaleRounds = 30;
-// Tolerance for `alike`. Even if seams are pulled together, half of all edges of cloth keep their lengths within it.
-constexpr double kAlikeTolerance = 0.05;
+// Tolerance for `fitting_edge_fraction`. Even if seams are pulled together, half of all edges of cloth keep their
+// lengths within it.
+constexpr double kFittingEdgeTolerance = 0.05;
 
 struct UvEdge {
   double du, dv, length;  // du, dv in the UVs; length in the mesh [m]
@@ -107,21 +108,22 @@ std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, doub
 
 /// Fraction of all edges, weighted by length in the UVs, whose scaled length in the UVs differs from that in the mesh
 /// by at most `tolerance`, relative.
-double fraction_alike(const std::vector<UvEdge>& edges, const Vec2& scale, double tolerance) {
-  double alike = 0, total = 0;
+double fraction_of_fitting_edges(const std::vector<UvEdge>& edges, const Vec2& scale, double tolerance) {
+  double fitting = 0, total = 0;
   for (const UvEdge& e : edges) {
     const double in_uv = std::hypot(e.du, e.dv);
     total += in_uv;
-    if (std::abs(std::hypot(scale.x() * e.du, scale.y() * e.dv) / e.length - 1) <= tolerance) alike += in_uv;
+    if (std::abs(std::hypot(scale.x() * e.du, scale.y() * e.dv) / e.length - 1) <= tolerance) fitting += in_uv;
   }
-  return total > 0 ? alike / total : 0;
+  return total > 0 ? fitting / total : 0;
 }
 
 /// Finds scale and unit, and writes them to `rest`.
 void measure_scale(const std::vector<UvEdge>& edges, UvRest& rest) {
   double best = kMinFractionInUnit;
   for (const auto& [length, name] : kUnits)
-    if (const double fraction = fraction_alike(edges, Vec2::Constant(length), kUnitTolerance); fraction > best)
+    if (const double fraction = fraction_of_fitting_edges(edges, Vec2::Constant(length), kUnitTolerance);
+        fraction > best)
       best = fraction, rest.scale = Vec2::Constant(length), rest.unit = name;
   if (!rest.unit.empty() || edges.empty()) return;
   const double even = median_scale(edges);
@@ -192,7 +194,7 @@ double quantile(std::vector<std::pair<double, double>> values, double fraction) 
 }  // namespace
 
 bool UvRest::has_panel_lengths() const {
-  return unusable_area < 0.01 && alike >= 0.5;
+  return unusable_area < 0.01 && fitting_edge_fraction >= 0.5;
 }
 
 std::string UvRest::describe() const {
@@ -201,7 +203,7 @@ std::string UvRest::describe() const {
   return fmt::format(
       "{} island{}, {}{}, {:.0f} % of all edges as long as in the mesh within 5 %; its triangles are off by {:.1f} % "
       "(median), 95 % of them by at most {:.1f} %",
-      islands, islands == 1 ? "" : "s", length, unit.empty() ? "" : " (" + unit + ")", 100 * alike,
+      islands, islands == 1 ? "" : "s", length, unit.empty() ? "" : " (" + unit + ")", 100 * fitting_edge_fraction,
       100 * median_stretch, 100 * stretch_quantile_95);
 }
 
@@ -214,7 +216,7 @@ UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const
     rest.scale = *scale;
   else
     measure_scale(edges, rest);
-  rest.alike = fraction_alike(edges, rest.scale, kAlikeTolerance);
+  rest.fitting_edge_fraction = fraction_of_fitting_edges(edges, rest.scale, kFittingEdgeTolerance);
   rest.islands = count_islands(mesh, uv);
   std::vector<std::pair<double, double>> deviations;
   double total = 0;

@@ -30,9 +30,11 @@ struct UvRest {
   /// The stretch of a triangle is the largest relative difference in length between mesh and panel, over all
   /// directions. Its median and 95 % quantile over all usable triangles, weighted by area.
   double median_stretch = 0, stretch_quantile_95 = 0;
-  double alike = 0;  ///< fraction of all edges, weighted by UV length, whose length differs by at most 5 %
+  /// Fraction of all edges, weighted by UV length, whose length differs by at most 5 %.
+  double fitting_edge_fraction = 0;
 
-  /// Whether the UVs are panels of cloth, not charts of another surface: `alike` ≥ 0.5 and `unusable_area` < 1 %.
+  /// Whether the UVs are panels of cloth, not charts of another surface: `fitting_edge_fraction` ≥ 0.5 and
+  /// `unusable_area` < 1 %.
   bool has_panel_lengths() const;
   /// Text for messages, such as "3 islands, 1 unit = 1 m (metres), 98 % of all edges as long as in the mesh within 5 %;
   /// its triangles are off by 1.2 % (median), 95 % of them by at most 4.3 %".

@@ -11,7 +11,7 @@
 #include <set>
 #include <unordered_map>
 
-#include "film/garment/joined_places.hpp"
+#include "film/garment/least_squares_positions.hpp"
 #include "physics/mesh/geometry.hpp"
 
 namespace weft::garment {
@@ -130,7 +130,7 @@ class PanelPlacer {
       const auto a = pattern_.find(seam.a), b = pattern_.find(seam.b);
       sewn.insert(a), sewn.insert(b);
       const bool around = part_of(pattern_.panels[a.first]) == part && part_of(pattern_.panels[b.first]) == part;
-      if (seam.closure() && around) return true;
+      if (seam.is_closure() && around) return true;
     }
     // A slit is an edge that continues a seam but is not sewn.
     for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
@@ -294,7 +294,7 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing) {
   // With this weight, the effect of closing a seam decays over the distance kBendingDistance.
-  JoinedPlaces<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
+  LeastSquaresPositions<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
   for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
   return places.solve();
 }

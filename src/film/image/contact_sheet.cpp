@@ -44,7 +44,7 @@ std::size_t fitting(const Font& font, std::string_view text, int max_width) {
 constexpr std::size_t kMaxCaptionLines = 60;
 
 // Wraps a text at blanks to lines no wider than `max_width` [pixels]; splits a word that is longer than a line.
-std::vector<std::string> wrapped(const Font& font, std::string_view text, int max_width) {
+std::vector<std::string> wrap_text(const Font& font, std::string_view text, int max_width) {
   std::vector<std::string> lines;
   while (!text.empty()) {
     if (lines.size() == kMaxCaptionLines) {
@@ -64,7 +64,7 @@ std::vector<std::string> wrapped(const Font& font, std::string_view text, int ma
 
 // The lines below a picture; `right` is on the last line if it fits, else on an additional line.
 std::vector<std::string> caption_lines(const Font& font, const SheetPicture& picture, int width, int gap) {
-  std::vector<std::string> lines = wrapped(font, picture.left, width);
+  std::vector<std::string> lines = wrap_text(font, picture.left, width);
   if (lines.empty() || font.width(lines.back()) + gap + font.width(picture.right) > width) lines.emplace_back();
   return lines;
 }

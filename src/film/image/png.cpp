@@ -40,14 +40,14 @@ constexpr int kFilter = PNG_FILTER_SUB;
 constexpr std::uintmax_t kMaxDeflateRatio = 1032;
 
 // An error message of libpng or the system, stored outside the stack frames that a longjmp skips.
-struct Complaint {
+struct ErrorText {
   std::array<char, 256> text{};
   void set(const char* words) { std::snprintf(text.data(), text.size(), "%s", words); }
 };
 
 void on_error(png_structp png, png_const_charp words) {
-  auto* complaint = static_cast<Complaint*>(png_get_error_ptr(png));
-  if (complaint->text[0] == '\0') complaint->set(words);
+  auto* error_text = static_cast<ErrorText*>(png_get_error_ptr(png));
+  if (error_text->text[0] == '\0') error_text->set(words);
   png_longjmp(png, 1);
 }
 
@@ -58,7 +58,7 @@ void on_warning(png_structp, png_const_charp) {}
 void write_bytes(png_structp png, png_bytep data, std::size_t size) {
   auto* file = static_cast<std::FILE*>(png_get_io_ptr(png));
   if (std::fwrite(data, 1, size, file) == size) return;
-  static_cast<Complaint*>(png_get_error_ptr(png))->set(std::strerror(errno));
+  static_cast<ErrorText*>(png_get_error_ptr(png))->set(std::strerror(errno));
   png_error(png, "write failed");
 }
 
@@ -67,16 +67,16 @@ void flush_bytes(png_structp) {}
 void read_bytes(png_structp png, png_bytep data, std::size_t size) {
   auto* file = static_cast<std::FILE*>(png_get_io_ptr(png));
   if (std::fread(data, 1, size, file) == size) return;
-  auto* complaint = static_cast<Complaint*>(png_get_error_ptr(png));
-  complaint->set(std::ferror(file) ? std::strerror(errno) : "the file ends too early");
+  auto* error_text = static_cast<ErrorText*>(png_get_error_ptr(png));
+  error_text->set(std::ferror(file) ? std::strerror(errno) : "the file ends too early");
   png_error(png, "read failed");
 }
 
 struct Writer {
   png_structp png = nullptr;
   png_infop info = nullptr;
-  Writer(Complaint* complaint)
-      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, complaint, on_error, on_warning)),
+  Writer(ErrorText* error_text)
+      : png(png_create_write_struct(PNG_LIBPNG_VER_STRING, error_text, on_error, on_warning)),
         info(png ? png_create_info_struct(png) : nullptr) {}
   ~Writer() { png_destroy_write_struct(&png, &info); }
   Writer(const Writer&) = delete;
@@ -86,8 +86,8 @@ struct Writer {
 struct Reader {
   png_structp png = nullptr;
   png_infop info = nullptr;
-  Reader(Complaint* complaint)
-      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, complaint, on_error, on_warning)),
+  Reader(ErrorText* error_text)
+      : png(png_create_read_struct(PNG_LIBPNG_VER_STRING, error_text, on_error, on_warning)),
         info(png ? png_create_info_struct(png) : nullptr) {}
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
   Reader(const Reader&) = delete;
@@ -228,11 +228,11 @@ void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t
 }
 
 void encode(const std::filesystem::path& file, const Rows& rows, std::vector<png_text> texts, std::FILE* out) {
-  Complaint complaint;
-  const Writer writer(&complaint);
+  ErrorText error_text;
+  const Writer writer(&error_text);
   if (!writer.info) fail_to_write(file, "libpng could not start");
   if (!write_all(writer, rows, out, texts.data(), static_cast<int>(texts.size()))) {
-    fail_to_write(file, complaint.text.data());
+    fail_to_write(file, error_text.text.data());
   }
 }
 
@@ -293,8 +293,8 @@ namespace {
 struct Opened {
   File in{nullptr, std::fclose};
   std::uintmax_t size = 0;  // [bytes]
-  Complaint complaint;
-  Reader reader{&complaint};
+  ErrorText error_text;
+  Reader reader{&error_text};
 
   explicit Opened(const std::filesystem::path& file) {
     try {
@@ -309,7 +309,7 @@ struct Opened {
     if (error) fail_to_read(file, error.message());
     check_chunks(file, in.get(), size);
     if (!reader.info) fail_to_read(file, "libpng could not start");
-    if (!read_header(reader, in.get())) fail_to_read(file, complaint.text.data());
+    if (!read_header(reader, in.get())) fail_to_read(file, error_text.text.data());
   }
 };
 
@@ -322,7 +322,7 @@ Metadata read_png_metadata(const std::filesystem::path& file) {
 Image read_png(const std::filesystem::path& file, Metadata* metadata) {
   const Opened opened(file);
   const Reader& reader = opened.reader;
-  const Complaint& complaint = opened.complaint;
+  const ErrorText& error_text = opened.error_text;
 
   // Checks the size that the header claims before memory for the pixels is allocated.
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
@@ -332,14 +332,14 @@ Image read_png(const std::filesystem::path& file, Metadata* metadata) {
     fail_to_read(file, fmt::format("{} bytes cannot hold {}x{} pixels", opened.size, width, height));
   }
 
-  if (!ask_for_rgb(reader)) fail_to_read(file, complaint.text.data());
+  if (!ask_for_rgb(reader)) fail_to_read(file, error_text.text.data());
   Image image(static_cast<int>(width), static_cast<int>(height));
   if (png_get_rowbytes(reader.png, reader.info) != 3 * std::size_t{width}) {
     fail_to_read(file, "libpng did not convert it to 8-bit RGB");
   }
   std::vector<png_bytep> rows(height);
   for (png_uint_32 y = 0; y < height; ++y) rows[y] = image.pixel(0, static_cast<int>(y));
-  if (!read_rows(reader, rows.data())) fail_to_read(file, complaint.text.data());
+  if (!read_rows(reader, rows.data())) fail_to_read(file, error_text.text.data());
   if (metadata) *metadata = metadata_of(reader);
   return image;
 }

@@ -102,9 +102,9 @@ std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environmen
 
 // Whether any particle belongs to both pins. `a`, `b`: indices of the pins within the cloth.
 bool overlap(const model::Cloth& cloth, std::size_t a, std::size_t b) {
-  const std::vector<model::Chosen>& others = cloth.pins[b].particles;
-  return std::ranges::any_of(cloth.pins[a].particles, [&](const model::Chosen& chosen) {
-    return std::ranges::find(others, chosen.particle, &model::Chosen::particle) != others.end();
+  const std::vector<model::WeightedParticle>& others = cloth.pins[b].particles;
+  return std::ranges::any_of(cloth.pins[a].particles, [&](const model::WeightedParticle& chosen) {
+    return std::ranges::find(others, chosen.particle, &model::WeightedParticle::particle) != others.end();
   });
 }
 
@@ -194,7 +194,7 @@ std::vector<std::string> find_far_pins(const scene::Scene& scene, const environm
     for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
       const std::string name = scene::followed(scene.cloths[c].pins[p].follow).body;
       const auto body = std::ranges::find(environment.model.bodies, name, &model::Body::name);
-      const std::vector<model::Chosen>& chosen = environment.model.cloths[c].pins[p].particles;
+      const std::vector<model::WeightedParticle>& chosen = environment.model.cloths[c].pins[p].particles;
       if (body == environment.model.bodies.end() || body->infinite_floor || chosen.empty()) continue;
       x.resize(body->mesh.positions.size());
       environment.model.place(static_cast<std::size_t>(body - environment.model.bodies.begin()), start, x);

@@ -148,7 +148,7 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
       std::count_if(scene.obstacles.begin(), scene.obstacles.end(), [](const scene::Obstacle& o) { return o.collide; });
   const auto characters = std::ranges::count_if(scene.characters, [](const scene::Character& c) { return c.collide; });
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
-                                    [&](const scene::Obstacle& o) { return scene::moves(scene, o); });
+                                    [&](const scene::Obstacle& o) { return scene::has_prescribed_motion(scene, o); });
   const bool with_obstacles = collides_with_obstacles(scene);
   std::string bodies = fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s");
   if (characters > 0) bodies += fmt::format(", {} character{}", characters, characters == 1 ? "" : "s");

@@ -55,7 +55,7 @@ frame::SnapshotPtr SceneSimulation::snapshot() const {
 // The quantity that heat colours show, per cloth and particle; empty until all cloths are put on.
 std::vector<std::vector<float>> SceneSimulation::heat() const {
   std::vector<std::vector<float>> heat;
-  for (std::size_t c = 0; c < model().cloths.size() && heat_ != scene::HeatQuantity::none && all_dressed(); ++c) {
+  for (std::size_t c = 0; c < model().cloths.size() && heat_ != scene::HeatQuantity::none && all_put_on(); ++c) {
     simulation::ClothMotion motion = motion_of(c);
     if (heat_ == scene::HeatQuantity::strain) {
       heat.push_back(std::move(motion.strains));

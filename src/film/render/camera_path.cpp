@@ -63,7 +63,7 @@ bool CameraPath::is_computed(const frame::FrameSnapshot& snapshot, const std::st
   return named == nullptr || named->kind != Kind::placed;
 }
 
-void CameraPath::see(const frame::FrameSnapshot& snapshot) {
+void CameraPath::add_frame(const frame::FrameSnapshot& snapshot) {
   const frame::Camera* named = find_camera(snapshot, name_);
   Frame frame;
   frame.number = snapshot.frame;
@@ -101,7 +101,7 @@ void CameraPath::see(const frame::FrameSnapshot& snapshot) {
   frames_.push_back(std::move(frame));
 }
 
-void CameraPath::find() {
+void CameraPath::compute_cameras() {
   if (frames_.empty()) return;
   switch (frames_.front().camera.kind) {
     case Kind::placed:
@@ -126,8 +126,8 @@ frame::Camera CameraPath::at(const frame::FrameSnapshot& snapshot) const {
 frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect) {
   CameraPath path(camera, aspect);
   if (CameraPath::is_computed(snapshot, camera)) {
-    path.see(snapshot);
-    path.find();
+    path.add_frame(snapshot);
+    path.compute_cameras();
   }
   frame::Camera result = path.at(snapshot);
   result.kind = Kind::placed;

@@ -19,12 +19,13 @@ class CameraPath {
   /// Whether the camera needs all frames before the first can be drawn. Throws as find_camera() does.
   static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
 
-  /// Call see() with every frame of the run, in order; then find(), which computes the cameras.
-  void see(const frame::FrameSnapshot& snapshot);
-  void find();
+  /// Call add_frame() with every frame of the run, in order; then compute_cameras().
+  void add_frame(const frame::FrameSnapshot& snapshot);
+  void compute_cameras();
 
-  /// The camera of a frame. If the camera is computed, see() must have received at least one frame. The result is then
-  /// that of the last such frame whose number is at most that of `snapshot`, or of the first frame if all are later.
+  /// The camera of a frame. If the camera is computed, add_frame() must have received at least one frame. The result is
+  /// then that of the last such frame whose number is at most that of `snapshot`, or of the first frame if all are
+  /// later.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFilterReach = 2;      // points to either side
 constexpr float kNarrow = 1.5f;      // distance in space that halves a weight in smooth_where() [steps]
-constexpr float kAny = 1e9f;         // value of `wide` in likeness() if the distance in space does not matter
+constexpr float kAny = 1e9f;         // value of `wide` in neighbor_weights() if the distance in space does not matter
 constexpr float kNoise = 0.05f;      // difference of values that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
 
@@ -34,7 +34,7 @@ using Values = Eigen::Array<float, kCount, 1>;
 /// The weights that kCount points of row `there`, from k on, have in the means at kCount points of row `here`, from i
 /// on. `wide`: distance in space that halves a weight [points].
 template <int kCount>
-Values<kCount> likeness(const Rows& here, int i, const Rows& there, int k, float wide) {
+Values<kCount> neighbor_weights(const Rows& here, int i, const Rows& there, int k, float wide) {
   using Real = Values<kCount>;
   const auto own = [&](const float* row) { return Real(Eigen::Map<const Real>(row + i)); };
   const auto other = [&](const float* row) { return Real(Eigen::Map<const Real>(row + k)); };
@@ -68,7 +68,7 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
         for (int k = -kFilterReach; k <= kFilterReach; ++k) {
           const int dy = kAlongRows ? 0 : k * step, dx = kAlongRows ? k * step : 0;
           if (y + dy < 0 || y + dy >= height) continue;
-          Lanes weights = likeness<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
+          Lanes weights = neighbor_weights<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
           if (step > 1 && k != 0) {
             // The filter with step 1 has left little noise. A larger difference is a feature, and is kept.
             Lanes differences = Lanes::Zero();
@@ -109,7 +109,7 @@ void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane
           const Rows there(points, v);
           for (int dx = -reach; dx <= reach; dx += step) {
             const Lanes values = load(from.row(v) + x + dx);
-            Lanes weights = load(known.row(v) + x + dx) * likeness<kLanes>(here, x, there, x + dx, wide);
+            Lanes weights = load(known.row(v) + x + dx) * neighbor_weights<kLanes>(here, x, there, x + dx, wide);
             if (step > 1) weights /= 1 + ((values - own) / kNoise).square();
             sum += weights * values;
             total += weights;
@@ -155,9 +155,10 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
         const Eigen::Vector4f& value = lines[0][x];
         even[x] = lines[0][next] == value && lines[1][x] == value && lines[1][next] == value;
         if (even[x] != 0) continue;
-        const auto likeness_to = [&](const Rows& at, int k) { return likeness<1>(there[0], x, at, k, kAny).value(); };
-        alike[x] =
-            std::min({likeness_to(there[0], next), likeness_to(there[1], x), likeness_to(there[1], next)}) > kAlike;
+        const auto weight_of = [&](const Rows& at, int k) {
+          return neighbor_weights<1>(there[0], x, at, k, kAny).value();
+        };
+        alike[x] = std::min({weight_of(there[0], next), weight_of(there[1], x), weight_of(there[1], next)}) > kAlike;
       }
     }
     Eigen::Vector4f* result = results.data() + static_cast<std::size_t>(y) * many.width();
@@ -179,8 +180,9 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       float total = 0;
       for (int k = 0; k < 4; ++k) {
         constexpr float kLeast = 0.01f;  // a point that alone shows the surface counts even if `plain` is 0
-        const float weight = (plain[k] + kLeast) *
-                             likeness<1>(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny).value();
+        const float weight =
+            (plain[k] + kLeast) *
+            neighbor_weights<1>(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny).value();
         sum += weight * *corners[k], total += weight;
         any += 0.25f * *corners[k];
       }

@@ -38,7 +38,7 @@ float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) 
 
 /// Filter that Embree calls for hits on surfaces that do not stop all light. It rejects the hits of a random fraction
 /// of the rays, which then pass the surface.
-void let_pass(const RTCFilterFunctionNArguments* args) {
+void reject_random_hits(const RTCFilterFunctionNArguments* args) {
   const auto& mesh = *static_cast<const DrawnMesh*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
     if (args->valid[i] != -1) continue;
@@ -109,8 +109,8 @@ struct RayScene::Tree {
       for (const Index vertex : triangle) *corner++ = static_cast<unsigned>(vertex);
     if (mesh.opacity < 1 || mesh.holes != nullptr) {
       rtcSetGeometryUserData(geometry, &filtered.emplace_back(mesh));
-      rtcSetGeometryOccludedFilterFunction(geometry, let_pass);
-      rtcSetGeometryIntersectFilterFunction(geometry, let_pass);
+      rtcSetGeometryOccludedFilterFunction(geometry, reject_random_hits);
+      rtcSetGeometryIntersectFilterFunction(geometry, reject_random_hits);
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometryByID(scene, geometry, number);

@@ -185,8 +185,8 @@ frame::Camera Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot
     return *camera;
   if (!path) {
     path.emplace(settings.camera, settings.aspect());
-    path->see(snapshot);
-    path->find();
+    path->add_frame(snapshot);
+    path->compute_cameras();
   }
   return path->at(snapshot);
 }
@@ -485,7 +485,7 @@ image::Layers Renderer::layers() {
   return std::move(impl_->layers);
 }
 
-image::Image16 Renderer::deep() {
+image::Image16 Renderer::image16() {
   return to_image16(impl_->rgba, impl_->settings.width, impl_->settings.height);
 }
 

@@ -19,10 +19,10 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;   ///< name; empty: the scene's first camera; without any, one that shows the whole run
-  int threads = 0;      ///< number of threads of the software rasteriser; 0: its default
-  bool layers = false;  ///< whether layers() will be called; pictures are then sharp, without blur
-  bool deep = false;    ///< whether deep() will be called
+  std::string camera;          ///< name; empty: the scene's first camera; without any, one that shows the whole run
+  int threads = 0;             ///< number of threads of the software rasteriser; 0: its default
+  bool layers = false;         ///< whether layers() will be called; pictures are then sharp, without blur
+  bool needs_image16 = false;  ///< whether image16() will be called
   std::optional<frame::Stage::Look> look;  ///< overrides that of the scene
   std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides that of the scene
 
@@ -53,7 +53,7 @@ class Renderer {
   /// fraction of blocked light as alpha). All layers of DataPasses follow.
   image::Layers layers();
   /// The last picture with 16 bits per channel, not dithered.
-  image::Image16 deep();
+  image::Image16 image16();
   DrawTimes last_times() const;
 
   /// The loaded backend, and its vendor, renderer and version of OpenGL.

@@ -23,9 +23,9 @@ constexpr int kMirrorRays = 4;
 // Shadow rays are traced only if the cosine between normal and light is above this value (on the floor: above 0). It is
 // negative, because skin shows light slightly beyond the terminator (surface.frag). From cloth, rays are always traced,
 // because light passes through it.
-constexpr float kLeastCosine = -0.2f;
+constexpr float kMinShadowCosine = -0.2f;
 // Changes of the floor's light below this value are ignored: they are below half a level of 255.
-constexpr float kUnseen = 0.002f;
+constexpr float kMinFloorChange = 0.002f;
 
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
 
@@ -253,7 +253,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
           const Toward to = toward(lamp, points.positions(x, y));
           const Lanes3 normal = points.normals(x, y);
           const Lanes side = dot(normal, to.direction);
-          const Lanes least = (kinds == kFloorKind).select(Lanes::Zero(), Lanes::Constant(kLeastCosine));
+          const Lanes least = (kinds == kFloorKind).select(Lanes::Zero(), Lanes::Constant(kMinShadowCosine));
           Rays packet;
           packet.wanted = mask(kinds * asked > 0 && to.intensity > 0 && (kinds == kClothKind || side > least));
           if ((packet.wanted == 0).all()) continue;
@@ -401,7 +401,7 @@ void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& point
         for (std::size_t k = 0; k < 4; ++k) row[x][k] = planes[k].row(y)[x];
       for (int x = 0; x < width_; ++x) {
         if (pixels_.kind(x, y) != Kind::floor) continue;
-        const bool shaded = (row[x] - on_open_floor).cwiseAbs().maxCoeff() > kUnseen;
+        const bool shaded = (row[x] - on_open_floor).cwiseAbs().maxCoeff() > kMinFloorChange;
         if (shaded) shaded_[static_cast<std::size_t>(y / kFloorTile) * tiles + x / kFloorTile] = 1;
       }
     }

@@ -197,8 +197,8 @@ ErrorEstimate Companions::estimate() {
   if (options_.mesh) mesh = part(ErrorSource::mesh, [&] { return measure_mesh_error(); });
   const double left = std::hypot(at(steps.errors, Quantity::position), at(solver.errors, Quantity::position)),
                moved = at(start.errors, Quantity::position);
-  result_.start_matters = !start.missing.empty() || moved > std::clamp(kChaosRatio * left, 10 * kStartDisplacement,
-                                                                       kMaxAmplification * kStartDisplacement);
+  result_.is_chaotic = !start.missing.empty() || moved > std::clamp(kChaosRatio * left, 10 * kStartDisplacement,
+                                                                    kMaxAmplification * kStartDisplacement);
   result_.parts = {std::move(steps), std::move(solver), std::move(start)};
   if (options_.mesh) result_.parts.push_back(std::move(mesh));
   for (const ErrorPart& each : result_.parts)

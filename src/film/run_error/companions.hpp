@@ -26,7 +26,7 @@ struct ErrorPart {
 struct ErrorEstimate {
   /// The motion is chaotic. If particles start with random offsets of up to 1 µm, the companion fails, or its error of
   /// position exceeds a limit: 0.3 of the step and solver errors together, but at least 10 µm and at most 1 mm.
-  bool start_matters = false;
+  bool is_chaotic = false;
   /// The step error does not follow the order of the method. The companion with twice the step fails, or its difference
   /// to the run is too small compared with that of the companion with half the step.
   bool steps_irregular = false;
@@ -35,7 +35,7 @@ struct ErrorEstimate {
   double cpu_s = 0;  ///< CPU time of all companions
 
   /// Whether the estimate is only a lower bound of the error.
-  bool is_lower_bound() const { return start_matters || steps_irregular; }
+  bool is_lower_bound() const { return is_chaotic || steps_irregular; }
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
 };

@@ -56,8 +56,8 @@ Recorder::Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start,
       low_(report.potential_energy),
       high_(report.potential_energy) {}
 
-void Recorder::see(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
-                   std::span<const Vec3> velocities) {
+void Recorder::add_frame(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
+                         std::span<const Vec3> velocities) {
   kinetic_ = std::max(kinetic_, report.kinetic_energy);
   elastic_ = std::max(elastic_, report.elastic_energy);
   low_ = std::min(low_, report.potential_energy);
@@ -115,7 +115,7 @@ Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
                   "frame {}: stopped, as this setting takes more than {} steps, which are too short to compare; use a "
                   "larger time.tolerance or newton_tolerance",
                   k, limits.steps);
-    recorder.see(simulation.snapshot(), report, simulation.state().velocities);
+    recorder.add_frame(simulation.snapshot(), report, simulation.state().velocities);
   }
   Trajectory trajectory = recorder.finish(simulation.state().masses);
   trajectory.work.cpu_s = cpu_s;

@@ -72,8 +72,8 @@ class Recorder {
   /// `start`, `report`: those of frame 0.
   Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const simulation::FrameReport& report);
   /// Adds the next frame. `velocities`: of all particles [m/s]; empty if they are not known.
-  void see(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
-           std::span<const Vec3> velocities = {});
+  void add_frame(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
+                 std::span<const Vec3> velocities = {});
   /// Returns the trajectory. `masses`: of all particles [kg].
   Trajectory finish(std::span<const double> masses);
 

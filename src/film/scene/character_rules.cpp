@@ -64,34 +64,34 @@ Travel travel_from(const Value& value) {
   return {std::get<std::string>(value) == "none" ? Travel::Kind::none : Travel::Kind::file, 0};
 }
 
-/// Adds the keys of Acting.
+/// Adds the keys of SkeletonMotion.
 template <class Kind>
 void acting_rows(TableBuilder<Character>& rows) {
-  rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),
+  rows.plain(Type::file, "motion", of_source<Kind>(&SkeletonMotion::motion),
              "file with the motion of another skeleton, such as BVH, which is transferred to this body")
       .by_default("none")
-      .choice("motion_up", of_source<Kind>(&Acting::motion_up), {"as_file", "x", "y", "z"},
+      .choice("motion_up", of_source<Kind>(&SkeletonMotion::motion_up), {"as_file", "x", "y", "z"},
               "axis of the motion file that points up; as_file: as the file states it, for BVH the axis along which "
               "bodies stand")
-      .list(Type::list, "joint", of_source<Kind>(&Acting::joints), joint_rules())
-      .plain(Type::text, "clip", of_source<Kind>(&Acting::clip),
+      .list(Type::list, "joint", of_source<Kind>(&SkeletonMotion::joints), joint_rules())
+      .plain(Type::text, "clip", of_source<Kind>(&SkeletonMotion::clip),
              "name of the animation to play, from the motion file, else from the body's own file")
       .by_default("the first")
       .number_or(
           "travel", {"file", "none"}, above(0, 20), "m/s",
           "motion over the floor: as in the file, none (in place), or at this mean speed, for clips that walk on the "
           "spot",
-          [](Character& c) { return travel_value(of_source<Kind>(&Acting::travel)(c)); },
-          [](Character& c, const Value& value) { of_source<Kind> (&Acting::travel)(c) = travel_from(value); })
-      .choice("stance", of_source<Kind>(&Acting::stance), {"first", "rest"},
+          [](Character& c) { return travel_value(of_source<Kind>(&SkeletonMotion::travel)(c)); },
+          [](Character& c, const Value& value) { of_source<Kind> (&SkeletonMotion::travel)(c) = travel_from(value); })
+      .choice("stance", of_source<Kind>(&SkeletonMotion::stance), {"first", "rest"},
               "pose while it stands still: that of the clip at `start`, or the rest pose of the skeleton")
-      .number("stance_arms", of_source<Kind>(&Acting::stance_arms), within(0, 120), "degrees",
+      .number("stance_arms", of_source<Kind>(&SkeletonMotion::stance_arms), within(0, 120), "degrees",
               "angle of straight arms in that pose, from hanging down; should fit the sleeves: 45 for an A-pose, 90 "
               "for a T-pose")
       .by_default("as in the pose")
-      .plain(Type::boolean, "loop", of_source<Kind>(&Acting::loop),
+      .plain(Type::boolean, "loop", of_source<Kind>(&SkeletonMotion::loop),
              "whether the clip repeats; each round continues from where the last one ended")
-      .number("crossfade", of_source<Kind>(&Acting::crossfade), within(0, 60), "s",
+      .number("crossfade", of_source<Kind>(&SkeletonMotion::crossfade), within(0, 60), "s",
               "time at the end of each round that is blended into the next round; 0 for clips that end as they begin");
 }
 

@@ -335,7 +335,7 @@ void check_characters(const Scene& scene, Findings& findings) {
       findings.report(path + ".name",
                       fmt::format("expected a name used once, got {}, which a cloth, rope or obstacle has",
                                   in_quotes(character.name)));
-    if (const Acting* acting = acting_of(character);
+    if (const SkeletonMotion* acting = acting_of(character);
         acting != nullptr && (acting->stance == Stance::rest || acting->stance_arms) && character.blend <= 0)
       findings.report(path + ".blend", fmt::format("expected > 0 s to get from the {} to the clip, got {}",
                                                    acting->stance_arms ? "stance" : "rest pose", character.blend));

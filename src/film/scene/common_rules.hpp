@@ -9,9 +9,9 @@
 
 namespace weft::scene {
 
-inline const Range kPlace = within(-1e5, 1e5);   // coordinates [m]
-inline const Range kExtent = above(0, 1e4);      // sizes [m]
-inline const Range kMoment = within(-1e5, 1e5);  // times [s]
+inline const Range kPositionRange = within(-1e5, 1e5);  // coordinates [m]
+inline const Range kSizeRange = above(0, 1e4);          // sizes [m]
+inline const Range kTimeRange = within(-1e5, 1e5);      // times [s]
 inline const std::vector<std::string> kXyz = {"x", "y", "z"};
 inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
@@ -57,7 +57,8 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
 template <class S, class Member>
 void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
   rows.vector(
-          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
+          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPositionRange, "m",
+          position_of)
       .by_default(otherwise);
   rotation_rows(rows, pose, otherwise);
 }

@@ -137,7 +137,8 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
     if (attachment.mask) walk.visit_alone(*attachment.mask, FileUse::simulation);
   for (const Character& character : scene.characters) {
     if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
-    if (const Acting* acting = acting_of(character); acting != nullptr && acting->motion) walk.visit(*acting->motion);
+    if (const SkeletonMotion* acting = acting_of(character); acting != nullptr && acting->motion)
+      walk.visit(*acting->motion);
     if (const auto* sequence = std::get_if<MeshSequence>(&character.source))
       for (const fs::path& file : sequence_files(sequence->files)) walk.visit(file);
   }

@@ -160,7 +160,7 @@ void keep_file_names(Scene& scene) {
   for (Attachment& attachment : scene.attachments) keep_name_if_any(attachment.mask);
   for (Character& character : scene.characters) {
     if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_name(file->path);
-    if (Acting* acting = acting_of(character)) keep_name_if_any(acting->motion);
+    if (SkeletonMotion* acting = acting_of(character)) keep_name_if_any(acting->motion);
     if (auto* sequence = std::get_if<MeshSequence>(&character.source))
       sequence->files = std::filesystem::path(sequence->files).filename().string();
     keep_names_of_pictures(character.look);

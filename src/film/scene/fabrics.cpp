@@ -62,7 +62,7 @@ struct Row {
   const char* name;
   const char* what;
   const char* source;
-  Figure density;  // [g/m²]
+  MeasuredValue density;  // [g/m²]
   Fibre fibre = Fibre::cotton;
   Hand hand = Hand::usual;
   Weave weave = Weave::woven;
@@ -264,8 +264,8 @@ double two_digits(double value) {
 }
 
 template <class Value>
-constexpr Figure known_or(const std::optional<Value>& measured, double unit, double estimate) {
-  return measured ? Figure{*measured * unit, false} : Figure{estimate, true};
+constexpr MeasuredValue known_or(const std::optional<Value>& measured, double unit, double estimate) {
+  return measured ? MeasuredValue{*measured * unit, false} : MeasuredValue{estimate, true};
 }
 constexpr std::pair<Measured, Measured> both(const Pair& pair) {
   if (!pair) return {};

@@ -11,19 +11,19 @@
 namespace weft::scene {
 
 /// A value, and whether the rules of fabrics.cpp estimate it because no measurement is known.
-struct Figure {
+struct MeasuredValue {
   double value = 0;
   bool estimated = false;
 };
 
 /// Quantities that textile laboratories measure of a fabric.
 struct Measurements {
-  Figure density;                         ///< [kg/m²]
-  Figure thickness;                       ///< of the cloth itself [m]
-  Figure extension_weft, extension_warp;  ///< EMT: strain at kExtensionLoad [1]
-  Figure shear;                           ///< G: shear force per width / shear angle [N/m]
-  Figure bend_weft, bend_warp;            ///< B: bending stiffness per width [N·m]
-  Figure hysteresis;  ///< HB / B: residual curvature after unloading [1/m]; HB: moment per width [N]
+  MeasuredValue density;                         ///< [kg/m²]
+  MeasuredValue thickness;                       ///< of the cloth itself [m]
+  MeasuredValue extension_weft, extension_warp;  ///< EMT: strain at kExtensionLoad [1]
+  MeasuredValue shear;                           ///< G: shear force per width / shear angle [N/m]
+  MeasuredValue bend_weft, bend_warp;            ///< B: bending stiffness per width [N·m]
+  MeasuredValue hysteresis;  ///< HB / B: residual curvature after unloading [1/m]; HB: moment per width [N]
   std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient: smallest and largest published value [1]
 };
 

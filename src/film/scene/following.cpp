@@ -49,7 +49,7 @@ void check_followed(const Scene& scene, const std::string& follow, const std::st
 
 }  // namespace
 
-bool moves(const Scene& scene, const Obstacle& obstacle) {
+bool has_prescribed_motion(const Scene& scene, const Obstacle& obstacle) {
   const auto moves_itself = [](const Obstacle& each) {
     return each.motion.keys.size() > 1 || each.follow.find('.') != std::string::npos;
   };

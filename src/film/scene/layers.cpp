@@ -49,7 +49,7 @@ std::vector<Layer> list_layers(const Scene& scene) {
         -scene.preroll_frames() + dressing_frames(scene) * static_cast<int>(k) / static_cast<int>(layers.size());
     for (std::size_t c = 0; c < layer_of.size(); ++c) {
       if (layer_of[c] == k) layers[k].cloths.push_back(c);
-      if (layer_of[c] <= k) layers[k].dressed.push_back(c);
+      if (layer_of[c] <= k) layers[k].put_on.push_back(c);
     }
   }
   return layers;

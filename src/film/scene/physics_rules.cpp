@@ -26,7 +26,7 @@ const Table& gust_rules() {
 const Table& physics_key_rules() {
   static const Table kTable =
       TableBuilder<PhysicsKey>("Gravity and wind at one time.")
-          .number("time", &PhysicsKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+          .number("time", &PhysicsKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
           .vector("gravity", &PhysicsKey::gravity, kXyz, kGravity, "m/s²", "gravity at this time")
           .by_default(kDefaultOfKey)
@@ -48,11 +48,12 @@ bool fan_stands_still(Fan& fan) {
 const Table& fan_key_rules() {
   static const Table kTable =
       TableBuilder<FanKey>("The fan at one time.")
-          .number("time", &FanKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+          .number("time", &FanKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
-          .vector("position", &FanKey::position, kXyz, kPlace, "m", "centre of the fan's disc")
+          .vector("position", &FanKey::position, kXyz, kPositionRange, "m", "centre of the fan's disc")
           .by_default(kDefaultOfKey)
-          .vector("direction", &FanKey::direction, kXyz, kPlace, "", "direction in which it blows, of any length but 0")
+          .vector("direction", &FanKey::direction, kXyz, kPositionRange, "",
+                  "direction in which it blows, of any length but 0")
           .nonzero()
           .by_default(kDefaultOfKey)
           .number("speed", &FanKey::speed, within(0, 1000), "m/s", "speed of the air at the centre of the disc; 0: off")
@@ -90,10 +91,10 @@ const Table& fan_rules() {
       TableBuilder<Fan>("A fan that blows air in a cone, in addition to the wind of [physics].")
           .plain(Type::name, "name", &Fan::name, "unique name of the fan")
           .need(Need::required)
-          .vector("position", own_of_fan(&FanKey::position), kXyz, kPlace, "m", "centre of the fan's disc")
+          .vector("position", own_of_fan(&FanKey::position), kXyz, kPositionRange, "m", "centre of the fan's disc")
           .need(Need::here_or_in_first_key)
           .written_if(fan_stands_still)
-          .vector("direction", own_of_fan(&FanKey::direction), kXyz, kPlace, "",
+          .vector("direction", own_of_fan(&FanKey::direction), kXyz, kPositionRange, "",
                   "direction in which it blows, of any length but 0")
           .nonzero()
           .need(Need::here_or_in_first_key)
@@ -101,7 +102,7 @@ const Table& fan_rules() {
           .number("speed", own_of_fan(&FanKey::speed), within(0, 1000), "m/s",
                   "speed of the air at the centre of the disc; 0: off")
           .written_if(fan_stands_still)
-          .number("radius", &Fan::radius, kExtent, "m", "radius of the disc, where the cone begins")
+          .number("radius", &Fan::radius, kSizeRange, "m", "radius of the disc, where the cone begins")
           .number("angle", &Fan::angle, within(1, 170), "degrees",
                   "full opening angle of the cone; a round jet in free air has 24")
           .number("falloff", &Fan::falloff, within(0, 4), "",

@@ -36,14 +36,14 @@ const Table& pin_key_rules() {
   static const auto kPlaceOf = [](PinKey& key) -> Vec3& { return key.pose.position; };
   static const Table kTable =
       TableBuilder<PinKey>("Where a pin holds its particles at one time.")
-          .number("time", &PinKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+          .number("time", &PinKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
-          .vector("offset", kPlaceOf, kXyz, kPlace, "m", "displacement of the particles from where they start")
+          .vector("offset", kPlaceOf, kXyz, kPositionRange, "m", "displacement of the particles from where they start")
           .by_default("as in the key before; in the first key, none")
           .excludes("position")
           .written_if([](PinKey& key) { return !key.in_world; })
           .when_given([](PinKey& key) { key.in_world = false; })
-          .vector("position", kPlaceOf, kXyz, kPlace, "m",
+          .vector("position", kPlaceOf, kXyz, kPositionRange, "m",
                   "in place of offset: position of the particles' centre in the world")
           .by_default("as in the key before")
           .excludes("offset")
@@ -151,9 +151,9 @@ const Table& attachment_rules() {
           .number("length", &Attachment::length, within(0, 1e4), "m",
                   "length up to which a spring is slack; beyond it, the spring pulls")
           .by_default("the distance of its ends at `begin`")
-          .number("begin", &Attachment::begin, kMoment, "s", "time at which it is tied")
+          .number("begin", &Attachment::begin, kTimeRange, "s", "time at which it is tied")
           .by_default("the start of the simulation")
-          .written_if([](Attachment& attachment) { return attachment.begin > kMoment.low; })
+          .written_if([](Attachment& attachment) { return attachment.begin > kTimeRange.low; })
           .number("release", &Attachment::release, within(-1, 1e5), "s",
                   "time at which it is released; negative: never")
           .number("breaking_load", &Attachment::breaking_load, above(0, 1e9), "N",

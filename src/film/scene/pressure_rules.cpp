@@ -17,7 +17,7 @@ struct Quantity {
 
 Table key_table(const Quantity& quantity) {
   return TableBuilder<PressureKey>("The air inside at one time.")
-      .number("time", &PressureKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+      .number("time", &PressureKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
       .need(Need::required)
       .number(quantity.key, &PressureKey::value, quantity.range, quantity.unit, quantity.documentation)
       .by_default("as in the key before; in the first key, the value given beside `keys`")

@@ -17,9 +17,9 @@ std::vector<std::string> rope_material_names() {
 const Table& rope_key_rules() {
   static const Table kTable =
       TableBuilder<RopeKey>("Length of the rope at one time.")
-          .number("time", &RopeKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+          .number("time", &RopeKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
-          .number("length", &RopeKey::length, kExtent, "m",
+          .number("length", &RopeKey::length, kSizeRange, "m",
                   "length at rest; a change is distributed evenly over the rope, as if a winch pulled it in")
           .need(Need::required)
           .build();
@@ -49,19 +49,19 @@ const Table& rope_rules() {
           "other ropes, cloth and bodies.")
           .plain(Type::name, "name", &Rope::name, "unique name among cloths, ropes, obstacles and characters")
           .need(Need::required)
-          .points("points", &Rope::points, kXyz, kPlace, "m",
+          .points("points", &Rope::points, kXyz, kPositionRange, "m",
                   "points that it runs through at the start; at least two, three if it is closed")
           .by_default("a line from `from` to `to`")
-          .vector("from", &Rope::from, kXyz, kPlace, "m", "start point, in place of points")
+          .vector("from", &Rope::from, kXyz, kPositionRange, "m", "start point, in place of points")
           .by_default("none")
           .excludes("points")
-          .vector("to", &Rope::to, kXyz, kPlace, "m", "end point, in place of points")
+          .vector("to", &Rope::to, kXyz, kPositionRange, "m", "end point, in place of points")
           .by_default("none")
           .excludes("points")
           .plain(Type::boolean, "smooth", &Rope::smooth,
                  "true: a smooth curve through its points; false: straight between them")
           .plain(Type::boolean, "closed", &Rope::closed, "true: a loop, whose end joins its beginning; needs points")
-          .number("length", &Rope::length, kExtent, "m",
+          .number("length", &Rope::length, kSizeRange, "m",
                   "length at rest; if it exceeds the distance between `from` and `to`, the rope hangs between them; "
                   "otherwise it starts stretched or compressed")
           .by_default("that of its first key, else its length at the start")

@@ -128,7 +128,7 @@ const Table& cloth_look_rules() {
 const Table& pose_key_rules() {
   static const Table kTable =
       TableBuilder<PoseKey>("The pose at one time.")
-          .number("time", &PoseKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+          .number("time", &PoseKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
           .with([](auto& rows) { pose_rows(rows, &PoseKey::pose, "position at this time", kDefaultOfKey); })
           .build();
@@ -151,16 +151,17 @@ void track_rows(TableBuilder<S>& rows, Member track, Start start) {
 void cloth_shape_rows(TableBuilder<Cloth>& rows) {
   using Rows = TableBuilder<Cloth>;
   for (const char* name : {"quads", "aligned_triangles", "crossed_triangles"})
-    rows.variant(name, Rows()
-                           .vector("size", &Cloth::size, kWeftWarp, kExtent, "m", "size along weft and warp, at rest")
-                           .single_fills_all()
-                           .pair("particles", &Cloth::particles_weft, &Cloth::particles_warp, within(2, 2000), "",
-                                 "number of particles along weft and warp")
-                           .whole()
-                           .vector("grading", &Cloth::grading, kWeftWarp, within(1e-4, 1e4), "",
-                                   "ratio of the last to the first spacing of particles, along weft and warp; "
-                                   "successive spacings have a constant ratio")
-                           .single_fills_all());
+    rows.variant(name,
+                 Rows()
+                     .vector("size", &Cloth::size, kWeftWarp, kSizeRange, "m", "size along weft and warp, at rest")
+                     .single_fills_all()
+                     .pair("particles", &Cloth::particles_weft, &Cloth::particles_warp, within(2, 2000), "",
+                           "number of particles along weft and warp")
+                     .whole()
+                     .vector("grading", &Cloth::grading, kWeftWarp, within(1e-4, 1e4), "",
+                             "ratio of the last to the first spacing of particles, along weft and warp; "
+                             "successive spacings have a constant ratio")
+                     .single_fills_all());
   rows.variant(
       "mesh",
       Rows()
@@ -266,35 +267,37 @@ void shape_rows(TableBuilder<Obstacle>& rows) {
   const auto segments = [](Rows& r) {
     r.whole_number("segments", &Obstacle::segments, within(3, 512), "number of faces around it; more make it rounder");
   };
-  rows.variant("sphere",
-               Rows().number("radius", of_shape(&Sphere::radius), kExtent, "m", "radius of the sphere").with(segments));
+  rows.variant(
+      "sphere",
+      Rows().number("radius", of_shape(&Sphere::radius), kSizeRange, "m", "radius of the sphere").with(segments));
   rows.variant("box", Rows()
-                          .vector("size", of_shape(&BoxShape::size), kXyz, kExtent, "m", "edge lengths")
+                          .vector("size", of_shape(&BoxShape::size), kXyz, kSizeRange, "m", "edge lengths")
                           .number("bevel", of_shape(&BoxShape::bevel), within(0, 1e4), "m",
                                   "radius of the rounded edges; less than half the shortest edge"));
   rows.variant("cone", Rows()
-                           .number("radius", of_shape(&Cone::radius), kExtent, "m", "radius of the base")
-                           .number("height", of_shape(&Cone::height), kExtent, "m",
+                           .number("radius", of_shape(&Cone::radius), kSizeRange, "m", "radius of the base")
+                           .number("height", of_shape(&Cone::height), kSizeRange, "m",
                                    "height along the up axis; the position is at half the height")
                            .with(segments));
   rows.variant("torus", Rows()
-                            .number("radius", of_shape(&Torus::radius), kExtent, "m",
+                            .number("radius", of_shape(&Torus::radius), kSizeRange, "m",
                                     "distance from the centre of the ring to the middle of the tube")
-                            .number("tube_radius", of_shape(&Torus::tube_radius), kExtent, "m",
+                            .number("tube_radius", of_shape(&Torus::tube_radius), kSizeRange, "m",
                                     "radius of the tube; less than `radius`")
                             .with(segments));
-  rows.variant("cylinder", Rows()
-                               .number("radius", of_shape(&Cylinder::radius), kExtent, "m", "radius of the cylinder")
-                               .number("height", of_shape(&Cylinder::height), kExtent, "m", "height along the up axis")
-                               .with(segments));
+  rows.variant("cylinder",
+               Rows()
+                   .number("radius", of_shape(&Cylinder::radius), kSizeRange, "m", "radius of the cylinder")
+                   .number("height", of_shape(&Cylinder::height), kSizeRange, "m", "height along the up axis")
+                   .with(segments));
   rows.variant("half_pipe", Rows()
-                                .number("radius", of_shape(&HalfPipe::radius), kExtent, "m", "inner radius")
-                                .number("length", of_shape(&HalfPipe::length), kExtent, "m", "length along x")
-                                .number("thickness", of_shape(&HalfPipe::thickness), kExtent, "m",
+                                .number("radius", of_shape(&HalfPipe::radius), kSizeRange, "m", "inner radius")
+                                .number("length", of_shape(&HalfPipe::length), kSizeRange, "m", "length along x")
+                                .number("thickness", of_shape(&HalfPipe::thickness), kSizeRange, "m",
                                         "thickness of the wall, outside of `radius`")
                                 .with(segments));
   rows.variant("plane", Rows()
-                            .vector("size", of_shape(&Plane::size), {"x", "y"}, kExtent, "m", "edge lengths")
+                            .vector("size", of_shape(&Plane::size), {"x", "y"}, kSizeRange, "m", "edge lengths")
                             .single_fills_all()
                             .plain(Type::boolean, "infinite", of_shape(&Plane::infinite),
                                    "whether it is drawn up to the horizon; it collides only within `size`. Of several "

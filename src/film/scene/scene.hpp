@@ -291,7 +291,7 @@ struct Travel {
 };
 
 /// The motion of a body with a skeleton.
-struct Acting {
+struct SkeletonMotion {
   std::optional<std::string> clip;  ///< name of the clip in `motion`, else in the file of the body; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file with the motion of another skeleton; absolute path
   FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
@@ -304,14 +304,14 @@ struct Acting {
 };
 
 /// A character from a file, with skeleton and animations.
-struct CharacterFile : Acting {
+struct CharacterFile : SkeletonMotion {
   std::filesystem::path path;        ///< absolute
   std::vector<std::string> meshes;   ///< meshes to use, by the names of meshes or of their nodes; empty: all
   std::vector<std::string> without;  ///< meshes to leave out, named likewise
 };
 
 /// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
-struct Mannequin : Acting {
+struct Mannequin : SkeletonMotion {
   double height = 1.75;       ///< [m]
   double girth = 1;           ///< factor on widths and depths of the slender default
   double masculinity = 0;     ///< 0: shape of a woman, 1: of a man
@@ -362,13 +362,13 @@ struct Character {
   int line = 0, column = 0;  ///< place in the scene file, for error messages
 };
 
-/// The Acting of a character with a skeleton; nullptr for mesh sequences.
-inline const Acting* acting_of(const Character& character) {
+/// The SkeletonMotion of a character with a skeleton; nullptr for mesh sequences.
+inline const SkeletonMotion* acting_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
 }
-inline Acting* acting_of(Character& character) {
-  return const_cast<Acting*>(acting_of(std::as_const(character)));
+inline SkeletonMotion* acting_of(Character& character) {
+  return const_cast<SkeletonMotion*>(acting_of(std::as_const(character)));
 }
 
 struct LightKey {

@@ -59,11 +59,11 @@ bool has_field_of_view(Camera& camera) {
 const Table& camera_key_rules() {
   static const Table kTable =
       TableBuilder<CameraKey>("The view at one time.")
-          .number("time", &CameraKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+          .number("time", &CameraKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
           .need(Need::required)
-          .vector("position", &CameraKey::position, kXyz, kPlace, "m", "position of the camera")
+          .vector("position", &CameraKey::position, kXyz, kPositionRange, "m", "position of the camera")
           .by_default(kDefaultOfKey)
-          .vector("target", &CameraKey::target, kXyz, kPlace, "m",
+          .vector("target", &CameraKey::target, kXyz, kPositionRange, "m",
                   "point at which the camera looks, the middle of the picture")
           .by_default(kDefaultOfKey)
           .number("field_of_view", &CameraKey::field_of_view, kFieldOfView, "degrees", "vertical field of view")
@@ -78,10 +78,10 @@ const Table& camera_key_rules() {
 
 /// Adds the keys of a placed camera, still or with key frames.
 void placed_camera_rows(TableBuilder<Camera>& rows) {
-  rows.vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "position of the camera")
+  rows.vector("position", own(&CameraKey::position), kXyz, kPositionRange, "m", "position of the camera")
       .need(Need::here_or_in_first_key)
       .written_if(stands_still<Camera>)
-      .vector("target", own(&CameraKey::target), kXyz, kPlace, "m",
+      .vector("target", own(&CameraKey::target), kXyz, kPositionRange, "m",
               "point at which the camera looks, the middle of the picture")
       .need(Need::here_or_in_first_key)
       .written_if(stands_still<Camera>)
@@ -146,7 +146,7 @@ void file_rows(TableBuilder<Camera>& rows) {
       .need(Need::required)
       .plain(Type::text, "object", &Camera::object, "name of the node with the camera")
       .by_default("the only one")
-      .number("start", &Camera::start, kMoment, "s", "time of the scene at which the file's time 0 is")
+      .number("start", &Camera::start, kTimeRange, "s", "time of the scene at which the file's time 0 is")
       .number("scale", &Camera::scale, above(0, 1e6), "",
               "factor on the lengths of the file, which glTF gives in metres");
 }
@@ -154,7 +154,7 @@ void file_rows(TableBuilder<Camera>& rows) {
 /// Rules of a key frame of a light. `rows` adds the keys that only suns or only spots have.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
-      .number("time", &LightKey::time, kMoment, "s", "time of the scene; later than that of the key before")
+      .number("time", &LightKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
       .need(Need::required)
       .with(rows)
       .number("intensity", &LightKey::intensity, kIntensity, "",
@@ -165,7 +165,7 @@ Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) 
 
 const Table& sun_key_rules() {
   static const Table kTable = light_key_table([](auto& rows) {
-    rows.vector("direction", &LightKey::direction, kXyz, kPlace, "",
+    rows.vector("direction", &LightKey::direction, kXyz, kPositionRange, "",
                 "direction in which the light travels, of any length but 0")
         .nonzero()
         .by_default(kDefaultOfKey);
@@ -175,8 +175,10 @@ const Table& sun_key_rules() {
 
 const Table& spot_key_rules() {
   static const Table kTable = light_key_table([](auto& rows) {
-    rows.vector("position", &LightKey::position, kXyz, kPlace, "m", "position of the lamp").by_default(kDefaultOfKey);
-    rows.vector("target", &LightKey::target, kXyz, kPlace, "m", "point at which it shines").by_default(kDefaultOfKey);
+    rows.vector("position", &LightKey::position, kXyz, kPositionRange, "m", "position of the lamp")
+        .by_default(kDefaultOfKey);
+    rows.vector("target", &LightKey::target, kXyz, kPositionRange, "m", "point at which it shines")
+        .by_default(kDefaultOfKey);
   });
   return kTable;
 }
@@ -207,17 +209,17 @@ const Table& camera_rules() {
           .variant("whole", Rows().with(direction_rows))
           .variant("follow", Rows().with(direction_rows).with(smoothing_row))
           .variant("close", Rows().with(direction_rows).with(smoothing_row))
-          .variant("track",
-                   Rows()
-                       .vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "position of the camera")
-                       .need(Need::required)
-                       .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees",
-                               "vertical field of view")
-                       .by_default("as wide as the subject needs in all frames")
-                       .written_if(has_field_of_view)
-                       .with([](auto& rows) { focal_rows(rows, stands_still<Camera>); })
-                       .with(subject_rows)
-                       .with(smoothing_row))
+          .variant("track", Rows()
+                                .vector("position", own(&CameraKey::position), kXyz, kPositionRange, "m",
+                                        "position of the camera")
+                                .need(Need::required)
+                                .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees",
+                                        "vertical field of view")
+                                .by_default("as wide as the subject needs in all frames")
+                                .written_if(has_field_of_view)
+                                .with([](auto& rows) { focal_rows(rows, stands_still<Camera>); })
+                                .with(subject_rows)
+                                .with(smoothing_row))
           .variant("file", Rows().with(file_rows))
           .build();
   return kTable;
@@ -246,21 +248,22 @@ const Table& light_rules() {
           .choice("interpolation", &Light::interpolation, kInterpolations,
                   "interpolation between the entries of `keys`; cubic is smooth")
           .variant("sun", Rows()
-                              .vector("direction", own(&LightKey::direction), kXyz, kPlace, "",
+                              .vector("direction", own(&LightKey::direction), kXyz, kPositionRange, "",
                                       "direction in which the light travels, of any length but 0")
                               .nonzero()
                               .by_default("[-0.4, -0.5, -1] where z is up, turned with the up axis")
                               .written_if(stands_still<Light>)
                               .with(keys_row(sun_key_rules())))
-          .variant("spot", Rows()
-                               .vector("position", own(&LightKey::position), kXyz, kPlace, "m", "position of the lamp")
-                               .by_default("5 m up the up axis")
-                               .written_if(stands_still<Light>)
-                               .vector("target", own(&LightKey::target), kXyz, kPlace, "m", "point at which it shines")
-                               .written_if(stands_still<Light>)
-                               .number("cone_angle", &Light::cone_angle, within(1, 170), "degrees",
-                                       "full opening angle of the cone of light")
-                               .with(keys_row(spot_key_rules())))
+          .variant("spot",
+                   Rows()
+                       .vector("position", own(&LightKey::position), kXyz, kPositionRange, "m", "position of the lamp")
+                       .by_default("5 m up the up axis")
+                       .written_if(stands_still<Light>)
+                       .vector("target", own(&LightKey::target), kXyz, kPositionRange, "m", "point at which it shines")
+                       .written_if(stands_still<Light>)
+                       .number("cone_angle", &Light::cone_angle, within(1, 170), "degrees",
+                               "full opening angle of the cone of light")
+                       .with(keys_row(spot_key_rules())))
           .build();
   return kTable;
 }

@@ -282,16 +282,16 @@ void Campaign::measure_references() {
   if (!reference_ && !second_sample)
     throw Error(ExitCode::simulation_failed, "the reference run failed: {}", first.failure);
   const Quantity decides = deciding_quantity(result_);
-  if (!reference_ || (second_sample && at(second.doubt(), decides) < at(first.doubt(), decides))) {
+  if (!reference_ || (second_sample && at(second.uncertainty(), decides) < at(first.uncertainty(), decides))) {
     std::swap(first, second);
     std::swap(reference_, second_sample);
   }
-  result_.uncertainty = first.doubt();
+  result_.uncertainty = first.uncertainty();
   if (second_sample) {
-    result_.apart = difference(*reference_, *second_sample);
-    const Errors explained = second.doubt();
+    result_.difference = difference(*reference_, *second_sample);
+    const Errors explained = second.uncertainty();
     for (std::size_t q = 0; q < kQuantities; ++q)
-      result_.uncertainty[q] = std::max(result_.uncertainty[q], result_.apart[q] - explained[q]);
+      result_.uncertainty[q] = std::max(result_.uncertainty[q], result_.difference[q] - explained[q]);
   }
   result_.largest_energy = first.energies_in_play;
   result_.reference = std::move(first);
@@ -300,7 +300,7 @@ void Campaign::measure_references() {
 
 bool Campaign::decides(const Run& run, const Run& tighter) const {
   const Quantity q = deciding_quantity(result_);
-  return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.doubt(tighter, q));
+  return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.uncertainty_of(tighter, q));
 }
 
 // With this fixed step, lowers newton_tolerance from the scene's value until Run::step_decides. Returns the run with
@@ -325,7 +325,7 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   }
   const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
   for (std::size_t k = 0; k < runs.size(); ++k)
-    if (samples[k]) runs[k].left = at(difference(*samples[k], **tightest), q);
+    if (samples[k]) runs[k].solver_error = at(difference(*samples[k], **tightest), q);
   const auto decided = std::ranges::find_if(runs, &Run::step_decides);
   SamplePtr exact = decided == runs.end() ? nullptr : samples[static_cast<std::size_t>(decided - runs.begin())];
   result_.runs.insert(result_.runs.end(), std::make_move_iterator(runs.begin()), std::make_move_iterator(runs.end()));
@@ -344,10 +344,10 @@ void Campaign::measure_steps(Integrator integrator) {
   }
   if (!before || step_last > finest_) return;
   CrossCheck check{.integrator = integrator, .step = step_last};
-  check.apart = difference(*last, *reference_);
+  check.difference = difference(*last, *reference_);
   const Errors change = difference(*before, *last);
   const double ratio = error_ratio(integrator, step_before / step_last);
-  for (std::size_t q = 0; q < kQuantities; ++q) check.doubt[q] = change[q] / (ratio - 1) + last->spread[q];
+  for (std::size_t q = 0; q < kQuantities; ++q) check.uncertainty[q] = change[q] / (ratio - 1) + last->spread[q];
   result_.cross_checks.push_back(check);
 }
 

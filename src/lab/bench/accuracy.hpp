@@ -46,8 +46,8 @@ struct Run {
   Errors errors{};           ///< difference to the reference; for Axis::mesh, to the finer mesh
   Errors spread{};           ///< largest difference of a start to the median (without contact: to the first start)
   /// Only for Axis::grid, in deciding_quantity(); otherwise NaN. `change`: difference to the run with a tenth of this
-  /// newton_tolerance. `left`: difference to the run with the same step and the smallest newton_tolerance.
-  double change = std::numeric_limits<double>::quiet_NaN(), left = change;
+  /// newton_tolerance. `solver_error`: difference to the run with the same step and the smallest newton_tolerance.
+  double change = std::numeric_limits<double>::quiet_NaN(), solver_error = change;
   /// Only for Axis::grid: whether the step, not the solver, determines the error. True if `change` is at most a tenth
   /// of the error of the run with a tenth of this newton_tolerance, or at most the uncertainty of that error.
   bool step_decides = false;
@@ -80,18 +80,18 @@ struct Candidate {
   double energies_in_play = 0;
 
   /// Uncertainty of this run: root of the sum of squares of `step`, `solver` and `spread`.
-  Errors doubt() const;
+  Errors uncertainty() const;
 };
 
 /// Check of the reference by the run of an integrator with the shortest measured step. Made only if Run::step_decides
 /// is true in that run and in a run with a longer step.
 struct CrossCheck {
   scene::Integrator integrator = scene::Integrator::implicit_euler;
-  double step = 0;  ///< [s]
-  Errors apart{};   ///< difference to the reference
+  double step = 0;      ///< [s]
+  Errors difference{};  ///< difference to the reference
   /// Uncertainty of this run: its difference to the next longer step with Run::step_decides, extrapolated with half of
   /// the order (with contact, with an order of 0.5), plus Run::spread.
-  Errors doubt{};
+  Errors uncertainty{};
 };
 
 struct Accuracy {
@@ -102,18 +102,20 @@ struct Accuracy {
   double duration = 0;          ///< [s]
   double largest_energy = 0;    ///< Functionals::energies_in_play of the reference [J]
   Candidate reference, second;  ///< `reference` is the one with the smaller uncertainty; `second` checks it
-  Errors apart{};               ///< difference between `reference` and `second`; 0 if `second` failed
-  Errors uncertainty{};         ///< doubt() of `reference`; more if `second` or a cross check differs by more
+  Errors difference{};          ///< difference between `reference` and `second`; 0 if `second` failed
+  Errors uncertainty{};  ///< Candidate::uncertainty() of `reference`; more if `second` or a cross check differs by more
   std::vector<CrossCheck> cross_checks;
   Setting of_scene;       ///< settings of the scene, with the step shortened so that it divides a frame evenly
   std::vector<Run> runs;  ///< all runs of a series (one axis and integrator) follow each other, from coarse to fine
 
   /// Uncertainty of the error of `run`.
-  double doubt(const Run& run, Quantity quantity) const {
+  double uncertainty_of(const Run& run, Quantity quantity) const {
     return (run.axis == Axis::mesh ? 0 : at(uncertainty, quantity)) + at(run.spread, quantity);
   }
   /// Whether the error of `run` is larger than three times its uncertainty.
-  bool resolved(const Run& run, Quantity quantity) const { return error_of(run, quantity) > 3 * doubt(run, quantity); }
+  bool resolved(const Run& run, Quantity quantity) const {
+    return error_of(run, quantity) > 3 * uncertainty_of(run, quantity);
+  }
   /// The runs of one series; for Axis::grid, those of all steps.
   std::vector<const Run*> series(Axis axis, scene::Integrator integrator) const;
   /// The run with the scene's own settings; nullptr if there is none.
@@ -133,7 +135,7 @@ extern const char* const kSwingingSheet;
 /// Called after each run. `done`: estimated fraction of the work that is complete.
 using EachRun = std::function<void(const Run& run, double done)>;
 
-/// Raises `uncertainty` to at least `apart` − `doubt` of each cross check.
+/// Raises `uncertainty` to at least `difference` − `uncertainty` of each cross check.
 void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks);
 
 /// Runs the scene some hundred times. Computes two independent references: with midpoint and BDF2; with contact, with

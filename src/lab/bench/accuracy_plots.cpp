@@ -49,7 +49,7 @@ std::string error_label(Quantity quantity) {
   return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "ratio" : unit);
 }
 
-// Adds curves of Run::left over newton_tolerance, for the longest step, the scene's step and the shortest step.
+// Adds curves of Run::solver_error over newton_tolerance, for the longest step, the scene's step and the shortest step.
 void add_tolerances(Panel& panel, const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   if (runs.empty()) return;
@@ -65,7 +65,7 @@ void add_tolerances(Panel& panel, const Accuracy& accuracy, Integrator integrato
                 {}};
     for (const Run* run : runs)
       if (!run->failed() && run->setting.step == step)
-        curve.points.emplace_back(run->setting.newton_tolerance, run->left);
+        curve.points.emplace_back(run->setting.newton_tolerance, run->solver_error);
     panel.curves.push_back(std::move(curve));
   }
 }

@@ -107,10 +107,10 @@ std::string cross_checks_text(const Accuracy& accuracy) {
   const Quantity q = deciding_quantity(accuracy);
   Table table{{"finest run", label(q) + " from the reference", "its own uncertainty", "excess"}};
   for (const CrossCheck& check : accuracy.cross_checks) {
-    const double apart = at(check.apart, q), doubt = at(check.doubt, q);
+    const double difference = at(check.difference, q), uncertainty = at(check.uncertainty, q);
     table.push_back({fmt::format("{}, {:.4g} ms", name_of(check.integrator), 1e3 * check.step),
-                     fmt::format("{:.1e}", apart), fmt::format("{:.1e}", doubt),
-                     apart > doubt ? fmt::format("{:.1e}", apart - doubt) : "0"});
+                     fmt::format("{:.1e}", difference), fmt::format("{:.1e}", uncertainty),
+                     difference > uncertainty ? fmt::format("{:.1e}", difference - uncertainty) : "0"});
   }
   return "\n" + markdown(table);
 }
@@ -118,14 +118,14 @@ std::string cross_checks_text(const Accuracy& accuracy) {
 std::string reference_text(const Accuracy& accuracy) {
   const Candidate &first = accuracy.reference, &second = accuracy.second;
   const bool checked = second.failure.empty();
-  const Errors of_second = second.doubt();
+  const Errors of_second = second.uncertainty();
   Table table{{"quantity", "its step", "newton_tolerance × 10", "starts", "uncertainty of the second", "difference",
                "uncertainty", "errors marked ~ below"}};
   for (Quantity q : quantities_of(accuracy)) {
     std::vector<std::string> row{label(q)};
     for (const Errors* errors : {&first.step, &first.solver, &first.spread})
       row.push_back(fmt::format("{:.1e}", at(*errors, q)));
-    for (const Errors* errors : {&of_second, &accuracy.apart})
+    for (const Errors* errors : {&of_second, &accuracy.difference})
       row.push_back(checked ? fmt::format("{:.1e}", at(*errors, q)) : "not known");
     row.push_back(fmt::format("{:.1e}", at(accuracy.uncertainty, q)));
     row.push_back(fmt::format("{:.1e}", 3 * at(accuracy.uncertainty, q)));
@@ -232,11 +232,11 @@ Table accuracy_table(const Accuracy& accuracy) {
                                  fmt::format("{:.3g}", expected_order(run)),
                                  run.step_decides ? "yes" : "no",
                                  number(run.change),
-                                 number(run.left),
+                                 number(run.solver_error),
                                  starts_text(run)};
     for (std::size_t q = 0; q < kQuantities; ++q) {
       row.push_back(run.failed() ? "" : number(run.errors[q]));
-      row.push_back(run.failed() ? "" : number(accuracy.doubt(run, static_cast<Quantity>(q))));
+      row.push_back(run.failed() ? "" : number(accuracy.uncertainty_of(run, static_cast<Quantity>(q))));
     }
     row.push_back(run.failure);
     table.push_back(std::move(row));

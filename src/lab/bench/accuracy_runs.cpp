@@ -8,10 +8,10 @@ namespace weft::bench {
 
 using scene::Integrator;
 
-Errors Candidate::doubt() const {
-  Errors doubt{};
-  for (std::size_t q = 0; q < kQuantities; ++q) doubt[q] = std::hypot(step[q], solver[q], spread[q]);
-  return doubt;
+Errors Candidate::uncertainty() const {
+  Errors result{};
+  for (std::size_t q = 0; q < kQuantities; ++q) result[q] = std::hypot(step[q], solver[q], spread[q]);
+  return result;
 }
 
 double control_of(const Run& run) {
@@ -81,7 +81,7 @@ const Run* Accuracy::scene_setting_run() const {
 void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks) {
   for (const CrossCheck& check : cross_checks)
     for (std::size_t q = 0; q < kQuantities; ++q)
-      uncertainty[q] = std::max(uncertainty[q], check.apart[q] - check.doubt[q]);
+      uncertainty[q] = std::max(uncertainty[q], check.difference[q] - check.uncertainty[q]);
 }
 
 }  // namespace weft::bench

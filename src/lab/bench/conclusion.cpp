@@ -41,7 +41,7 @@ bool is_finer(const Run& a, const Run& b) {
 
 // Upper bound of the error: error plus uncertainty.
 double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
-  return error_of(run, quantity) + accuracy.doubt(run, quantity);
+  return error_of(run, quantity) + accuracy.uncertainty_of(run, quantity);
 }
 
 // Whether the run and all finer runs (see is_finer()) certainly reach the target.
@@ -170,7 +170,7 @@ std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
     if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
         run.setting.step != accuracy.of_scene.step)
       continue;
-    if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance) left["the solver"] = run.left;
+    if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance) left["the solver"] = run.solver_error;
     if (run.step_decides) left["the step"] = error_of(run, quantity);
   }
   const auto text = [&](const char* source) {

@@ -12,7 +12,7 @@ namespace weft::bench {
 namespace {
 
 // The value in a unit as text, such as "12.3"; "~12.3" if it is estimated. `unit`: factor from SI units.
-std::string text_of(const scene::Figure& figure, double unit) {
+std::string text_of(const scene::MeasuredValue& figure, double unit) {
   return fmt::format("{}{:.3g}", figure.estimated ? "~" : "", figure.value * unit);
 }
 
@@ -32,7 +32,7 @@ Table summary(const std::vector<FabricRun>& runs) {
   for (const FabricRun& run : runs) {
     const scene::Measurements& m = run.fabric.measured;
     const std::optional<double> error = drape_error(run);
-    const scene::Figure bend{run.fabric.material.bend, m.bend_weft.estimated};
+    const scene::MeasuredValue bend{run.fabric.material.bend, m.bend_weft.estimated};
     table.push_back({run.fabric.material.fabric, published_drape(m), percent(run.mean_drape()),
                      error ? fmt::format("{:+.0f}", 100 * *error) : "", percent(run.mean_drape_in_scenes()),
                      text_of(bend, 1e6), fmt::format("{:.3g}", 1e6 * run.elastic.rigidity),

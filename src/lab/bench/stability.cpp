@@ -31,7 +31,7 @@ class Watch {
   }
 
   // Updates `outcome` with the next frame. Returns false if a position or the energy is not finite.
-  bool see(const simulation::FrameReport& report, const frame::SnapshotPtr& snapshot, Outcome& outcome) {
+  bool check_frame(const simulation::FrameReport& report, const frame::SnapshotPtr& snapshot, Outcome& outcome) {
     for (std::size_t c = 0; c < cloths_; ++c) {
       const auto& x = snapshot->states[c].positions;
       const auto& x_before = before_->states[c].positions;
@@ -74,7 +74,7 @@ void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcom
     outcome.rejected_steps += report.rejected_steps;
     outcome.newton_iterations += report.newton_iterations;
     outcome.max_strain = report.max_strain;
-    if (!watch.see(report, simulation.snapshot(), outcome)) {
+    if (!watch.check_frame(report, simulation.snapshot(), outcome)) {
       outcome.verdict = Verdict::not_finite;
       return;
     }

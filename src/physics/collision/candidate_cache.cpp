@@ -29,9 +29,9 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
   for (std::size_t a = 0; a < bodies.size(); ++a) {
     if (!bodies[a].deformable) continue;
     const auto is_cloth = [&](std::size_t body) { return bodies[body].deformable && !bodies[body].rigid; };
-    if (parameters.self && is_cloth(a)) wanted_.push_back({a, a});
+    if (parameters.self && is_cloth(a)) surface_pairs_.push_back({a, a});
     for (std::size_t b = a + 1; b < bodies.size(); ++b)
-      if (is_cloth(a) && is_cloth(b) ? parameters.self : parameters.obstacles) wanted_.push_back({a, b});
+      if (is_cloth(a) && is_cloth(b) ? parameters.self : parameters.obstacles) surface_pairs_.push_back({a, b});
   }
 }
 
@@ -68,7 +68,8 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
       0.5 * detection_distance_ + (parameters_.reuse && largest_motion < verlet_margin ? verlet_margin : 0.0);
   refit(motion, margin);
   pairs_.clear();
-  for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);
+  for (const auto& [a, b] : surface_pairs_)
+    a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);
   cover(motion, margin);
   return pairs_;
 }

@@ -84,13 +84,13 @@ class CandidateCache {
   bool is_clear(std::size_t body) const { return clear_[body].sign != 0; }
 
   /// The pairs of surfaces (a < b, or a = b) to search.
-  const std::vector<SurfacePair>& wanted() const { return wanted_; }
+  const std::vector<SurfacePair>& surface_pairs() const { return surface_pairs_; }
   /// The hierarchies. Their bounds contain the vertices on every covered trajectory, except those of clear obstacles.
   BroadPhase& hierarchies() { return broad_phase_; }
   const BroadPhase& hierarchies() const { return broad_phase_; }
 
   /// Invalidates the pairs: nothing is covered from now on.
-  void drop() { margin_ = -1; }
+  void invalidate() { margin_ = -1; }
 
   /// Call between two steps. Makes later results independent of earlier steps.
   void forget();
@@ -110,7 +110,7 @@ class CandidateCache {
   SearchParameters parameters_;
   double detection_distance_;
   BroadPhase broad_phase_;
-  std::vector<SurfacePair> wanted_;
+  std::vector<SurfacePair> surface_pairs_;
   CandidatePairs pairs_;
   std::vector<Vec3> from_, low_, high_;  // see from(), low_end(), high_end(); high_ is empty if it equals low_
   double margin_ = -1;                   // of pairs_ [m]; negative: no valid pairs

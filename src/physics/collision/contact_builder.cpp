@@ -22,7 +22,7 @@ double ramp(double from, double to, double value) {
 
 // Limits the activation distance in a step over h [s] to `gap` [m] plus the fraction h /
 // Numerics::Contact::range_growth_time of the full activation distance.
-void limit_opening(Contact& contact, double gap, double h) {
+void limit_range_growth(Contact& contact, double gap, double h) {
   const double range = std::min(contact.range, gap + contact.full_range * h / numerics.contact.range_growth_time);
   contact.depth -= contact.range - range;
   contact.range = range;
@@ -96,7 +96,7 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
       const double fraction = stiffness_fraction(proximity, with_cloth);
       if (!(fraction > 0) || pinched.are_pinched(proximity.vertices)) continue;
       auto contact = build(proximity, fraction, kNoLimit, motion);
-      if (contact) limit_opening(*contact, gap_at_start(proximity, motion), motion.h);
+      if (contact) limit_range_growth(*contact, gap_at_start(proximity, motion), motion.h);
       list.push_back({&proximity, fraction, contact});
     }
   });
@@ -111,7 +111,7 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
   const double fraction = push.is_exit_clear ? 1 : numerics.contact.blocked_exit_factor;
   auto contact = build(push.exit_pair, fraction, kNoLimit, motion);
   if (!contact) return;
-  limit_opening(*contact, push.exit_pair.distance, motion.h);
+  limit_range_growth(*contact, push.exit_pair.distance, motion.h);
   contact->full_range = kNoLimit;  // makes the spring linear
   contact->friction = contact->static_friction = 0;
   response.add(*contact, motion.x_t0);
@@ -123,17 +123,17 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
   const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance, distance,
                             features.kind};
   const bool is_new = in_contact_.insert(feature_key(features.kind, features.vertices)).second;
-  if (motion.is_straight() && !is_new) return false;
+  if (motion.is_first_solve() && !is_new) return false;
   const bool with_obstacle = is_particle(pair.a[0]) != is_particle(pair.b[0]);
   if (response.form() == ResponseForm::velocity_constraints && with_obstacle) {
     add_walls(pair, closest, motion, response);
     return is_new;
   }
-  if (auto contact = is_new ? build(closest, 1, motion.is_straight() ? distance : kNoLimit, motion) : std::nullopt) {
-    limit_opening(*contact, distance, motion.h);
+  if (auto contact = is_new ? build(closest, 1, motion.is_first_solve() ? distance : kNoLimit, motion) : std::nullopt) {
+    limit_range_growth(*contact, distance, motion.h);
     response.add(*contact, motion.x_t0);
   }
-  if (!motion.is_straight()) add_corners(pair, closest, motion, response);
+  if (!motion.is_first_solve()) add_corners(pair, closest, motion, response);
   return is_new;
 }
 

@@ -10,9 +10,9 @@
 #include "core/types.hpp"
 #include "physics/collision/bodies.hpp"
 #include "physics/collision/proximity/proximities.hpp"
-#include "physics/collision/response/certificate.hpp"
 #include "physics/collision/response/contact_response.hpp"
 #include "physics/collision/response/pinch.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 
 namespace weft::collision {
 
@@ -37,7 +37,7 @@ struct StepMotion {
   std::span<const Vec3> x_t0, x_from, x_t1;  ///< [m]
   double h = 0;                              ///< [s]
   /// Whether the step has not been continued, so that particles move straight from x_t0 to x_t1.
-  bool is_straight() const { return x_t0.data() == x_from.data(); }
+  bool is_first_solve() const { return x_t0.data() == x_from.data(); }
 };
 
 /// Fraction of its full stiffness that the contact of a near pair gets. (Full stiffness: ContactParameters::stiffness,
@@ -72,7 +72,7 @@ class ContactBuilder {
 
   /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at
   /// x_from. Adds a contact of these features, unless one of full stiffness exists; then returns false. If
-  /// motion.is_straight(), it only prevents the features from coming closer. In a continued step, it restores the
+  /// motion.is_first_solve(), it only prevents the features from coming closer. In a continued step, it restores the
   /// activation distance, and further contacts keep each corner on its side of the plane between the triangles, because
   /// other features could slide past the closest ones. With velocity constraints, a pair with an obstacle instead gets
   /// walls (see VelocityConstraints) for the corners of its cloth triangle.

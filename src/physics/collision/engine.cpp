@@ -54,7 +54,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
   separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
   const double detection_distance = candidates_.detection_distance();
   if (parameters.search.coherence)
-    coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
+    coherence_.emplace(bodies_.surfaces(), candidates_.surface_pairs(), x,
                        CoherenceParameters{detection_distance, 0.5 * numerics.contact.margin * detection_distance,
                                            numerics.contact.flat_fold()});
 }
@@ -63,7 +63,7 @@ void Engine::forget() {
   candidates_.forget();
   if (!coherence_) return;
   coherence_->forget();
-  candidates_.drop();
+  candidates_.invalidate();
 }
 
 // Collects pairs that can meet on the trajectory from x_t0 to x_t1.
@@ -208,7 +208,7 @@ void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& mot
 void Engine::continue_from(std::span<const Vec3> x) {
   const StepMotion motion{x_t0_, x, x, step_};
   carried_.begin_step(x, x, {});
-  if (coherence_) candidates_.drop();  // they belong to the start of the step
+  if (coherence_) candidates_.invalidate();  // they belong to the start of the step
   begin_contacts(x, x);
   std::vector<Proximity> near;
   find_near(x, near);
@@ -275,10 +275,10 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
-    report.stuck = pass.stuck;
+    report.unseparated_pair = pass.unseparated_pair;
     if (!report.obstructed_pins.empty() && !may_move_pins) {
       report.separated = false;
-      report.stuck = report.obstructed_pins.front().pair;
+      report.unseparated_pair = report.obstructed_pins.front().pair;
     }
     if (!report.separated) return report;
     if (!candidates_.covers_end(x_t1)) {
@@ -290,7 +290,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
     }
     if (const auto fresh = find_new_pinch(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
       report.separated = false;
-      report.stuck = *fresh;
+      report.unseparated_pair = *fresh;
       return report;
     }
     pinched.note_origins(candidates_.hierarchies(), x_t0);
@@ -316,7 +316,7 @@ void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
   if (kept)
     serialize_candidates(archive);
   else if constexpr (Archive::kReads)
-    candidates_.drop();
+    candidates_.invalidate();
 }
 
 // Saves the positions for which candidate pairs were collected, and the planes that do not follow from them.

@@ -56,15 +56,15 @@ void Air::add_drag(const Faces<Corners>& faces, const Evaluation& at) const {
   VecLanes velocity = gather(at.v, faces.corners[0]);
   for (std::size_t k = 1; k < Corners; ++k) velocity = velocity + gather(at.v, faces.corners[k]);
   if (!at.air_velocity.empty())
-    for (const Four& corner : faces.corners) velocity = velocity - gather(at.air_velocity, corner);
+    for (const IndexLanes& corner : faces.corners) velocity = velocity - gather(at.air_velocity, corner);
   const VecLanes wind = lanes_of(at.air_velocity.empty() ? wind_ : Vec3(Vec3::Zero()));
   const Lanes speed = dot(n, lanes_of(1.0 / Corners) * velocity - wind);
   const Lanes drag_per_speed = coefficient_ / Corners * faces.is_used * size * abs(speed);  // per corner [kg/s]
   const VecLanes drag = drag_per_speed * speed * n;
-  for (const Four& corner : faces.corners) subtract(at.force, corner, drag);
+  for (const IndexLanes& corner : faces.corners) subtract(at.force, corner, drag);
   if (!at.assembly) return;
   const auto damping = packed(outer(2 * at.rate * drag_per_speed * n, n));
-  for (const Four& corner : faces.corners)
+  for (const IndexLanes& corner : faces.corners)
     for (std::size_t l = 0; l < 4; ++l) at.assembly.add_to_own_block(corner[l], damping[l]);
 }
 

@@ -39,7 +39,7 @@ class Air final : public Force {
   /// Four cells or triangles; unused lanes have `is_used` = 0.
   template <std::size_t Corners>
   struct Faces {
-    std::array<Four, Corners> corners{};
+    std::array<IndexLanes, Corners> corners{};
     Lanes is_used{};
   };
   template <std::size_t Corners>

@@ -125,7 +125,7 @@ template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);
   VecLanes moment = lanes_of(rigidity_) * curvature;
-  if (damping_.any()) {
+  if (damping_.is_active()) {
     const VecLanes velocity = weighted_sum(d, at.v);
     const VecLanes c = at.rate > 0 ? curvature - lanes_of(1 / at.rate) * velocity : curvature;
     const Lanes c_sq = dot(c, c), rate = dot(c, velocity), secant = damping_.secant(c_sq, rate);

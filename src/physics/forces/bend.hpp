@@ -44,10 +44,10 @@ class Bend final : public Force {
   /// Four second differences Σ weights[k] x_k [1/m], each with the area that it covers (for s_uv: twice this area).
   template <std::size_t Count>
   struct Differences {
-    std::array<Four, Count> particles{};
+    std::array<IndexLanes, Count> particles{};
     std::array<Lanes, Count> weights{};
-    Lanes area{};                                       // [m²]
-    std::array<Four, Count*(Count - 1) / 2> scalars{};  // per pair 01, 02, ...: Assembly::scalar()
+    Lanes area{};                                             // [m²]
+    std::array<IndexLanes, Count*(Count - 1) / 2> scalars{};  // per pair 01, 02, ...: Assembly::scalar()
   };
   /// All differences of one kind: along lines, or in cells.
   template <std::size_t Count>

@@ -46,7 +46,7 @@ class BendDamping {
  public:
   explicit BendDamping(const BendParameters& parameters);
 
-  bool any() const { return viscosity_ > 0 || friction_ > 0; }
+  bool is_active() const { return viscosity_ > 0 || friction_ > 0; }
 
   /// The moment is secant(‖c‖², c·κ̇) (c·κ̇) c. `Scalar`: double, or Lanes. Newton's matrix contains the secant instead
   /// of the tangent: with the tangent, Newton's method oscillates where friction changes sign, and takes 1.5 times the

@@ -23,10 +23,10 @@ double piece_length(std::span<const Vec3> x, const std::array<Index, 2>& ends) {
   return (x[slot(ends[1])] - x[slot(ends[0])]).norm();
 }
 
-template <class Turn, class Points>
-Vec3 second_difference(const Turn& turn, const Points& x) {
+template <class Element, class Points>
+Vec3 second_difference(const Element& bend, const Points& x) {
   Vec3 sum = Vec3::Zero();
-  for (std::size_t k = 0; k < 3; ++k) sum += turn.weights[k] * vec_at(x, turn.particles[k]);
+  for (std::size_t k = 0; k < 3; ++k) sum += bend.weights[k] * vec_at(x, bend.particles[k]);
   return sum;
 }
 
@@ -45,26 +45,26 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
   if (parameters.bend > 0 || parameters.bend_viscosity > 0)
     for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
       const double before = lengths[slot(p)], after = lengths[slot((p + 1) % pieces)];
-      turns_.push_back({{particle(p), particle(p + 1), particle(p + 2)}, before, after, 0.5 * (before + after)});
+      bends_.push_back({{particle(p), particle(p + 1), particle(p + 2)}, before, after, 0.5 * (before + after)});
     }
   set_length_ratio(1);
 }
 
-void Cord::compute_weights(Turn& turn) const {
-  turn.length = length_ratio_ * turn.initial_length;
-  const double one = 1 / (length_ratio_ * turn.before * turn.length),
-               other = 1 / (length_ratio_ * turn.after * turn.length);
-  turn.weights = {one, -(one + other), other};
+void Cord::compute_weights(BendElement& bend) const {
+  bend.length = length_ratio_ * bend.initial_length;
+  const double one = 1 / (length_ratio_ * bend.before * bend.length),
+               other = 1 / (length_ratio_ * bend.after * bend.length);
+  bend.weights = {one, -(one + other), other};
 }
 
 // Clamps: if the middle and only one end are held, the second difference covers only the half piece on the free side;
 // see Bend.
 void Cord::set_held(std::span<const char> held) {
-  for (Turn& turn : turns_) {
-    const auto is_held = [&](std::size_t k) { return held[slot(turn.particles[k])] != 0; };
-    turn.initial_length = 0.5 * (turn.before + turn.after);
-    if (is_held(1) && is_held(0) != is_held(2)) turn.initial_length = 0.5 * (is_held(0) ? turn.after : turn.before);
-    compute_weights(turn);
+  for (BendElement& bend : bends_) {
+    const auto is_held = [&](std::size_t k) { return held[slot(bend.particles[k])] != 0; };
+    bend.initial_length = 0.5 * (bend.before + bend.after);
+    if (is_held(1) && is_held(0) != is_held(2)) bend.initial_length = 0.5 * (is_held(0) ? bend.after : bend.before);
+    compute_weights(bend);
   }
 }
 
@@ -76,24 +76,24 @@ bool Cord::set_length_ratio(double ratio) {
     piece.elasticity = parameters_.stretch / piece.rest;
     piece.viscosity = parameters_.stretch_viscosity / piece.rest;
   }
-  for (Turn& turn : turns_) compute_weights(turn);
-  return !turns_.empty();
+  for (BendElement& bend : bends_) compute_weights(bend);
+  return !bends_.empty();
 }
 
 void Cord::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
-  for (const Turn& turn : turns_)
-    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(turn.particles[k], turn.particles[(k + 1) % 3]);
+  for (const BendElement& bend : bends_)
+    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(bend.particles[k], bend.particles[(k + 1) % 3]);
 }
 
 void Cord::attach(const solver::Assembly& assembly) {
   const auto block = [&](Index a, Index b) { return assembly.block(std::min(a, b), std::max(a, b)); };
   for (Piece& piece : pieces_) piece.block = block(piece.particles[0], piece.particles[1]);
-  for (Turn& turn : turns_)
+  for (BendElement& bend : bends_)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = turn.particles[k], b = turn.particles[(k + 1) % 3];
-      turn.scalars[k] = assembly.scalar(a, b);
-      turn.blocks[k] = block(a, b);
+      const Index a = bend.particles[k], b = bend.particles[(k + 1) % 3];
+      bend.scalars[k] = assembly.scalar(a, b);
+      bend.blocks[k] = block(a, b);
     }
 }
 
@@ -103,7 +103,7 @@ void Cord::add(const Evaluation& at) const {
     add_stretch(piece, at);
     if (has_air) add_air(piece, at);
   }
-  for (const Turn& turn : turns_) add_turn(turn, at);
+  for (const BendElement& bend : bends_) add_bend(bend, at);
 }
 
 void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
@@ -150,28 +150,28 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   at.assembly.add_to_own_block(b, damping);
 }
 
-void Cord::add_turn(const Turn& turn, const Evaluation& at) const {
-  const Vec3 curvature = second_difference(turn, at.x);
+void Cord::add_bend(const BendElement& bend, const Evaluation& at) const {
+  const Vec3 curvature = second_difference(bend, at.x);
   Vec3 moment = parameters_.bend * curvature;
-  if (damping_.any()) {
-    const Vec3 velocity = second_difference(turn, at.v);
+  if (damping_.is_active()) {
+    const Vec3 velocity = second_difference(bend, at.v);
     const Vec3 c = at.rate > 0 ? Vec3(curvature - velocity / at.rate) : curvature;
     const double rate = c.dot(velocity), secant = damping_.secant(c.squaredNorm(), rate);
     moment += secant * rate * c;
     if (at.assembly)
       for (std::size_t k = 0; k < 3; ++k)
-        at.assembly.add(turn.blocks[k], Mat3(at.rate * turn.length * secant * turn.weights[k] *
-                                             turn.weights[(k + 1) % 3] * c * c.transpose()));
+        at.assembly.add(bend.blocks[k], Mat3(at.rate * bend.length * secant * bend.weights[k] *
+                                             bend.weights[(k + 1) % 3] * c * c.transpose()));
   }
   for (std::size_t k = 0; k < 3; ++k)
-    at.force.subtract(turn.particles[k], solver::padded<double>(turn.length * turn.weights[k] * moment));
+    at.force.subtract(bend.particles[k], solver::padded<double>(bend.length * bend.weights[k] * moment));
 }
 
 void Cord::add_constant_stiffness(solver::Assembly& assembly) const {
-  for (const Turn& turn : turns_)
+  for (const BendElement& bend : bends_)
     for (std::size_t k = 0; k < 3; ++k)
-      assembly.add_scalar(turn.scalars[k],
-                          parameters_.bend * turn.length * turn.weights[k] * turn.weights[(k + 1) % 3]);
+      assembly.add_scalar(bend.scalars[k],
+                          parameters_.bend * bend.length * bend.weights[k] * bend.weights[(k + 1) % 3]);
 }
 
 void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
@@ -188,15 +188,15 @@ void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double
                    piece.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
     add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
   }
-  for (const Turn& turn : turns_) {
-    const Vec3 velocity = second_difference(turn, v);
-    Vec3 c = second_difference(turn, x);
+  for (const BendElement& bend : bends_) {
+    const Vec3 velocity = second_difference(bend, v);
+    Vec3 c = second_difference(bend, x);
     if (rate > 0) c -= velocity / rate;
     const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity));
-    const Mat3 stiffness = turn.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
+    const Mat3 stiffness = bend.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
-        add(turn.particles[a], turn.particles[b], turn.weights[a] * turn.weights[b] * stiffness);
+        add(bend.particles[a], bend.particles[b], bend.weights[a] * bend.weights[b] * stiffness);
   }
 }
 
@@ -206,8 +206,8 @@ double Cord::energy(std::span<const Vec3> x) const {
     const double extension = piece_length(x, piece.particles) - piece.rest;
     sum += 0.5 * piece.elasticity * extension * extension;
   }
-  for (const Turn& turn : turns_)
-    sum += 0.5 * parameters_.bend * turn.length * second_difference(turn, x).squaredNorm();
+  for (const BendElement& bend : bends_)
+    sum += 0.5 * parameters_.bend * bend.length * second_difference(bend, x).squaredNorm();
   return sum;
 }
 

@@ -57,7 +57,7 @@ class Cord final : public Membrane {
     double viscosity;       // η / r [N·s/m]
     Index block = 0;
   };
-  struct Turn {
+  struct BendElement {
     std::array<Index, 3> particles;
     double before, after;                      // initial rest lengths of its pieces [m]
     double initial_length;                     // L at the initial rest lengths [m]
@@ -67,15 +67,15 @@ class Cord final : public Membrane {
   };
   void add_stretch(const Piece& piece, const Evaluation& at) const;
   void add_air(const Piece& piece, const Evaluation& at) const;
-  void add_turn(const Turn& turn, const Evaluation& at) const;
-  void compute_weights(Turn& turn) const;
+  void add_bend(const BendElement& bend, const Evaluation& at) const;
+  void compute_weights(BendElement& bend) const;
 
   Index first_;
   CordParameters parameters_;
   BendDamping damping_;
   double length_ratio_ = 0;  // of current to initial rest lengths; 0: not set yet
   std::vector<Piece> pieces_;
-  std::vector<Turn> turns_;
+  std::vector<BendElement> bends_;
 };
 
 /// Lumped masses [kg]: half of each piece at either end. `mass`: per length [kg/m].

@@ -17,7 +17,7 @@ namespace weft::forces {
 /// One number per element.
 using Lanes = solver::PaddedVec3<double>;
 /// One index per element: of a particle, a block, ...
-using Four = std::array<Index, 4>;
+using IndexLanes = std::array<Index, 4>;
 
 inline Lanes lanes_of(double value) {
   return Lanes{value, value, value, value};
@@ -59,14 +59,14 @@ inline VecLanes lanes_of(const Vec3& a) {
 }
 
 /// The vectors of four particles in `of`, transposed: one register per coordinate.
-inline VecLanes gather(std::span<const solver::PaddedVec3<double>> of, const Four& i) {
+inline VecLanes gather(std::span<const solver::PaddedVec3<double>> of, const IndexLanes& i) {
   const Lanes &a = of[i[0]], &b = of[i[1]], &c = of[i[2]], &d = of[i[3]];
   const Lanes xz_ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), xz_cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
   const Lanes y_ab = __builtin_shufflevector(a, b, 1, 5, 3, 7), y_cd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
   return {__builtin_shufflevector(xz_ab, xz_cd, 0, 1, 4, 5), __builtin_shufflevector(y_ab, y_cd, 0, 1, 4, 5),
           __builtin_shufflevector(xz_ab, xz_cd, 2, 3, 6, 7)};
 }
-inline VecLanes gather(std::span<const Vec3> of, const Four& i) {
+inline VecLanes gather(std::span<const Vec3> of, const IndexLanes& i) {
   const Vec3 &a = of[i[0]], &b = of[i[1]], &c = of[i[2]], &d = of[i[3]];
   return {Lanes{a[0], b[0], c[0], d[0]}, Lanes{a[1], b[1], c[1], d[1]}, Lanes{a[2], b[2], c[2], d[2]}};
 }
@@ -80,11 +80,11 @@ inline std::array<Lanes, 4> transposed(const Lanes& a, const Lanes& b, const Lan
 }
 
 /// Adds the vector of each element to the entry of its particle, in the order of elements.
-inline void add(const ForceRows& to, const Four& i, const VecLanes& value) {
+inline void add(const ForceRows& to, const IndexLanes& i, const VecLanes& value) {
   const auto of = transposed(value.x, value.y, value.z, Lanes{0, 0, 0, 0});
   for (std::size_t l = 0; l < 4; ++l) to.add(i[l], of[l]);
 }
-inline void subtract(const ForceRows& from, const Four& i, const VecLanes& value) {
+inline void subtract(const ForceRows& from, const IndexLanes& i, const VecLanes& value) {
   const auto of = transposed(value.x, value.y, value.z, Lanes{0, 0, 0, 0});
   for (std::size_t l = 0; l < 4; ++l) from.subtract(i[l], of[l]);
 }
@@ -114,11 +114,11 @@ inline std::array<solver::PackedBlock, 4> packed(const BlockLanes& m) {
   for (std::size_t l = 0; l < 4; ++l) blocks[l] = {low[l], high[l], Lanes{m[8][l], 0, 0, 0}};
   return blocks;
 }
-inline void add(const solver::AssemblyRows& assembly, const Four& block, const BlockLanes& value) {
+inline void add(const solver::AssemblyRows& assembly, const IndexLanes& block, const BlockLanes& value) {
   const auto blocks = packed(value);
   for (std::size_t l = 0; l < 4; ++l) assembly.add(block[l], blocks[l]);
 }
-inline void add_scalars(const solver::AssemblyRows& assembly, const Four& scalar, const Lanes& value) {
+inline void add_scalars(const solver::AssemblyRows& assembly, const IndexLanes& scalar, const Lanes& value) {
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
@@ -133,11 +133,11 @@ inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// Ranges::partition() for packs of four elements. all_of(pack) returns their particles: one Four per corner.
+/// Ranges::partition() for packs of four elements. all_of(pack) returns their particles: one IndexLanes per corner.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
   ranges.partition(bounds, packs.size(), [&](std::size_t p, const auto& visit) {
-    for (const Four& four : all_of(packs[p]))
+    for (const IndexLanes& four : all_of(packs[p]))
       for (Index particle : four) visit(particle);
   });
 }

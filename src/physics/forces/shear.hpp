@@ -49,9 +49,9 @@ class Shear final : public Force {
 
   /// Four cells.
   struct Cells {
-    std::array<Four, 4> corners{};
-    std::array<Four, 6> blocks{};  // of the pairs of corners 01, 02, 03, 12, 13, 23
-    Lanes half_u{}, half_v{};      // 1 / (2 lu), 1 / (2 lv) [1/m]
+    std::array<IndexLanes, 4> corners{};
+    std::array<IndexLanes, 6> blocks{};  // of the pairs of corners 01, 02, 03, 12, 13, 23
+    Lanes half_u{}, half_v{};            // 1 / (2 lu), 1 / (2 lv) [1/m]
     Lanes elasticity{}, viscosity{};
   };
   struct StrainLanes {

@@ -45,7 +45,7 @@ class Stretch final : public Membrane {
   };
   /// Four edges.
   struct Edges {
-    Four i{}, j{}, block{};
+    IndexLanes i{}, j{}, block{};
     Lanes rest_length{}, elasticity{}, viscosity{};
   };
 

@@ -59,10 +59,10 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchPar
 StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
                            double shear)
     : below_(with_min_stiffness(below)), stretch_(stretch), shear_(shear) {
-  follow(membrane);
+  copy_rest_shape(membrane);
 }
 
-void StretchLimit::follow(const TriangleMembrane& membrane) {
+void StretchLimit::copy_rest_shape(const TriangleMembrane& membrane) {
   threads_.clear(), crossings_.clear();
   for (const TriangleMembrane::Element& element : membrane.elements()) {
     const auto& [a, b, c] = element.particles;
@@ -190,13 +190,13 @@ void StretchLimit::begin(std::span<const Vec3> x, LockLinearisation& lag) const 
 void StretchLimit::update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const {
   const Lock lock(stretch_);
   const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
-  lag.near.clear();
-  parallel_append(threads_.size(), kGrainSize, lag.near, [&](std::size_t begin, std::size_t end, auto& near) {
+  lag.beyond_onset.clear();
+  parallel_append(threads_.size(), kGrainSize, lag.beyond_onset, [&](std::size_t begin, std::size_t end, auto& pieces) {
     for (std::size_t t = begin; t < end; ++t) {
       const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
       double& at = lag.extensions[t];
       if (length_sq <= onset_sq && at <= onset) continue;
-      near.push_back(static_cast<std::uint32_t>(t));
+      pieces.push_back(static_cast<std::uint32_t>(t));
       if (first) continue;
       const double e = std::sqrt(length_sq) - 1;
       const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
@@ -205,9 +205,10 @@ void StretchLimit::update(std::span<const Vec3> x, bool first, LockLinearisation
   });
 }
 
-void StretchLimit::add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const {
+void StretchLimit::add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& lag,
+                                                std::span<Vec3> force) const {
   const Lock lock(stretch_);
-  for (const std::uint32_t t : lag.near) {
+  for (const std::uint32_t t : lag.beyond_onset) {
     const Thread& thread = threads_[t];
     const Vec3 s = derivative(thread, thread.along, x);
     const double length = s.norm(), e = length - 1;

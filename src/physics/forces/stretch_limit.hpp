@@ -55,8 +55,8 @@ class Lock {
 /// Newton's method linearised at the iterate, a piece would lose only a third of its excess over the onset per
 /// iteration, because the stress is cubic.
 struct LockLinearisation {
-  std::vector<double> extensions;   ///< per piece of a thread
-  std::vector<std::uint32_t> near;  ///< pieces beyond the onset, by `extensions` or at the iterate
+  std::vector<double> extensions;           ///< per piece of a thread
+  std::vector<std::uint32_t> beyond_onset;  ///< pieces beyond the onset, by `extensions` or at the iterate
 };
 
 /// A piece of weft or warp that covers the area A has the energy A · Lock::energy() at its extension ‖s‖ − 1. A cell or
@@ -84,12 +84,12 @@ class StretchLimit final : public Force {
   /// Before each linearisation at x: updates `lag`. `first`: whether this is the first iteration of a step; it keeps
   /// the extensions of begin(), as no tension has been predicted yet.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
-  /// Replaces exact forces by linearised ones: for the pieces in `lag.near`, adds the force at x that is linearised at
-  /// `lag`, minus the exact force at x.
-  void add_lag(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
+  /// Replaces exact forces by linearised ones: for the pieces in `lag.beyond_onset`, adds the force at x that is
+  /// linearised at `lag`, minus the exact force at x.
+  void add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
   /// Copies the current rest shape of `membrane`, the one that the constructor received.
-  void follow(const TriangleMembrane& membrane);
+  void copy_rest_shape(const TriangleMembrane& membrane);
 
   /// The piece with the largest extension; zero if none is extended.
   struct Worst {

@@ -28,7 +28,7 @@ Ties::Ties(const mesh::Sheet& sheet, Index first) : tearing_seams_(sheet.tearing
   }
 }
 
-void Ties::use(double t, double progress) {
+void Ties::set_strengths(double t, double progress) {
   for (Piece& piece : pieces_)
     piece.strength = piece.state == State::torn ? 0 : piece.tie.strength * progress * closed_ratio(piece.tie, t);
 }

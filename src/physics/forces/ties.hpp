@@ -22,7 +22,7 @@ class Ties final : public Force {
   Ties(const mesh::Sheet& sheet, Index first);
 
   /// Sets the strengths for the scene time t [s]. `progress`: of sewing, 0 to 1.
-  void use(double t, double progress);
+  void set_strengths(double t, double progress);
 
   /// Whether all ties have the same strength at the scene times t0 and t1 [s], if sewing does not progress.
   bool are_constant_between(double t0, double t1) const;

@@ -99,10 +99,10 @@ void TriangleBend::rebuild_elements() {
   weights_.resize(weights_.size() + 3);  // add_pairs() loads four weights at a time
 }
 
-TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Quad> x) const {
-  Quad uu{}, vv{}, uv{};
+TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const PaddedVec3> x) const {
+  PaddedVec3 uu{}, vv{}, uv{};
   for (std::size_t k = element.begin; k < element.end; ++k) {
-    const Quad &weight = weights_[k], &position = x[particles_[k]];
+    const PaddedVec3 &weight = weights_[k], &position = x[particles_[k]];
     uu += weight[0] * position;
     vv += weight[1] * position;
     uv += weight[2] * position;
@@ -119,7 +119,7 @@ Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) co
 
 // Curvatures of `count` elements, at most four.
 TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::size_t count,
-                                                      std::span<const Quad> x) const {
+                                                      std::span<const PaddedVec3> x) const {
   std::array<Curvature, 4> of_elements{};
   for (std::size_t l = 0; l < count; ++l) of_elements[l] = curvature(elements_[first + l], x);
   CurvatureLanes lanes;
@@ -167,17 +167,17 @@ void TriangleBend::add(const Evaluation& at) const {
     const std::span<const Element> elements(elements_.data() + first, count);
     const CurvatureLanes curved = curvatures(first, count, at.x);
     CurvatureLanes velocity;
-    if (damping_.any()) velocity = curvatures(first, count, at.v);
+    if (damping_.is_active()) velocity = curvatures(first, count, at.v);
     Lanes area{};
     for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
 
     // Moments for s_uu, s_vv and s_uv, and the stiffness of damping. As in Bend, this stiffness contains ‖c‖² I instead
     // of c cᵀ (measured: the scene catwalk takes no more iterations).
-    std::array<std::array<Quad, 4>, 3> moments;
+    std::array<std::array<PaddedVec3, 4>, 3> moments;
     std::array<Lanes, 3> stiffness{};
     for (std::size_t k = 0; k < 3; ++k) {
       VecLanes moment = lanes_of(rigidity_) * curved[k];
-      if (damping_.any()) {
+      if (damping_.is_active()) {
         const VecLanes c = at.rate > 0 ? curved[k] - lanes_of(1 / at.rate) * velocity[k] : curved[k];
         const Lanes c_sq = dot(c, c), rate = dot(c, velocity[k]), secant = damping_.secant(c_sq, rate);
         moment = moment + secant * rate * c;
@@ -187,13 +187,13 @@ void TriangleBend::add(const Evaluation& at) const {
       moments[k] = transposed(moment.x, moment.y, moment.z, lanes_of(0.0));
     }
     for (std::size_t l = 0; l < count; ++l) {
-      const Quad of_uu = moments[0][l], of_vv = moments[1][l], of_uv = moments[2][l];
+      const PaddedVec3 of_uu = moments[0][l], of_vv = moments[1][l], of_uv = moments[2][l];
       for (std::size_t k = elements[l].begin; k < elements[l].end; ++k) {
-        const Quad& w = weights_[k];
+        const PaddedVec3& w = weights_[k];
         at.force.subtract(particles_[k], w[0] * of_uu + w[1] * of_vv + w[2] * of_uv);
       }
       if (!elements[l].rest.isZero(0)) add_rest_moment(elements[l], curvature(elements[l], at.x), at);
-      if (at.assembly && damping_.any())
+      if (at.assembly && damping_.is_active())
         add_pairs(elements[l], {stiffness[0][l], stiffness[1][l], stiffness[2][l]}, scratch, at.assembly);
     }
   });
@@ -209,7 +209,7 @@ void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std:
   double* const vv = uu + stride;
   double* const uv = vv + stride;
   double* const row = uv + stride;
-  const Quad* weights = weights_.data() + element.begin;
+  const PaddedVec3* weights = weights_.data() + element.begin;
   for (std::size_t k = 0; k < count; k += 4) {
     const auto columns = transposed(weights[k], weights[k + 1], weights[k + 2], weights[k + 3]);
     solver::store_padded(uu + k, columns[0]);

@@ -34,22 +34,22 @@ class TriangleBend final : public Force {
   void set_held(std::span<const char> held) override;
 
  private:
-  using Quad = solver::PaddedVec3<double>;
   struct Element {
     std::size_t begin, end;    // its range in particles_ and weights_, corners first
     std::size_t pairs;         // index of its first pair, in scalars_ and blocks_; order 01, 02, ... 12, ...
     double area;               // [m²], times Reinforcement::bend
     Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
   };
+  using PaddedVec3 = solver::PaddedVec3<double>;
   /// s_uu, s_vv and s_uv [1/m] of one element, and of four elements.
-  using Curvature = std::array<Quad, 3>;
+  using Curvature = std::array<PaddedVec3, 3>;
   using CurvatureLanes = std::array<VecLanes, 3>;
   std::span<const Index> particles(const Element& e) const {
     return std::span(particles_).subspan(e.begin, e.end - e.begin);
   }
-  Curvature curvature(const Element& element, std::span<const Quad> x) const;
+  Curvature curvature(const Element& element, std::span<const PaddedVec3> x) const;
   Mat3 curvature(const Element& element, std::span<const Vec3> x) const;  // s_uu, s_vv and s_uv as columns
-  CurvatureLanes curvatures(std::size_t first, std::size_t count, std::span<const Quad> x) const;
+  CurvatureLanes curvatures(std::size_t first, std::size_t count, std::span<const PaddedVec3> x) const;
   void rebuild_elements();
   void add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
                  const solver::AssemblyRows& assembly) const;
@@ -66,10 +66,10 @@ class TriangleBend final : public Force {
   std::vector<Element> elements_;
   // Concatenated over all elements.
   std::vector<Index> particles_;
-  std::vector<Quad> weights_;   // of s_uu, s_vv and s_uv [1/m²]
-  std::vector<Index> scalars_;  // per pair: Assembly::scalar()
-  std::vector<Index> blocks_;   // per pair: Assembly::block(), if any element is curved at rest; else empty
-  Ranges ranges_;               // of packs of four elements
+  std::vector<PaddedVec3> weights_;  // of s_uu, s_vv and s_uv [1/m²]
+  std::vector<Index> scalars_;       // per pair: Assembly::scalar()
+  std::vector<Index> blocks_;        // per pair: Assembly::block(), if any element is curved at rest; else empty
+  Ranges ranges_;                    // of packs of four elements
 };
 
 }  // namespace weft::forces

@@ -27,7 +27,7 @@ constexpr double kMomentTolerance = 1e-9;
 /// weighted sum of the function's values at vertices [1/m].
 struct Slope {
   std::vector<std::pair<Index, double>> weights;
-  bool near_pin = false;  ///< a triangle of the patch has three pinned corners: held_ may change the weights
+  bool depends_on_pins = false;  ///< a triangle of the patch has three pinned corners: held_ may change the weights
 };
 
 class Slopes {
@@ -219,9 +219,9 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   const Axes axes{0.5 * (p + q), q - p, patch.vertices[3].second - patch.vertices[2].second};
   Eigen::VectorXd best = fit_quadratic(patch, axes);
   Slope slope;
-  slope.near_pin =
+  slope.depends_on_pins =
       std::ranges::any_of(patch.triangles, [&](const auto& t) { return all_corners_marked(pinned_, t.first); });
-  if (slope.near_pin)
+  if (slope.depends_on_pins)
     if (const Eigen::VectorXd of_clamp = fit_clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
 
   // Converts the derivative along `over` to that along the outward normal n. With the unit tangent t, over = c t + d n.
@@ -271,7 +271,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       weights.try_emplace(vertex, Vec3::Zero()).first->second += weight;
     };
     std::vector<Vec3> border_normals;
-    bool near_pin = false;
+    bool depends_on_pins = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
       const Vec3 twist = packed(outward * along.transpose()) / area;  // l of the sum cancels the 1/l of ∂/∂t
@@ -281,7 +281,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       const auto e = at(edges.of_triangle[t][k]);
       if (edges.edges[e].triangles[1] < 0) border_normals.push_back(bend);
       const double sign = edges.edges[e].triangles[0] == static_cast<Index>(t) ? 1 : -1;
-      near_pin |= across[e].near_pin;
+      depends_on_pins |= across[e].depends_on_pins;
       for (const auto& [vertex, slope] : across[e].weights) add(vertex, sign * slope * side.norm() / area * bend);
     }
     const Mat3 border_projection = project_out_borders(border_normals);
@@ -295,7 +295,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
     // Omits vertices whose weights cancel by symmetry up to rounding, unless pins may change the weights.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
-          (near_pin || weight.norm() * area > kMomentTolerance))
+          (depends_on_pins || weight.norm() * area > kMomentTolerance))
         append(vertex, weight);
   }
   return stencils;

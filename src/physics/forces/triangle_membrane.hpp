@@ -59,8 +59,8 @@ class TriangleMembrane : public Membrane {
  private:
   /// Four triangles, with corners in the order of particle numbers.
   struct Triangles {
-    std::array<Four, 3> corners{};
-    std::array<Four, 3> blocks{};        // of the pairs 01, 02, 12
+    std::array<IndexLanes, 3> corners{};
+    std::array<IndexLanes, 3> blocks{};  // of the pairs 01, 02, 12
     std::array<Lanes, 3> along, across;  // x and y of the gradients
     Lanes area{};
   };

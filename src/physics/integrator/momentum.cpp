@@ -11,8 +11,8 @@ namespace {
 /// Disjoint sets of diagonal blocks, each identified by its lowest block.
 class BlockGroups {
  public:
-  explicit BlockGroups(std::span<const solver::DiagonalBlock> parts)
-      : blocks_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
+  explicit BlockGroups(std::span<const solver::DiagonalBlock> blocks)
+      : blocks_(blocks), lowest_(blocks.size()), is_free_(blocks.size(), 1) {
     std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
   }
   std::size_t of_part(std::size_t part) const {
@@ -58,23 +58,23 @@ void join_by_term(const Term& term, BlockGroups& groups) {
 
 std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
                                         std::span<const Vec3> residual) {
-  const std::vector<solver::DiagonalBlock> parts = solver::parts_of(linear);
-  BlockGroups groups(parts);
+  const std::vector<solver::DiagonalBlock> blocks = solver::blocks_of(linear);
+  BlockGroups groups(blocks);
   for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
   for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));
   solver::for_each_term(linear, [&](const auto& term) { join_by_term(term, groups); });
 
-  std::vector<Vec3> force(parts.size(), Vec3::Zero());
-  std::vector<double> mass(parts.size(), 0);
-  for (std::size_t p = 0; p < parts.size(); ++p) {
+  std::vector<Vec3> force(blocks.size(), Vec3::Zero());
+  std::vector<double> mass(blocks.size(), 0);
+  for (std::size_t p = 0; p < blocks.size(); ++p) {
     const std::size_t group = groups.of_part(p);
-    for (auto i = static_cast<std::size_t>(parts[p].begin); i < static_cast<std::size_t>(parts[p].end); ++i) {
+    for (auto i = static_cast<std::size_t>(blocks[p].begin); i < static_cast<std::size_t>(blocks[p].end); ++i) {
       force[group] += residual[i];
       mass[group] += masses[i];
     }
   }
-  std::vector<Vec3> result(parts.size(), Vec3::Zero());
-  for (std::size_t p = 0; p < parts.size(); ++p)
+  std::vector<Vec3> result(blocks.size(), Vec3::Zero());
+  for (std::size_t p = 0; p < blocks.size(); ++p)
     if (const std::size_t group = groups.of_part(p); groups.is_free(group)) result[p] = force[group] / mass[group];
   return result;
 }

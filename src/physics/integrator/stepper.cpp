@@ -351,7 +351,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
 void Stepper::collect_blocks(std::span<const double> masses, const State& now, const solver::LinearSystem& linear) {
   blocks_.clear();
   unsolved_.clear();
-  for (const solver::DiagonalBlock& rows : solver::parts_of(linear)) {
+  for (const solver::DiagonalBlock& rows : solver::blocks_of(linear)) {
     BlockState& part = blocks_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];

@@ -27,18 +27,18 @@
 namespace weft::model {
 
 /// A particle of a cloth to which a pin, an attachment or a weight applies.
-struct Chosen {
-  Index particle = 0;  ///< index within the cloth
-  double share = 1;    ///< in (0, 1]: factor on the stiffness of a pin or attachment; relative part of a weight
-  bool faded = false;  ///< of a pin: outside of its region, in the fade around it, where `share` falls to 0
+struct WeightedParticle {
+  Index particle = 0;   ///< index within the cloth
+  double fraction = 1;  ///< in (0, 1]: factor on the stiffness of a pin or attachment; relative part of a weight
+  bool faded = false;   ///< of a pin: outside of its region, in the fade around it, where `fraction` falls to 0
 };
 
 /// Particles that are held in place, or moved by keys or with a body.
 struct Pin {
-  std::vector<Chosen> particles;    ///< first those of its region, then those of its fade
-  Vec3 middle{0, 0, 0};             ///< mean start position of its region [m]
-  motion::PoseTrack motion;         ///< of `middle`, in the world, if the pin follows no body
-  std::optional<std::size_t> body;  ///< number of the body that the pin follows
+  std::vector<WeightedParticle> particles;  ///< first those of its region, then those of its fade
+  Vec3 middle{0, 0, 0};                     ///< mean start position of its region [m]
+  motion::PoseTrack motion;                 ///< of `middle`, in the world, if the pin follows no body
+  std::optional<std::size_t> body;          ///< number of the body that the pin follows
   /// If `body` has a vertex for each particle of the pin: index of that of the first particle, for Model::vertex(); the
   /// others follow in order. Absent: the particles follow the nearest triangles of a deforming body, or the pose of a
   /// rigid one.
@@ -47,9 +47,9 @@ struct Pin {
   std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
 };
 
-/// Additional mass, distributed over particles in proportion to Chosen::share.
+/// Additional mass, distributed over particles in proportion to WeightedParticle::fraction.
 struct Weight {
-  std::vector<Chosen> particles;
+  std::vector<WeightedParticle> particles;
   double mass = 0;  ///< [kg]
 };
 
@@ -137,7 +137,7 @@ struct Body {
 struct Attachment {
   std::string name;
   std::size_t cloth = 0;  ///< number of the cloth whose particles are attached
-  std::vector<Chosen> particles;
+  std::vector<WeightedParticle> particles;
   std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; one of them is given
   double stiffness = 10000;                      ///< stiffness of the spring of a particle with share 1 [N/m]
   std::optional<double> length;                  ///< rest length of the springs [m]; absent: the distance at `begin`
@@ -147,9 +147,9 @@ struct Attachment {
 
 /// A layer: cloths that are put on at the same time, over the cloths of the layers before.
 struct Layer {
-  int first_frame = 0;               ///< frame at which the cloths are put on; negative in the preroll
-  std::vector<std::size_t> cloths;   ///< numbers of the cloths of this layer
-  std::vector<std::size_t> dressed;  ///< numbers of the cloths of this and all earlier layers, ascending
+  int first_frame = 0;              ///< frame at which the cloths are put on; negative in the preroll
+  std::vector<std::size_t> cloths;  ///< numbers of the cloths of this layer
+  std::vector<std::size_t> put_on;  ///< numbers of the cloths of this and all earlier layers, ascending
 };
 
 /// A pose computed for a given time stays valid until set_motion() changes the motion of the body.

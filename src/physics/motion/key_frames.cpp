@@ -55,14 +55,14 @@ void KeyFrames::compute_second_derivatives(bool from_rest) {
 KeyFrames::Piece KeyFrames::find_piece(double t) const {
   const double place = (t - first_time_) / interval_;
   const auto last = static_cast<double>(keys_.size() - 1);
-  const bool stands = !(place >= 0) || place >= last;
+  const bool is_still = !(place >= 0) || place >= last;
   const auto i = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, last));
-  return {i, stands ? 0 : t - first_time_ - static_cast<double>(i) * interval_, stands};
+  return {i, is_still ? 0 : t - first_time_ - static_cast<double>(i) * interval_, is_still};
 }
 
 VertexMotion KeyFrames::at(const Piece& piece, std::size_t v) const {
-  const auto& [i, s, stands] = piece;
-  if (stands) return {keys_[i][v], Vec3::Zero(), Vec3::Zero()};
+  const auto& [i, s, is_still] = piece;
+  if (is_still) return {keys_[i][v], Vec3::Zero(), Vec3::Zero()};
   const double h = interval_;
   Vec3 slope = (keys_[i + 1][v] - keys_[i][v]) / h, bend = Vec3::Zero(), jerk = Vec3::Zero();
   if (!second_derivatives_.empty()) {

@@ -35,11 +35,11 @@ class KeyFrames {
   std::size_t bytes() const;
 
  private:
-  /// Position of a time among the keys: `s` [s] after key i. `stands`: before the first key, or from the last one on.
+  /// Position of a time among the keys: `s` [s] after key i. `is_still`: before the first key, or from the last one on.
   struct Piece {
     std::size_t i;
     double s;
-    bool stands;
+    bool is_still;
   };
   Piece find_piece(double t) const;
   VertexMotion at(const Piece& piece, std::size_t vertex) const;

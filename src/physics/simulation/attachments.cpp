@@ -34,9 +34,9 @@ Attachments::Attachments(const model::Model& model, std::span<const Index> first
     attachment.release = given.release >= 0 ? given.release : std::numeric_limits<double>::infinity();
     attachment.length = given.length;
     attachment.breaking_load = given.breaking_load;
-    for (const model::Chosen& one : given.particles)
+    for (const model::WeightedParticle& one : given.particles)
       attachment.springs.push_back(
-          {.particle = first_particle_[given.cloth] + one.particle, .stiffness = given.stiffness * one.share});
+          {.particle = first_particle_[given.cloth] + one.particle, .stiffness = given.stiffness * one.fraction});
     attachments_.push_back(std::move(attachment));
   }
 }

@@ -116,13 +116,13 @@ ClothSystem::ClothSystem(const model::Model& model) : gravity_(model.physics.gra
     masses_.insert(masses_.end(), masses.begin(), masses.end());
     for (const model::Weight& weight : cloth.weights) {
       double fraction_sum = 0;
-      for (const model::Chosen& carrier : weight.particles) fraction_sum += carrier.share;
-      for (const model::Chosen& carrier : weight.particles)
-        masses_[first + carrier.particle] += weight.mass * (carrier.share / fraction_sum);
+      for (const model::WeightedParticle& carrier : weight.particles) fraction_sum += carrier.fraction;
+      for (const model::WeightedParticle& carrier : weight.particles)
+        masses_[first + carrier.particle] += weight.mass * (carrier.fraction / fraction_sum);
     }
     held_.resize(masses_.size());
     for (const model::Pin& pin : cloth.pins)
-      for (const model::Chosen& chosen : pin.particles)
+      for (const model::WeightedParticle& chosen : pin.particles)
         if (!pin.strength) held_[first + chosen.particle] = 1;
     if (cloth.rope)
       add_rope_forces(c, *cloth.rope, model.physics);
@@ -178,7 +178,7 @@ solver::LinearSystem ClothSystem::make_linear_system() const {
   system.matrix = lay_out_matrix();
   system.aggregate_levels = aggregate_levels_;
   for (std::size_t p = 0; p < parts(); ++p)
-    system.parts.push_back({.begin = first_[p], .end = first_[p + 1], .is_small = p >= cloths()});
+    system.blocks.push_back({.begin = first_[p], .end = first_[p + 1], .is_small = p >= cloths()});
   return system;
 }
 
@@ -301,7 +301,7 @@ void ClothSystem::build_aggregates(const model::Model& model) {
   for (const model::Cloth& cloth : model.cloths) lattices.push_back(lattice_of(cloth));
   bool is_coarse = false;
   do {
-    solver::Aggregates grouping;
+    solver::Aggregates aggregates;
     for (Lattice& lattice : lattices) {
       coarsen(lattice);
       std::vector<Box>& members = lattice.boxes;
@@ -309,14 +309,14 @@ void ClothSystem::build_aggregates(const model::Model& model) {
       std::ranges::sort(halved);
       halved.erase(std::unique(halved.begin(), halved.end()), halved.end());
       for (const Box& box : members)
-        grouping.of.push_back(grouping.count +
-                              static_cast<Index>(std::ranges::lower_bound(halved, box) - halved.begin()));
-      grouping.count += static_cast<Index>(halved.size());
+        aggregates.of.push_back(aggregates.count +
+                                static_cast<Index>(std::ranges::lower_bound(halved, box) - halved.begin()));
+      aggregates.count += static_cast<Index>(halved.size());
       members = std::move(halved);
     }
-    const Index of_cloths = grouping.count;
-    for (Index i = first_[cloths()]; i < first_.back(); ++i) grouping.of.push_back(grouping.count++);
-    aggregate_levels_.push_back(std::move(grouping));
+    const Index of_cloths = aggregates.count;
+    for (Index i = first_[cloths()]; i < first_.back(); ++i) aggregates.of.push_back(aggregates.count++);
+    aggregate_levels_.push_back(std::move(aggregates));
     is_coarse = of_cloths <= std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size()));
   } while (!is_coarse);
 }
@@ -328,7 +328,7 @@ double ClothSystem::Sewing::progress_at(double t) const {
 void ClothSystem::Sewing::set_progress(double new_progress) {
   progress = new_progress;
   membrane->interpolate_rest_shape(progress);
-  if (limit != nullptr) limit->follow(*membrane);
+  if (limit != nullptr) limit->copy_rest_shape(*membrane);
   if (bands != nullptr) bands->interpolate_rest_shape(progress);
 }
 
@@ -351,7 +351,7 @@ bool ClothSystem::sew(double t) {
     const double progress = sewing.progress_at(t);
     if (sewing.ties != nullptr) {
       sewing.time = t;
-      sewing.ties->use(begin_ + t, progress);
+      sewing.ties->set_strengths(begin_ + t, progress);
     }
     if (progress != sewing.progress) sewing.set_progress(progress);
   }
@@ -408,7 +408,7 @@ void ClothSystem::serialize(Archive& archive) {
     if constexpr (!Archive::kReads) continue;
     require(sewing.progress >= 0 && sewing.progress <= 1, "a progress of sewing");
     sewing.set_progress(sewing.progress);
-    if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.progress);
+    if (sewing.ties != nullptr) sewing.ties->set_strengths(begin_ + sewing.time, sewing.progress);
   }
   inflation_.serialize(archive);
 }
@@ -438,7 +438,7 @@ void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLinearis
 }
 
 void ClothSystem::add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const {
-  for (const auto& [cloth, limit] : limits_) limit->add_lag(x, lags[cloth], force);
+  for (const auto& [cloth, limit] : limits_) limit->add_linearisation_difference(x, lags[cloth], force);
 }
 
 void ClothSystem::fill_constant(double rate, solver::Assembly& assembly) const {

@@ -68,7 +68,8 @@ class ClothSystem {
   /// Per cloth, the linearisation of the forces that limit its extension (thread locks, forces::StretchLimit); empty
   /// for cloths without such a limit.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
-  /// These functions call StretchLimit::begin(), update() and add_lag() for all cloths with a limit.
+  /// These functions call StretchLimit::begin(), update() and add_linearisation_difference() for all cloths with a
+  /// limit.
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;

@@ -384,7 +384,7 @@ std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, 
   obstructed_pins_ = report.obstructed_pins;
   if (!report.separated) {
     std::ranges::copy(solved_, next.x.begin());
-    return "cannot keep " + describe(report.stuck, now) + " apart";
+    return "cannot keep " + describe(report.unseparated_pair, now) + " apart";
   }
   for (std::size_t i = 0; i < particles_; ++i) next.v[i] += (next.x[i] - solved_[i]) / h;
   note_pinches(now);
@@ -426,10 +426,10 @@ std::string CollisionStage::describe(const collision::ObstructedPin& given, cons
 
 std::string CollisionStage::describe(const collision::Pinch& pinch) const {
   const std::string& obstacle = names_[pinch.obstacle];
-  const std::string between = !pinch.other ? fmt::format("in front of '{}'", obstacle)
-                              : *pinch.other == pinch.obstacle
+  const std::string between = !pinch.pressing_obstacle ? fmt::format("in front of '{}'", obstacle)
+                              : *pinch.pressing_obstacle == pinch.obstacle
                                   ? fmt::format("between parts of '{}'", obstacle)
-                                  : fmt::format("between '{}' and '{}'", obstacle, names_[*pinch.other]);
+                                  : fmt::format("between '{}' and '{}'", obstacle, names_[*pinch.pressing_obstacle]);
   return fmt::format("'{}' has no room {} near ({:.4g}, {:.4g}, {:.4g}) m", names_[pinch.cloth], between,
                      pinch.place.x(), pinch.place.y(), pinch.place.z());
 }

@@ -44,10 +44,10 @@ class CollisionStage {
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
   /// Moves cloth that touches or crosses something at the start, if Cloth::may_be_untangled(). Particles in `held`
-  /// stay, and so do the cloths whose numbers are in `dressed`. If a new cloth is worn over a dressed one, all new
-  /// cloths end up outside of the dressed one. If an obstacle goes through cloth that has no way out, throws
+  /// stay, and so do the cloths whose numbers are in `put_on`. If a new cloth is worn over a put-on one, all new
+  /// cloths end up outside of that one. If an obstacle goes through cloth that has no way out, throws
   /// Error(scene_invalid) with objects and places. Other intersections may remain: see find_intersections().
-  void untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> dressed,
+  void untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> put_on,
                 SystemState& start);
 
   /// Copies the pinched pairs of another stage. `cloths[k]`: number, in this stage, of cloth k of `before`.
@@ -98,7 +98,7 @@ class CollisionStage {
   /// between obstacles becomes pinched: the obstacles may intersect it. If `may_pinch` is false, only an obstacle that
   /// pinches the cloth already may intersect it. Moves pinned particles only if nothing else separates a pair and
   /// `may_move_pins` is true; if it is false, fails, and obstructed_pins() lists them. Returns nothing on success, else
-  /// a text that says which objects are stuck, and where.
+  /// a text that says which objects cannot be separated, and where.
   std::optional<std::string> push_apart(double h, bool may_pinch, bool may_move_pins, const SystemState& now,
                                         SystemState& next);
   /// After push_apart(): makes the corrected `next` the new start of the step's trajectory, and finds contacts there.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "physics/collision/bodies.hpp"
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 #include "physics/simulation/simulation.hpp"
 
 namespace weft::simulation {

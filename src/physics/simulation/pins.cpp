@@ -47,10 +47,10 @@ std::vector<std::vector<Pins::Owner>> Pins::owners(const model::Model& model,
     for (std::size_t c = 0; c < model.cloths.size(); ++c)
       for (const model::Pin& each : model.cloths[c].pins) {
         const double release = each.release >= 0 ? each.release : std::numeric_limits<double>::infinity();
-        for (const model::Chosen& chosen : each.particles) {
+        for (const model::WeightedParticle& chosen : each.particles) {
           std::vector<Owner>& owners = owners_of[static_cast<std::size_t>(first_particle[c] + chosen.particle)];
           if (chosen.faded == faded && (owners.empty() || owners.back().release < release))
-            owners.push_back({pin, chosen.share, release});
+            owners.push_back({pin, chosen.fraction, release});
         }
         ++pin;
       }
@@ -72,7 +72,7 @@ Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
     for (std::size_t number = 0; number < cloth.pins.size(); ++number) {
       const model::Pin& pin = cloth.pins[number];
       Group& group = groups_.emplace_back();
-      const std::vector<model::Chosen>& all = pin.particles;
+      const std::vector<model::WeightedParticle>& all = pin.particles;
       std::vector<std::size_t> places;  // index of each particle of the group in `all`
       for (std::size_t k = 0; k < all.size(); ++k) {
         const Index particle = first_particle[c] + all[k].particle;
@@ -88,7 +88,7 @@ Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
       group.release = pin.release;
       if (pin.body) group.follow = static_cast<int>(*pin.body);
       if (pin.first_vertex) {
-        for (const std::size_t place : places) group.skinned.push_back(*pin.first_vertex + place);
+        for (const std::size_t place : places) group.followed_vertices.push_back(*pin.first_vertex + place);
       } else if (pin.body && model.bodies[*pin.body].deforms()) {
         std::vector<Vec3> starts;
         for (Index particle : group.particles) starts.push_back(start(particle));
@@ -158,12 +158,12 @@ void Pins::held_at(double t, const model::Model& model, std::vector<integrator::
                       place.x + triangle.axes * anchor.arm,
                       place.v + triangle.rates * anchor.arm});
     }
-    for (std::size_t p = 0; p < group.skinned.size(); ++p) {
+    for (std::size_t p = 0; p < group.followed_vertices.size(); ++p) {
       if (!has(p)) continue;
-      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.skinned[p], t);
+      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.followed_vertices[p], t);
       held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
     }
-    if (!group.anchors.empty() || !group.skinned.empty()) continue;
+    if (!group.anchors.empty() || !group.followed_vertices.empty()) continue;
     motion::PoseSample pose;
     if (group.follow >= 0) {
       pose = model.pose(static_cast<std::size_t>(group.follow), t);

@@ -67,7 +67,7 @@ class Pins {
     int follow = -1;              // number of the body that the pin follows; −1: it follows `track`
     std::vector<Anchor> anchors;  // in place of `arms`, if the pin follows a deforming body without bones
     // In place of `arms`, if the pin follows a body with bones: the vertices that represent its particles.
-    std::vector<std::size_t> skinned;
+    std::vector<std::size_t> followed_vertices;
     std::optional<motion::Track> track;  // motion of model::Pin::middle, if the pin follows no body
   };
 

@@ -75,8 +75,8 @@ struct Simulation::Impl {
   void begin_layer(std::size_t number);
   void put_on_next();
   void make_start() const;
-  bool all_dressed() const { return layer + 1 == model.layers.size(); }
-  const model::Model& dressed() const { return dressed_part ? *dressed_part : model; }
+  bool all_put_on() const { return layer + 1 == model.layers.size(); }
+  const model::Model& put_on_model() const { return put_on_part ? *put_on_part : model; }
   FrameReport advance();
   double time() const { return frame / model.time.fps; }
   double next_time() const { return (frame + 1) / model.time.fps; }
@@ -89,9 +89,9 @@ struct Simulation::Impl {
   void serialize(Archive& archive);
 
   model::Model model;
-  std::size_t layer = 0;                       // number of the last layer that is put on
-  std::unique_ptr<model::Model> dressed_part;  // model of the cloths that are put on; null if all are
-  int frame;                                   // negative during the preroll
+  std::size_t layer = 0;                      // number of the last layer that is put on
+  std::unique_ptr<model::Model> put_on_part;  // model of the cloths that are put on; null if all are
+  int frame;                                  // negative during the preroll
   std::uint64_t changes = 0;
   std::unique_ptr<StepLoop> steps;
   FrameReport start_report;  // of frame 0
@@ -106,7 +106,7 @@ Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.tim
     all.first_frame = frame;
     all.cloths.resize(model.cloths.size());
     std::iota(all.cloths.begin(), all.cloths.end(), std::size_t{0});
-    all.dressed = all.cloths;
+    all.put_on = all.cloths;
   }
   // Checks each later layer alone against the bodies at their start positions, so that a layer that does not fit is
   // refused before anything is simulated.
@@ -129,18 +129,17 @@ Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.tim
 // Makes the step loop of all cloths up to this layer, each at its start position.
 void Simulation::Impl::begin_layer(std::size_t number) {
   layer = number;
-  dressed_part =
-      all_dressed() ? nullptr : std::make_unique<model::Model>(model.with_cloths(model.layers[layer].dressed));
-  steps = std::make_unique<StepLoop>(dressed(), time());
+  put_on_part = all_put_on() ? nullptr : std::make_unique<model::Model>(model.with_cloths(model.layers[layer].put_on));
+  steps = std::make_unique<StepLoop>(put_on_model(), time());
 }
 
 // Puts on each layer whose first frame is not later than the current one, outside of the cloths that are already on.
 void Simulation::Impl::put_on_next() {
-  while (!all_dressed() && model.layers[layer + 1].first_frame <= frame) {
-    const std::unique_ptr<model::Model> inner_part = std::move(dressed_part);  // the step loop refers to it
+  while (!all_put_on() && model.layers[layer + 1].first_frame <= frame) {
+    const std::unique_ptr<model::Model> inner_part = std::move(put_on_part);  // the step loop refers to it
     const std::unique_ptr<StepLoop> inner = std::move(steps);
     begin_layer(layer + 1);
-    const std::vector<std::size_t>&now = model.layers[layer].dressed, &before = model.layers[layer - 1].dressed;
+    const std::vector<std::size_t>&now = model.layers[layer].put_on, &before = model.layers[layer - 1].put_on;
     std::vector<std::size_t> numbers;  // number of each cloth dressed before, among those dressed now
     for (const std::size_t c : before)
       numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
@@ -154,12 +153,12 @@ void Simulation::Impl::put_on_next() {
 void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::note(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
-  if (dressed().may_be_untangled()) steps->untangle();
-  check_start(dressed(), *steps);
+  if (put_on_model().may_be_untangled()) steps->untangle();
+  check_start(put_on_model(), *steps);
 }
 
 FrameReport Simulation::Impl::advance() {
-  if (!all_dressed()) put_on_next();
+  if (!all_put_on()) put_on_next();
   FrameReport report;
   report.frame = frame + 1;
   // Frame k is at exactly k / fps: a sum of step lengths would have rounding errors.
@@ -201,7 +200,7 @@ void Simulation::Impl::measure(FrameReport& report) const {
   const CollisionStage* collisions = steps->collisions();
   if (collisions == nullptr) return;
   report.proximities = collisions->proximities();
-  report.constraints += collisions->response().active(now.x);
+  report.constraints += collisions->response().count_active(now.x);
   report.min_distance = collisions->min_distance();
 }
 
@@ -212,7 +211,8 @@ void Simulation::Impl::report_obstructions(FrameReport& report) const {
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
   const YieldingPins::Lags lags = steps->take_lags();
   report.lagging_particles = lags.particles;
-  for (const std::string& text : lags.turns) report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
+  for (const std::string& text : lags.messages)
+    report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
 }
 
 void Simulation::Impl::drive(std::size_t body, const motion::Pose& end) {
@@ -226,7 +226,7 @@ void Simulation::Impl::set_motion(std::size_t body) {
   const auto& keys = *driven.at(body);
   const motion::PoseTrack motion{motion::Interpolation::linear, {keys.begin(), keys.end()}};
   model.set_motion(body, motion);
-  if (dressed_part) dressed_part->set_motion(body, motion);
+  if (put_on_part) put_on_part->set_motion(body, motion);
 }
 
 template <class Archive>
@@ -307,12 +307,12 @@ MatrixSize Simulation::matrix() const {
 
 std::vector<Vec3> Simulation::particles_of_all() const {
   std::vector<Vec3> all;
-  const std::vector<std::size_t>& dressed = impl_->model.layers[impl_->layer].dressed;
+  const std::vector<std::size_t>& put_on = impl_->model.layers[impl_->layer].put_on;
   for (std::size_t c = 0; c < impl_->model.cloths.size(); ++c) {
     const std::vector<Vec3>& start = impl_->model.cloths[c].start;
-    const auto found = std::ranges::find(dressed, c);
-    const auto number = static_cast<std::size_t>(found - dressed.begin());
-    const Vec3* from = found == dressed.end()
+    const auto found = std::ranges::find(put_on, c);
+    const auto number = static_cast<std::size_t>(found - put_on.begin());
+    const Vec3* from = found == put_on.end()
                            ? start.data()
                            : impl_->steps->progress().now.x.data() + impl_->steps->cloth().first_particle(number);
     all.insert(all.end(), from, from + start.size());
@@ -320,8 +320,8 @@ std::vector<Vec3> Simulation::particles_of_all() const {
   return all;
 }
 
-bool Simulation::all_dressed() const {
-  return impl_->all_dressed();
+bool Simulation::all_put_on() const {
+  return impl_->all_put_on();
 }
 
 std::vector<Vec3> Simulation::vertices_of(std::size_t body) const {
@@ -336,10 +336,10 @@ ParticleState Simulation::state() const {
 }
 
 ClothMotion Simulation::motion_of(std::size_t cloth) const {
-  const std::vector<std::size_t>& dressed = impl_->model.layers[impl_->layer].dressed;
-  const auto found = std::ranges::find(dressed, cloth);
-  if (found == dressed.end()) return {};
-  const auto number = static_cast<std::size_t>(found - dressed.begin());
+  const std::vector<std::size_t>& put_on = impl_->model.layers[impl_->layer].put_on;
+  const auto found = std::ranges::find(put_on, cloth);
+  if (found == put_on.end()) return {};
+  const auto number = static_cast<std::size_t>(found - put_on.begin());
   const ClothSystem& cloths = impl_->steps->cloth();
   const SystemState& now = impl_->steps->progress().now;
   const Index first = cloths.first_particle(number), end = cloths.first_particle(number + 1);
@@ -348,11 +348,11 @@ ClothMotion Simulation::motion_of(std::size_t cloth) const {
 
 std::vector<std::vector<Vec3>> Simulation::contact_forces() const {
   const std::vector<Vec3> forces = impl_->steps->contact_forces();
-  const std::vector<std::size_t>& dressed = impl_->model.layers[impl_->layer].dressed;
+  const std::vector<std::size_t>& put_on = impl_->model.layers[impl_->layer].put_on;
   std::vector<std::vector<Vec3>> of_cloths(impl_->model.cloths.size());
-  for (std::size_t number = 0; number < dressed.size(); ++number)
-    of_cloths[dressed[number]].assign(forces.begin() + impl_->steps->cloth().first_particle(number),
-                                      forces.begin() + impl_->steps->cloth().first_particle(number + 1));
+  for (std::size_t number = 0; number < put_on.size(); ++number)
+    of_cloths[put_on[number]].assign(forces.begin() + impl_->steps->cloth().first_particle(number),
+                                     forces.begin() + impl_->steps->cloth().first_particle(number + 1));
   return of_cloths;
 }
 
@@ -366,7 +366,7 @@ void Simulation::drive(std::size_t body, const motion::Pose& end) {
 
 void Simulation::set_weather(const Vec3& gravity, const Vec3& wind) {
   impl_->model.physics.keys = {{0, gravity, wind}};
-  if (impl_->dressed_part) impl_->dressed_part->physics.keys = impl_->model.physics.keys;
+  if (impl_->put_on_part) impl_->put_on_part->physics.keys = impl_->model.physics.keys;
   impl_->steps->reload_weather();
   impl_->energy_bound->exempt_gains();
 }

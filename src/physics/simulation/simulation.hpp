@@ -88,7 +88,7 @@ class Simulation {
   /// start.
   std::vector<Vec3> particles_of_all() const;
   /// Whether all cloths are put on.
-  bool all_dressed() const;
+  bool all_put_on() const;
   /// Vertices of a body that forces move [m]; empty for other bodies.
   std::vector<Vec3> vertices_of(std::size_t body) const;
   /// State of the current frame, for the cloths that are put on; valid until the next advance().

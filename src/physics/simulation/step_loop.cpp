@@ -46,7 +46,7 @@ StepLoop::StepLoop(const model::Model& model, double start)
 }
 
 void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths) {
-  dressed_.assign(cloths.begin(), cloths.end());
+  put_on_.assign(cloths.begin(), cloths.end());
   for (std::size_t c = 0; c < cloths.size(); ++c) {
     const Index there = before.cloth_.first_particle(c), here = cloth_.first_particle(cloths[c]);
     const Index count = before.cloth_.first_particle(c + 1) - there;
@@ -71,7 +71,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
 
 void StepLoop::untangle() {
   if (!collisions_) return;
-  collisions_->untangle(held_, dressed_, progress_.now);
+  collisions_->untangle(held_, put_on_, progress_.now);
   next_ = progress_.now;
 }
 
@@ -112,7 +112,7 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   const double fps = model_.time.fps;
   const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * model_.time.step) - 1e-9)));
   const double h = 1 / (fps * steps);
-  if (steps > 1 && may_rest(t_t0, h, steps) && rest(t_t0, 1 / fps, report)) return;
+  if (steps > 1 && may_rest(t_t0, h, steps) && attempt_resting_frame(t_t0, 1 / fps, report)) return;
   const double done = std::round(t_t0 * fps) * steps;
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
 }
@@ -158,7 +158,7 @@ bool StepLoop::is_slow(const SystemState& moment) {
 
 // Takes one step in place of several. If the step is rejected or something begins to move in it, discards the step,
 // does not count it, and returns false.
-bool StepLoop::rest(double t, double h, FrameReport& report) {
+bool StepLoop::attempt_resting_frame(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
   if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
   accept(h, report);

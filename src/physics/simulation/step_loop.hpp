@@ -114,7 +114,7 @@ class StepLoop {
   bool may_rest(double t, double h, int steps);
   bool has_settled() const;
   static bool is_slow(const SystemState& moment);
-  bool rest(double t, double h, FrameReport& report);
+  bool attempt_resting_frame(double t, double h, FrameReport& report);
   bool obstacle_turns_too_far(double t, double h) const {
     return collisions_ && collisions_->obstacle_turns_too_far(t, h, progress_.now);
   }
@@ -144,8 +144,8 @@ class StepLoop {
   static Rejection rejection_of(const integrator::StepReport& step);
 
   const model::Model& model_;
-  double start_;                      // time at which the simulation starts [s]
-  std::vector<std::size_t> dressed_;  // numbers of the cloths that copy_state_from() took over
+  double start_;                     // time at which the simulation starts [s]
+  std::vector<std::size_t> put_on_;  // numbers of the cloths that copy_state_from() took over
   ClothSystem cloth_;
   StepProblem problem_;
   YieldingPins pins_;

@@ -181,7 +181,7 @@ void StepProblem::use_rate(double rate) {
 
 // Copies the positions and velocities of a part into the memory. Returns whether any of them has changed.
 bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoint& at) {
-  const solver::DiagonalBlock& part = memory_.system.parts[cloth];
+  const solver::DiagonalBlock& part = memory_.system.blocks[cloth];
   return parallel_sum(size_of(part), kGrainSize, [&](std::size_t begin, std::size_t end) {
            bool moved = false;
            for (std::size_t k = begin; k < end; ++k) {
@@ -222,7 +222,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
 
 // Whether a particle of a part has moved too far from where the part's rows of the matrix were assembled.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
-  const solver::DiagonalBlock& part = memory_.system.parts[cloth];
+  const solver::DiagonalBlock& part = memory_.system.blocks[cloth];
   const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();
   for (auto i = part.begin; i < part.end; ++i)
     if (!((x[i] - memory_.linearised_at[i]).squaredNorm() <= most * most)) return true;
@@ -232,7 +232,7 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
 void StepProblem::assemble_rows(const integrator::StagePoint& at) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
-    solver::DiagonalBlock& part = memory_.system.parts[c];
+    solver::DiagonalBlock& part = memory_.system.blocks[c];
     std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
     update_positions(c, at);
     ++part.version;
@@ -240,7 +240,7 @@ void StepProblem::assemble_rows(const integrator::StagePoint& at) {
   evaluate(at, true);
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
-    const solver::DiagonalBlock& part = memory_.system.parts[c];
+    const solver::DiagonalBlock& part = memory_.system.blocks[c];
     const auto for_rows = [&](const auto& complete) {
       parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
         complete(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end));

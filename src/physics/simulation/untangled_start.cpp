@@ -15,18 +15,18 @@ namespace {
 // Maximum ratio of border edges to all edges at which a body counts as closed. Characters are open at eyes and soles.
 constexpr double kClosedBorder = 0.02;
 
-untangle::Kind kind_of(const model::Body& body) {
-  if (body.infinite_floor) return untangle::Kind::floor;
+untangle::SurfaceKind kind_of(const model::Body& body) {
+  if (body.infinite_floor) return untangle::SurfaceKind::floor;
   const mesh::EdgeSet edges = mesh::collect_edges(body.colliding_triangles());
   const auto border = std::ranges::count_if(edges.edges, [](const mesh::Edge& e) { return e.triangles[1] < 0; });
   const bool closed = static_cast<double>(border) <= kClosedBorder * static_cast<double>(edges.edges.size());
-  return closed && !edges.edges.empty() ? untangle::Kind::solid : untangle::Kind::open;
+  return closed && !edges.edges.empty() ? untangle::SurfaceKind::solid : untangle::SurfaceKind::open;
 }
 
 // Whether a cloth that is not yet put on will be worn over this one.
-bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std::size_t> dressed) {
+bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std::size_t> put_on) {
   for (std::size_t c = 0; c < model.cloths.size(); ++c)
-    if (std::ranges::find(dressed, c) == dressed.end() &&
+    if (std::ranges::find(put_on, c) == put_on.end() &&
         std::ranges::find(model.cloths[c].over, model.cloths[cloth].name) != model.cloths[c].over.end())
       return true;
   return false;
@@ -34,19 +34,19 @@ bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std:
 
 }  // namespace
 
-void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> dressed,
+void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> put_on,
                               SystemState& start) {
-  // Cloths that are already put on (`dressed`) do not move, like obstacles. They come last, so that new cloth is moved
+  // Cloths that are already put on (`put_on`) do not move, like obstacles. They come last, so that new cloth is moved
   // out of bodies first, then out of them.
   std::vector<std::size_t> order;  // numbers of the engine's bodies
   const std::size_t cloths = model_.cloths.size();
   for (std::size_t c = 0; c < cloths; ++c)
-    if (std::ranges::find(dressed, c) == dressed.end()) order.push_back(c);
+    if (std::ranges::find(put_on, c) == put_on.end()) order.push_back(c);
   for (std::size_t b = 0; b < bodies_.size(); ++b) order.push_back(cloths + b);
-  if (model_.contact.self) order.insert(order.end(), dressed.begin(), dressed.end());
+  if (model_.contact.self) order.insert(order.end(), put_on.begin(), put_on.end());
 
   collision::Bodies bodies;
-  std::vector<untangle::Kind> kinds;
+  std::vector<untangle::SurfaceKind> kinds;
   std::vector<Vec3> x, rest;
   std::vector<std::uint8_t> movable, is_held(start.v.size(), 0);
   for (const integrator::HeldParticle& particle : held) is_held[particle.constraint.particle] = 1;
@@ -56,14 +56,14 @@ void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, st
     std::vector<collision::Triangle> triangles(surface.triangles.begin(), surface.triangles.end());
     for (collision::Triangle& t : triangles)
       for (Index& v : t) v -= surface.first_vertex;
-    const bool fresh = b < cloths && std::ranges::find(dressed, b) == dressed.end();
+    const bool fresh = b < cloths && std::ranges::find(put_on, b) == put_on.end();
     bodies.add(triangles, surface.vertex_count, {.deformable = fresh, .thickness = engine_.bodies()[b].thickness});
     if (fresh)
-      kinds.push_back(untangle::Kind::cloth);
+      kinds.push_back(untangle::SurfaceKind::cloth);
     else if (b >= cloths)
       kinds.push_back(kind_of(model_.bodies[bodies_[b - cloths]]));
     else
-      kinds.push_back(is_layer(model_, b, dressed) ? untangle::Kind::layer : untangle::Kind::open);
+      kinds.push_back(is_layer(model_, b, put_on) ? untangle::SurfaceKind::layer : untangle::SurfaceKind::open);
     for (std::size_t v = first; v < first + static_cast<std::size_t>(surface.vertex_count); ++v) {
       x.push_back(start.x[v]);
       movable.push_back(fresh && model_.cloths[b].may_be_untangled() && is_held[v] == 0);
@@ -72,9 +72,9 @@ void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, st
     if (fresh) rest.insert(rest.end(), given.begin(), given.end());
   }
 
-  const untangle::Fabric fabric(bodies, std::move(kinds), x, rest, movable);
+  const untangle::UntangleInput input(bodies, std::move(kinds), x, rest, movable);
   const untangle::Report report =
-      untangle::untangle(fabric, {model_.contact.self, order.size() > cloths - dressed.size()}, x);
+      untangle::untangle(input, {model_.contact.self, order.size() > cloths - put_on.size()}, x);
   if (!report.locked.empty()) {
     std::string regions;
     for (const untangle::InsideRegion& region : report.locked) {

@@ -46,12 +46,12 @@ YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& 
 }
 
 void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
-  if (t != forced_t_ || h != forced_h_) {
+  if (t != step_start_ || h != step_length_) {
     std::ranges::fill(released_, std::uint8_t{0});
     obstructions_.clear();
   }
-  forced_t_ = t;
-  forced_h_ = h;
+  step_start_ = t;
+  step_length_ = h;
   pins_.held_at(t + h, model_, targets_);
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
   if (any_lagged) pins_.held_at(t, model_, at_start_);
@@ -126,8 +126,8 @@ void YieldingPins::accept() {
     ++count;
     const std::size_t pin = pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
-    seen_.turns.push_back(fmt::format("{}: yields to {}, and lags behind until the way is free",
-                                      name_of(model_, pins_.info(pin)), obstructions_[pin]));
+    seen_.messages.push_back(fmt::format("{}: yields to {}, and lags behind until the way is free",
+                                         name_of(model_, pins_.info(pin)), obstructions_[pin]));
   }
   seen_.particles = std::max(seen_.particles, count);
   std::swap(lagged_, lags_);
@@ -138,7 +138,7 @@ void YieldingPins::accept() {
 YieldingPins::Lags YieldingPins::take_lags() {
   for (std::size_t pin : lagging_before_) {
     if (lagging_.contains(pin)) continue;
-    seen_.turns.push_back(fmt::format("{}: is at its target again", name_of(model_, pins_.info(pin))));
+    seen_.messages.push_back(fmt::format("{}: is at its target again", name_of(model_, pins_.info(pin))));
   }
   lagging_before_ = std::move(lagging_);
   lagging_.clear();

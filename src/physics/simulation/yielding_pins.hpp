@@ -41,8 +41,8 @@ class YieldingPins {
 
   /// Lagging pins of the steps of a frame. take_lags() also begins the next frame.
   struct Lags {
-    int particles = 0;               ///< largest number of particles that lagged in one step
-    std::vector<std::string> turns;  ///< one text per pin that began to lag or is at its target again
+    int particles = 0;                  ///< largest number of particles that lagged in one step
+    std::vector<std::string> messages;  ///< one text per pin that began to lag or is at its target again
   };
   Lags take_lags();
 
@@ -57,8 +57,10 @@ class YieldingPins {
  private:
   void pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x);
   // The functions of Pins, at the end of the step.
-  std::size_t pin_of(Index particle) const { return pins_.pin_of(particle, forced_t_ + forced_h_); }
-  double strength_fraction(Index particle) const { return pins_.strength_fraction(particle, forced_t_ + forced_h_); }
+  std::size_t pin_of(Index particle) const { return pins_.pin_of(particle, step_start_ + step_length_); }
+  double strength_fraction(Index particle) const {
+    return pins_.strength_fraction(particle, step_start_ + step_length_);
+  }
 
   Pins pins_;
   const model::Model& model_;
@@ -70,7 +72,7 @@ class YieldingPins {
   std::vector<std::uint8_t> released_;          // per particle: whether release_particle() was called for this step
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
   std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
-  double forced_t_ = 0, forced_h_ = 0;               // start and length of the last step that began [s]
+  double step_start_ = 0, step_length_ = 0;          // start and length of the last step that began [s]
   std::set<std::size_t> lagging_, lagging_before_;   // pins, in this frame and in the previous one
   Lags seen_;
 };

@@ -22,7 +22,7 @@ using TermForces = Eigen::Matrix<double, kDirections, 3>;
 // block.
 class TermBlocks {
  public:
-  explicit TermBlocks(std::size_t parts) : products(parts, BlockMotions::Products::Zero()) {}
+  explicit TermBlocks(std::size_t count) : products(count, BlockMotions::Products::Zero()) {}
 
   void add(std::span<const std::pair<int, TermForces>> of_parts, const Mat3& stiffness) {
     TermForces all = TermForces::Zero();
@@ -47,17 +47,17 @@ class TermBlocks {
 // Position of a particle's diagonal block among the selected ones; −1 if it is not selected.
 class SelectionIndex {
  public:
-  SelectionIndex(std::vector<DiagonalBlock> parts, std::span<const std::size_t> selected)
-      : parts_(std::move(parts)), numbers_(parts_.size(), -1) {
+  SelectionIndex(std::vector<DiagonalBlock> blocks, std::span<const std::size_t> selected)
+      : blocks_(std::move(blocks)), numbers_(blocks_.size(), -1) {
     for (std::size_t s = 0; s < selected.size(); ++s) numbers_[selected[s]] = static_cast<int>(s);
   }
   int of(Index particle) const {
-    const auto after = std::ranges::upper_bound(parts_, particle, {}, &DiagonalBlock::begin);
-    return numbers_[static_cast<std::size_t>(after - parts_.begin()) - 1];
+    const auto after = std::ranges::upper_bound(blocks_, particle, {}, &DiagonalBlock::begin);
+    return numbers_[static_cast<std::size_t>(after - blocks_.begin()) - 1];
   }
 
  private:
-  std::vector<DiagonalBlock> parts_;
+  std::vector<DiagonalBlock> blocks_;
   std::vector<int> numbers_;
 };
 
@@ -84,7 +84,7 @@ template <class Real>
 void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
                            const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
                            std::span<const Mat3> row_sums, std::span<const Products> products) {
-  const SelectionIndex numbers(parts_of(system), selected);
+  const SelectionIndex numbers(blocks_of(system), selected);
   std::array<bool, kDirections> all;
   for (int k = 0; k < kDirections; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
   is_used_.assign(selected.size(), all);

@@ -82,8 +82,8 @@ Recurrence<Real>& ConjugateGradient::prepare_recurrence(PrecisionState<Real>& in
 
 void ConjugateGradient::prepare(const LinearSystem& system, AggregateSums sums) {
   system_ = &system;
-  all_parts_.resize(parts_of(system).size());
-  std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
+  all_blocks_.resize(blocks_of(system).size());
+  std::iota(all_blocks_.begin(), all_blocks_.end(), std::size_t{0});
   allows_single_ = allows_single_precision(system);
   single_.is_prepared = double_.is_prepared = false;
   if (sums == AggregateSums::reuse) return;
@@ -101,28 +101,28 @@ std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
 
 LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations,
                                       std::span<Vec3> x, const Directions& directions) {
-  return solve(b, goal, max_iterations, x, directions, all_parts_);
+  return solve(b, goal, max_iterations, x, directions, all_blocks_);
 }
 
 LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations,
                                       std::span<Vec3> x, const Directions& directions,
-                                      std::span<const std::size_t> parts) {
+                                      std::span<const std::size_t> blocks) {
   std::fill(x.begin(), x.end(), Vec3::Zero());
   Progress progress;
-  progress.parts.resize(all_parts_.size());
+  progress.blocks.resize(all_blocks_.size());
   End end = End::needs_double;
   if (allows_single_ && goal.relative >= kSmallestSingleGoal) {
-    end = prepare_recurrence(single_).solve(b, goal, max_iterations, x, directions, parts, progress);
+    end = prepare_recurrence(single_).solve(b, goal, max_iterations, x, directions, blocks, progress);
     filter(x);
     copy_as_vec3(single_.recurrence->residual(), residual_);
   }
   if (end == End::needs_double) {
-    end = prepare_recurrence(double_).solve(b, goal, max_iterations, x, directions, parts, progress);
+    end = prepare_recurrence(double_).solve(b, goal, max_iterations, x, directions, blocks, progress);
     copy_as_vec3(double_.recurrence->residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
   // Without iterations, or with a residual of zero, the error counts as zero.
-  for (const Progress::OfPart& part : progress.parts)
+  for (const Progress::BlockProgress& part : progress.blocks)
     report.errors.push_back(
         part.gains.empty() || progress.is_exact ? 0 : std::sqrt(part.error_energy() * part.error_norm_ratio()));
   return report;

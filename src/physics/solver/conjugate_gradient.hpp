@@ -48,7 +48,7 @@ class ConjugateGradient {
                      const Directions& directions = {});
   /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
-                     const Directions& directions, std::span<const std::size_t> parts);
+                     const Directions& directions, std::span<const std::size_t> blocks);
   /// b − A x of the last solve, on the rows that it solved for, without constrained components.
   std::span<const Vec3> residual() const { return residual_; }
 
@@ -72,7 +72,7 @@ class ConjugateGradient {
 
   PrecisionState<float> single_;
   PrecisionState<double> double_;
-  std::vector<std::size_t> all_parts_;
+  std::vector<std::size_t> all_blocks_;
   std::vector<Vec3> residual_, preconditioned_;
 };
 

@@ -69,8 +69,8 @@ struct DiagonalBlock {
 };
 
 struct LinearSystem {
-  BlockMatrix matrix;                ///< positive definite on the free directions
-  std::vector<DiagonalBlock> parts;  ///< of all rows, ascending; empty: one diagonal block
+  BlockMatrix matrix;                 ///< positive definite on the free directions
+  std::vector<DiagonalBlock> blocks;  ///< of all rows, ascending; empty: one diagonal block
   std::vector<StencilTerm> terms;
   std::vector<WideTerm> wide_terms;
   std::vector<DiagonalTerm> diagonal_terms;
@@ -120,15 +120,15 @@ inline AnyTerm term_at(const LinearSystem& system, std::size_t number) {
   return {term.particles, term.weights, term.stiffness};
 }
 
-inline std::vector<DiagonalBlock> parts_of(const LinearSystem& system) {
-  return system.parts.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.parts;
+inline std::vector<DiagonalBlock> blocks_of(const LinearSystem& system) {
+  return system.blocks.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.blocks;
 }
 
 /// The rows of the diagonal blocks with these indices.
-inline std::vector<RowRange> ranges_of(std::span<const DiagonalBlock> parts, std::span<const std::size_t> numbers) {
+inline std::vector<RowRange> ranges_of(std::span<const DiagonalBlock> blocks, std::span<const std::size_t> numbers) {
   std::vector<RowRange> ranges;
   for (std::size_t p : numbers)
-    ranges.push_back({static_cast<std::size_t>(parts[p].begin), static_cast<std::size_t>(parts[p].end)});
+    ranges.push_back({static_cast<std::size_t>(blocks[p].begin), static_cast<std::size_t>(blocks[p].end)});
   return ranges;
 }
 

@@ -48,31 +48,31 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sum
   const bool interpolated_before = std::exchange(interpolates_, !has_stiff_threads());
   const bool same_levels = system_before == &system && interpolated_before == interpolates_;
   const bool same = same_levels && same_constraints;
-  const std::vector<DiagonalBlock> before = std::exchange(parts_, parts_of(system));
+  const std::vector<DiagonalBlock> before = std::exchange(blocks_, blocks_of(system));
   if (!same_levels) allocate_levels();
   if (!same) {
     constraints_ = system.constraints;
     constraint_of_.assign(at(system.matrix.rows()), -1);
-    filters_.assign(parts_.size(), {});
+    filters_.assign(blocks_.size(), {});
     for (std::size_t c = 0; c < constraints_.size(); ++c) {
       const Index particle = constraints_[c].particle;
       constraint_of_[at(particle)] = static_cast<Index>(c);
-      const auto part = std::ranges::find_if(parts_, [&](const DiagonalBlock& rows) { return particle < rows.end; });
-      filters_[at(static_cast<Index>(part - parts_.begin()))].push_back(
+      const auto part = std::ranges::find_if(blocks_, [&](const DiagonalBlock& rows) { return particle < rows.end; });
+      filters_[at(static_cast<Index>(part - blocks_.begin()))].push_back(
           {particle, PaddedMat3<Real>(constraints_[c].free)});
     }
   }
-  rows_changed_.resize(parts_.size());
-  sums_changed_.resize(parts_.size());
-  summed_version_.resize(parts_.size());
-  for (std::size_t p = 0; p < parts_.size(); ++p) {
-    rows_changed_[p] = !same || parts_[p].version != before[p].version;
-    sums_changed_[p] = !same || (sums == AggregateSums::recompute && parts_[p].version != summed_version_[p]);
-    if (sums_changed_[p]) summed_version_[p] = parts_[p].version;
+  rows_changed_.resize(blocks_.size());
+  sums_changed_.resize(blocks_.size());
+  summed_version_.resize(blocks_.size());
+  for (std::size_t p = 0; p < blocks_.size(); ++p) {
+    rows_changed_[p] = !same || blocks_[p].version != before[p].version;
+    sums_changed_[p] = !same || (sums == AggregateSums::recompute && blocks_[p].version != summed_version_[p]);
+    if (sums_changed_[p]) summed_version_[p] = blocks_[p].version;
   }
-  mark_touched_particles();
+  mark_particles_with_terms();
   if (levels_.empty()) return invert_particles();
-  parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
+  parallel_for(blocks_.size(), 1, [&](std::size_t p, std::size_t) {
     if (sums_changed_[p]) sum_aggregate_blocks(p);
   });
   parallel_invoke([&] { factorise_coarsest(); },
@@ -83,10 +83,10 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sum
 }
 
 template <class Real>
-void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
-  if (std::ranges::equal(parts, selected_)) return;
-  selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
+void Preconditioner<Real>::select(std::span<const std::size_t> blocks) {
+  if (std::ranges::equal(blocks, selected_)) return;
+  selected_.assign(blocks.begin(), blocks.end());
+  rows_ = RowChunks(ranges_of(blocks_, selected_), kGrainSize);
   for (Level& level : levels_) {
     std::vector<RowRange> ranges;
     for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
@@ -98,7 +98,7 @@ void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
 template <class Real>
 bool Preconditioner<Real>::has_stiff_threads() const {
   if (system_->norm_weights.empty()) return false;
-  return std::ranges::any_of(parts_of(*system_), [&](const DiagonalBlock& part) {
+  return std::ranges::any_of(blocks_of(*system_), [&](const DiagonalBlock& part) {
     if (part.is_small) return false;
     const double norm_weights =
         parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
@@ -122,23 +122,23 @@ template <class Real>
 void Preconditioner<Real>::allocate_levels() {
   const std::size_t rows = at(system_->matrix.rows());
   inverse_.resize(rows);
-  touched_.assign(rows, 0);
+  has_terms_.assign(rows, 0);
   levels_.resize(system_->aggregate_levels.size());
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const Aggregates& grouping = system_->aggregate_levels[l];
+    const Aggregates& aggregates = system_->aggregate_levels[l];
     Level& level = levels_[l];
-    level.aggregate_of = grouping.of;
+    level.aggregate_of = aggregates.of;
     if (l > 0) {
       level.aggregate_of = levels_[l - 1].aggregate_of;
-      for (Index& group : level.aggregate_of) group = grouping.of[at(group)];
+      for (Index& group : level.aggregate_of) group = aggregates.of[at(group)];
     }
     level.parent = l + 1 < levels_.size() ? system_->aggregate_levels[l + 1].of : std::vector<Index>();
-    level.of_matrix.assign(at(grouping.count), Mat3::Zero());
-    level.touched.assign(at(grouping.count), 0);
-    level.inverse.resize(at(grouping.count));
-    for (auto* vectors : {&level.residual, &level.correction}) vectors->assign(at(grouping.count), PaddedVec3<Real>{});
+    level.of_matrix.assign(at(aggregates.count), Mat3::Zero());
+    level.has_terms.assign(at(aggregates.count), 0);
+    level.inverse.resize(at(aggregates.count));
+    for (auto* v : {&level.residual, &level.correction}) v->assign(at(aggregates.count), PaddedVec3<Real>{});
     level.of_part.clear();
-    for (const DiagonalBlock& part : parts_) {
+    for (const DiagonalBlock& part : blocks_) {
       const auto [lowest, highest] =
           std::minmax_element(level.aggregate_of.begin() + part.begin, level.aggregate_of.begin() + part.end);
       level.of_part.push_back(part.begin == part.end ? RowRange{} : RowRange{at(*lowest), at(*highest) + 1});
@@ -163,17 +163,17 @@ void Preconditioner<Real>::compute_weights() {
   std::vector<std::vector<Index>> neighbours(inverse_.size());
   // Each particle of a small diagonal block is an aggregate of its own, and interpolates from no other.
   std::vector<char> is_small(neighbours.size(), 0);
-  for (const DiagonalBlock& part : parts_)
+  for (const DiagonalBlock& part : blocks_)
     if (part.is_small) std::fill(is_small.begin() + part.begin, is_small.begin() + part.end, 1);
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s)
       if (full.columns[s] != static_cast<Index>(i) && is_small[i] == 0) neighbours[i].push_back(full.columns[s]);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    const Aggregates& grouping = system_->aggregate_levels[l];
+    const Aggregates& aggregates = system_->aggregate_levels[l];
     Weights<Real>& weights = levels_[l].interpolation =
-        Weights<Real>::make_interpolation(grouping, smoothing, neighbours);
+        Weights<Real>::make_interpolation(aggregates, smoothing, neighbours);
     coarse_weights_ = l == 0 ? weights : coarse_weights_.times(weights);
-    levels_[l].restriction = weights.transposed(at(grouping.count));
+    levels_[l].restriction = weights.transposed(at(aggregates.count));
   }
 }
 
@@ -195,28 +195,28 @@ void Preconditioner<Real>::find_common_levels() {
 
 // Marks the particles on which contact terms act: their blocks change whenever the terms change.
 template <class Real>
-void Preconditioner<Real>::mark_touched_particles() {
-  touched_before_ = touched_;
-  std::ranges::fill(touched_, 0);
-  for (const DiagonalTerm& term : system_->diagonal_terms) touched_[at(term.particle)] = 1;
+void Preconditioner<Real>::mark_particles_with_terms() {
+  had_terms_ = has_terms_;
+  std::ranges::fill(has_terms_, 0);
+  for (const DiagonalTerm& term : system_->diagonal_terms) has_terms_[at(term.particle)] = 1;
   for_each_term(*system_, [&](const auto& term) {
     for (std::size_t a = 0; a < term.particles.size(); ++a)
-      if (term.weights[a] != 0) touched_[at(term.particles[a])] = 1;
+      if (term.weights[a] != 0) has_terms_[at(term.particles[a])] = 1;
   });
 }
 
 template <class Real>
 void Preconditioner<Real>::invert_particles() {
-  TouchedBlocks with_terms = make_touched_blocks();
-  for (std::size_t i = 0; i < touched_.size(); ++i)
-    if (touched_[i]) with_terms.of(static_cast<Index>(i)) = own_block(static_cast<Index>(i));
+  BlocksWithTerms with_terms = make_blocks_with_terms();
+  for (std::size_t i = 0; i < has_terms_.size(); ++i)
+    if (has_terms_[i]) with_terms.of(static_cast<Index>(i)) = own_block(static_cast<Index>(i));
   for (const DiagonalTerm& term : system_->diagonal_terms) with_terms.of(term.particle) += term.stiffness;
   for_each_term(*system_, [&](const auto& term) {
     for (std::size_t a = 0; a < term.particles.size(); ++a)
       if (const double w = term.weights[a]; w != 0) with_terms.of(term.particles[a]) += w * w * term.stiffness;
   });
   const auto invert = [&](Index i) {
-    const Mat3 block = touched_[at(i)] ? with_terms.of(i) : own_block(i);
+    const Mat3 block = has_terms_[at(i)] ? with_terms.of(i) : own_block(i);
     Mat3 inverse;
     if (const Index c = constraint_of_[at(i)]; c < 0) {
       inverse = block.inverse();
@@ -226,10 +226,10 @@ void Preconditioner<Real>::invert_particles() {
     }
     inverse_[at(i)] = PaddedMat3<Real>(inverse);
   };
-  for (std::size_t p = 0; p < parts_.size(); ++p)
-    parallel_for(at(parts_[p].end - parts_[p].begin), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = at(parts_[p].begin) + begin; i < at(parts_[p].begin) + end; ++i)
-        if (rows_changed_[p] || touched_[i] || touched_before_[i]) invert(static_cast<Index>(i));
+  for (std::size_t p = 0; p < blocks_.size(); ++p)
+    parallel_for(at(blocks_[p].end - blocks_[p].begin), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = at(blocks_[p].begin) + begin; i < at(blocks_[p].begin) + end; ++i)
+        if (rows_changed_[p] || has_terms_[i] || had_terms_[i]) invert(static_cast<Index>(i));
     });
 }
 
@@ -247,7 +247,7 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
   const double stiffness_fraction =
-      interpolates_ && !parts_[part].is_small ? std::pow(kLevelStiffness, static_cast<double>(depth)) : 1;
+      interpolates_ && !blocks_[part].is_small ? std::pow(kLevelStiffness, static_cast<double>(depth)) : 1;
   const auto add_to_coarse = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index coarse_i = coarse_of[at(i)], coarse_j = coarse_of[at(j)];
@@ -311,10 +311,10 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   double stiffness_fraction = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    if (interpolates_ && !parts_[part].is_small) stiffness_fraction *= kLevelStiffness;
+    if (interpolates_ && !blocks_[part].is_small) stiffness_fraction *= kLevelStiffness;
     const RowRange groups = level.of_part[part];
     const RowRange members =
-        l == 0 ? RowRange{at(parts_[part].begin), at(parts_[part].end)} : levels_[l - 1].of_part[part];
+        l == 0 ? RowRange{at(blocks_[part].begin), at(blocks_[part].end)} : levels_[l - 1].of_part[part];
     std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
     for (std::size_t m = members.begin; m < members.end; ++m)
       sums[at(system_->aggregate_levels[l].of[m]) - groups.begin] +=
@@ -330,22 +330,22 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         coarsest.of_matrix[g];
 }
 
-// Returns zero blocks for touched particles only: contact terms act on few particles of a large cloth.
+// Returns zero blocks for particles with contact terms only: contact terms act on few particles of a large cloth.
 template <class Real>
-typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::make_touched_blocks() const {
-  TouchedBlocks all{std::vector<Index>(touched_.size(), -1), {}};
-  for (std::size_t i = 0; i < touched_.size(); ++i) {
-    if (!touched_[i]) continue;
+typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::make_blocks_with_terms() const {
+  BlocksWithTerms all{std::vector<Index>(has_terms_.size(), -1), {}};
+  for (std::size_t i = 0; i < has_terms_.size(); ++i) {
+    if (!has_terms_[i]) continue;
     all.place[i] = static_cast<Index>(all.blocks.size());
     all.blocks.push_back(Mat3::Zero());
   }
   return all;
 }
 
-// Contact stiffness of each touched particle if all particles with weights of the same sign move with it.
+// Contact stiffness of each particle with contact terms if all particles with weights of the same sign move with it.
 template <class Real>
-typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() const {
-  TouchedBlocks lumped = make_touched_blocks();
+typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::lump_terms() const {
+  BlocksWithTerms lumped = make_blocks_with_terms();
   const auto add = [&](Index i, double weight, const Mat3& stiffness) {
     lumped.of(i) += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
   };
@@ -363,25 +363,25 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lump_terms() 
 // of its own particles, aggregates between scattered contacts would count as free.
 template <class Real>
 void Preconditioner<Real>::invert_aggregates() {
-  const TouchedBlocks of_particles = lump_terms();
+  const BlocksWithTerms of_particles = lump_terms();
   std::vector<Mat3> of_members;  // of the previous level: contact stiffness per aggregate
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
     // True for aggregates of changed diagonal blocks, and for those with contact terms now or at the last call.
-    std::vector<char> needs_inverse = level.touched;
-    std::ranges::fill(level.touched, 0);
+    std::vector<char> needs_inverse = level.has_terms;
+    std::ranges::fill(level.has_terms, 0);
     std::vector<Mat3> of_groups(needs_inverse.size(), Mat3::Zero());
-    const std::vector<char>& touched = l == 0 ? touched_ : levels_[l - 1].touched;
-    for (std::size_t m = 0; m < touched.size(); ++m) {
-      if (!touched[m]) continue;
+    const std::vector<char>& has_terms = l == 0 ? has_terms_ : levels_[l - 1].has_terms;
+    for (std::size_t m = 0; m < has_terms.size(); ++m) {
+      if (!has_terms[m]) continue;
       for (Index s = level.interpolation.start[m]; s < level.interpolation.start[m + 1]; ++s) {
         const std::size_t group = at(level.interpolation.columns[s]);
-        level.touched[group] = needs_inverse[group] = 1;
+        level.has_terms[group] = needs_inverse[group] = 1;
         of_groups[group] += static_cast<double>(level.interpolation.values[s]) *
                             (l == 0 ? of_particles.of(static_cast<Index>(m)) : of_members[m]);
       }
     }
-    for (std::size_t p = 0; p < parts_.size(); ++p)
+    for (std::size_t p = 0; p < blocks_.size(); ++p)
       if (sums_changed_[p])
         std::fill(needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].begin),
                   needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].end), 1);
@@ -476,8 +476,8 @@ void Preconditioner<Real>::correct_aggregates() {
 
 template <class Real>
 void Preconditioner<Real>::apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z,
-                                 std::span<const std::size_t> parts) {
-  select(parts);
+                                 std::span<const std::size_t> blocks) {
+  select(blocks);
   if (!levels_.empty()) {
     restrict_residual(r);
     correct_aggregates();
@@ -490,7 +490,7 @@ void Preconditioner<Real>::apply(std::span<const PaddedVec3<Real>> r, std::span<
     const Level& level = levels_.front();
     for (std::size_t i = begin; i < end; ++i) z[i] = inverse_[i] * r[i] + level.interpolation.sum(i, level.correction);
   });
-  for (std::size_t p : parts)
+  for (std::size_t p : blocks)
     for (const Filter& filter : filters_[p]) z[filter.particle] = filter.free * z[filter.particle];
 }
 

@@ -50,7 +50,7 @@ class Preconditioner {
 
   /// z = P⁻¹ r on the rows of these diagonal blocks of the system, as if r were zero on all others. r must obey the
   /// constraints; z then does too.
-  void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> parts);
+  void apply(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z, std::span<const std::size_t> blocks);
 
  private:
   struct Level {
@@ -61,7 +61,7 @@ class Preconditioner {
     std::vector<RowRange> of_part;          // aggregates of each diagonal block
     RowChunks chunks;                       // of aggregates, in the selected blocks
     std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no contact terms
-    std::vector<char> touched;              // per aggregate: its `inverse` contains contact terms
+    std::vector<char> has_terms;            // per aggregate: its `inverse` contains contact terms
     std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with contact terms
     std::vector<PaddedVec3<Real>> residual, correction;
   };
@@ -71,20 +71,20 @@ class Preconditioner {
   void find_common_levels();
   void sum_aggregate_blocks(std::size_t part);
   void scale_sums(std::size_t part);
-  void mark_touched_particles();
+  void mark_particles_with_terms();
   void invert_particles();
   /// A 3×3 block for each particle on which contact terms act.
-  struct TouchedBlocks {
+  struct BlocksWithTerms {
     std::vector<Index> place;  // per particle, −1 for none
     std::vector<Mat3> blocks;
     Mat3& of(Index i) { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
     const Mat3& of(Index i) const { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
   };
-  TouchedBlocks make_touched_blocks() const;
-  TouchedBlocks lump_terms() const;
+  BlocksWithTerms make_blocks_with_terms() const;
+  BlocksWithTerms lump_terms() const;
   void invert_aggregates();
   void factorise_coarsest();
-  void select(std::span<const std::size_t> parts);
+  void select(std::span<const std::size_t> blocks);
   void restrict_residual(std::span<const PaddedVec3<Real>> r);
   void correct_aggregates();
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
@@ -93,7 +93,7 @@ class Preconditioner {
 
   const LinearSystem* system_ = nullptr;
   bool interpolates_ = true;                       // false if threads are very stiff
-  std::vector<DiagonalBlock> parts_;               // at the last call of prepare()
+  std::vector<DiagonalBlock> blocks_;              // at the last call of prepare()
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
   std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: whether its rows, or its sums, are new
   std::vector<ParticleConstraint> constraints_;    // when the sums were made
@@ -102,11 +102,11 @@ class Preconditioner {
     Index particle;
     PaddedMat3<Real> free;
   };
-  std::vector<std::vector<Filter>> filters_;    // per diagonal block
-  std::vector<char> touched_, touched_before_;  // per particle: contact terms act on it
-  std::vector<PaddedMat3<Real>> inverse_;       // per particle: S A_0⁻¹ S
-  std::vector<Level> levels_;                   // the last one is the coarsest
-  Weights<Real> coarse_weights_;                // per particle, from the coarsest aggregates
+  std::vector<std::vector<Filter>> filters_;  // per diagonal block
+  std::vector<char> has_terms_, had_terms_;   // per particle: contact terms act on it
+  std::vector<PaddedMat3<Real>> inverse_;     // per particle: S A_0⁻¹ S
+  std::vector<Level> levels_;                 // the last one is the coarsest
+  Weights<Real> coarse_weights_;              // per particle, from the coarsest aggregates
   // Per 3×3 block of the matrix: first level on which one aggregate contains its row and its column; the number of
   // levels if there is none.
   std::vector<std::uint8_t> common_level_full_, common_level_isotropic_;

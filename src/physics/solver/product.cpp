@@ -112,13 +112,13 @@ void Product<Real>::prepare(const LinearSystem& system) {
 
 template <class Real>
 void Product<Real>::read_matrix(bool is_new_system) {
-  const std::vector<DiagonalBlock> before = std::exchange(parts_, parts_of(*system_));
+  const std::vector<DiagonalBlock> before = std::exchange(blocks_, blocks_of(*system_));
   norm_weights_.assign(system_->norm_weights.begin(), system_->norm_weights.end());
   if constexpr (std::is_same_v<Real, float>) {
     if (is_new_system) matrix_.copy_pattern(system_->matrix);
-    for (std::size_t p = 0; p < parts_.size(); ++p) {
-      if (!is_new_system && parts_[p].version == before[p].version) continue;
-      const auto first = static_cast<std::size_t>(parts_[p].begin), end = static_cast<std::size_t>(parts_[p].end);
+    for (std::size_t p = 0; p < blocks_.size(); ++p) {
+      if (!is_new_system && blocks_[p].version == before[p].version) continue;
+      const auto first = static_cast<std::size_t>(blocks_[p].begin), end = static_cast<std::size_t>(blocks_[p].end);
       parallel_for(end - first, kFineGrainSize,
                    [&](std::size_t a, std::size_t b) { matrix_.copy_rows(system_->matrix, first + a, first + b); });
     }
@@ -136,12 +136,12 @@ void Product<Real>::add_stencil(const Term& term, const IsInside& is_inside, std
 }
 
 template <class Real>
-void Product<Real>::select(std::span<const std::size_t> parts) {
-  selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
+void Product<Real>::select(std::span<const std::size_t> blocks) {
+  selected_.assign(blocks.begin(), blocks.end());
+  rows_ = RowChunks(ranges_of(blocks_, selected_), kGrainSize);
   const auto is_inside = [&](Index particle) {
-    return parts.size() == parts_.size() || std::ranges::any_of(parts, [&](std::size_t p) {
-             return particle >= parts_[p].begin && particle < parts_[p].end;
+    return blocks.size() == blocks_.size() || std::ranges::any_of(blocks, [&](std::size_t p) {
+             return particle >= blocks_[p].begin && particle < blocks_[p].end;
            });
   };
   stencils_.clear();
@@ -206,7 +206,7 @@ std::vector<Mat3> Product<Real>::row_sums() const {
   };
   std::vector<Mat3> result;
   for (const std::size_t part : selected_) {
-    const auto first = static_cast<std::size_t>(parts_[part].begin), end = static_cast<std::size_t>(parts_[part].end);
+    const auto first = static_cast<std::size_t>(blocks_[part].begin), end = static_cast<std::size_t>(blocks_[part].end);
     result.push_back(parallel_sum(end - first, kGrainSize, [&](std::size_t begin, std::size_t stop) {
                        Sum sum;
                        for (std::size_t row = first + begin; row < first + stop; ++row) sum.block += sum_of_row(row);

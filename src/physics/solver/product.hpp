@@ -44,7 +44,7 @@ class Product {
   void prepare(const LinearSystem& system);
 
   /// Restricts the following products to vectors that are zero outside of these diagonal blocks.
-  void select(std::span<const std::size_t> parts);
+  void select(std::span<const std::size_t> blocks);
 
   /// q = S A p on the rows of the selected blocks; returns p·q. Writes Σ norm_weights ‖p‖² of each selected block, in
   /// their order, into `norms_sq`. p must obey the constraints.
@@ -82,8 +82,8 @@ class Product {
   Mat3 sum_of_row(std::size_t row) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<DiagonalBlock> parts_;  // when the matrix was read
-  DifferenceMatrix matrix_;           // used in single precision only
+  std::vector<DiagonalBlock> blocks_;  // when the matrix was read
+  DifferenceMatrix matrix_;            // used in single precision only
   std::vector<Real> norm_weights_;
   std::vector<std::size_t> selected_;
   RowChunks rows_;  // of the selected blocks

@@ -11,12 +11,12 @@ template <class Real>
 void RankOneTerms<Real>::prepare(const LinearSystem& system) {
   terms_.clear();
   rows_ = static_cast<std::size_t>(system.matrix.rows());
-  const std::vector<DiagonalBlock> parts = parts_of(system);
+  const std::vector<DiagonalBlock> blocks = blocks_of(system);
   for (const RankOneTerm& of_system : system.rank_one_terms) {
     Term& term = terms_.emplace_back();
     term.begin = static_cast<std::size_t>(of_system.begin);
-    const auto after = std::ranges::upper_bound(parts, of_system.begin, {}, &DiagonalBlock::begin);
-    term.part = static_cast<std::size_t>(after - parts.begin()) - 1;
+    const auto after = std::ranges::upper_bound(blocks, of_system.begin, {}, &DiagonalBlock::begin);
+    term.part = static_cast<std::size_t>(after - blocks.begin()) - 1;
     term.stiffness = of_system.stiffness;
     for (const Vec3& d : of_system.direction) term.direction.push_back(padded<Real>(d));
     for (const ParticleConstraint& c : system.constraints) {
@@ -28,12 +28,12 @@ void RankOneTerms<Real>::prepare(const LinearSystem& system) {
 }
 
 template <class Real>
-void RankOneTerms<Real>::select(std::span<const std::size_t> parts) {
-  for (Term& term : terms_) term.is_selected = std::ranges::count(parts, term.part) > 0;
+void RankOneTerms<Real>::select(std::span<const std::size_t> blocks) {
+  for (Term& term : terms_) term.is_selected = std::ranges::count(blocks, term.part) > 0;
 }
 
 template <class Real>
-void RankOneTerms<Real>::use(const Apply& apply) {
+void RankOneTerms<Real>::prepare_inverses(const Apply& apply) {
   for (std::size_t t = 0; t < terms_.size(); ++t) {
     Term& term = terms_[t];
     if (!term.is_selected) continue;

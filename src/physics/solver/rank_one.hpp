@@ -23,9 +23,9 @@ class RankOneTerms {
   void prepare(const LinearSystem& system);
 
   /// Restricts the following calls to vectors that are zero outside of these diagonal blocks.
-  void select(std::span<const std::size_t> parts);
+  void select(std::span<const std::size_t> blocks);
   /// Computes w of the selected terms with `apply`, the preconditioner of the rest of the matrix on their blocks.
-  void use(const Apply& apply);
+  void prepare_inverses(const Apply& apply);
 
   /// Adds k d dᵀ p of each selected term to q, where d is filtered; returns the increase of p·q.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;

@@ -27,17 +27,17 @@ void convert_to_padded(std::span<const Vec3> from, std::span<PaddedVec3<Real>> t
 
 // Sums absolute values: contact terms and the coarsest level couple diagonal blocks, so the gain of one may be
 // negative.
-double Progress::OfPart::error_energy() const {
+double Progress::BlockProgress::error_energy() const {
   return std::accumulate(gains.end() - count_recent(), gains.end(), 0.0,
                          [](double sum, double gain) { return sum + std::abs(gain); });
 }
 
-double Progress::OfPart::error_norm_ratio() const {
+double Progress::BlockProgress::error_norm_ratio() const {
   return *std::max_element(norm_ratios.end() - count_recent(), norm_ratios.end());
 }
 
 // Number of last iterations from which the error is estimated.
-std::ptrdiff_t Progress::OfPart::count_recent() const {
+std::ptrdiff_t Progress::BlockProgress::count_recent() const {
   const std::ptrdiff_t all = std::ssize(gains);
   return std::min<std::ptrdiff_t>(
       all, std::max<std::ptrdiff_t>(numerics.linear.min_error_window, all / numerics.linear.error_window_divisor));
@@ -45,9 +45,9 @@ std::ptrdiff_t Progress::OfPart::count_recent() const {
 
 bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> selected) const {
   return std::ranges::all_of(selected, [&](std::size_t p) {
-    const double error_sq = parts[p].error_energy(), absolute = absolute_goal(goal, p);
-    return error_sq <= goal.relative * goal.relative * parts[p].energy ||
-           error_sq * parts[p].error_norm_ratio() <= absolute * absolute;
+    const double error_sq = blocks[p].error_energy(), absolute = absolute_goal(goal, p);
+    return error_sq <= goal.relative * goal.relative * blocks[p].energy ||
+           error_sq * blocks[p].error_norm_ratio() <= absolute * absolute;
   });
 }
 
@@ -61,9 +61,9 @@ void Recurrence<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
   for (auto* vector : {&x_, &r_, &z_, &p_, &q_})
     if (vector->size() != rows) vector->assign(rows, PaddedVec3<Real>{});
-  parts_ = parts_of(system);
-  all_parts_.resize(parts_.size());
-  std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
+  blocks_ = blocks_of(system);
+  all_blocks_.resize(blocks_.size());
+  std::iota(all_blocks_.begin(), all_blocks_.end(), std::size_t{0});
   product_.prepare(system);
   preconditioner_.prepare(system, sums);
   rank_one_.prepare(system);
@@ -73,11 +73,11 @@ template <class Real>
 std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
   convert_to_padded<Real>(b, q_);
   if (!rank_one_.empty()) {
-    selected_ = all_parts_;
+    selected_ = all_blocks_;
     rank_one_.select(selected_);
     precondition_rank_one();
   }
-  preconditioner_.apply(q_, z_, all_parts_);
+  preconditioner_.apply(q_, z_, all_blocks_);
   rank_one_.correct(z_);
   return z_;
 }
@@ -85,7 +85,7 @@ std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const
 // Prepares rank_one_ for the preconditioner on the selected blocks.
 template <class Real>
 void Recurrence<Real>::precondition_rank_one() {
-  rank_one_.use([&](std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z) {
+  rank_one_.prepare_inverses([&](std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z) {
     preconditioner_.apply(r, z, selected_);
   });
 }
@@ -169,7 +169,7 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
     }
   });
   for (std::size_t k = 0; k < selected_.size(); ++k) {
-    Progress::OfPart& part = progress.parts[selected_[k]];
+    Progress::BlockProgress& part = progress.blocks[selected_[k]];
     const double gain = alpha * rz_[k];
     const bool has_norm = !system_->norm_weights.empty() && gain > 0;
     part.gains.push_back(gain);
@@ -249,10 +249,10 @@ void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) 
                                product_.row_sums(), products);
   const std::vector<AlongMotions> change = block_motions_.solve(along_motions(r_, has_second));
   for (std::size_t k = 0; k < selected_.size(); ++k) {
-    const auto first = static_cast<std::size_t>(parts_[selected_[k]].begin);
+    const auto first = static_cast<std::size_t>(blocks_[selected_[k]].begin);
     const PaddedVec3<Real> shift = padded<Real>(Vec3(change[k].template head<3>()));
     const Real of_motion = static_cast<Real>(change[k][3]), of_drift = static_cast<Real>(change[k][4]);
-    parallel_for(static_cast<std::size_t>(parts_[selected_[k]].end) - first, kGrainSize,
+    parallel_for(static_cast<std::size_t>(blocks_[selected_[k]].end) - first, kGrainSize,
                  [&](std::size_t begin, std::size_t end) {
                    for (std::size_t i = first + begin; i < first + end; ++i) p_[i] = of_motion * p_[i] + shift;
                    if (!has_second) return;
@@ -270,9 +270,9 @@ void Recurrence<Real>::balance(const Directions& directions, std::span<Vec3> x) 
 
 template <class Real>
 End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
-                            const Directions& directions, std::span<const std::size_t> parts, Progress& progress) {
-  selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
+                            const Directions& directions, std::span<const std::size_t> blocks, Progress& progress) {
+  selected_.assign(blocks.begin(), blocks.end());
+  rows_ = RowChunks(ranges_of(blocks_, selected_), kGrainSize);
   begin(b, x, directions.start, progress);
   const End end = iterate(goal, max_iterations, progress);
   if (end == End::needs_double && progress.iterations == 0) return end;  // the solve starts anew in double

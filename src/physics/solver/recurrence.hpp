@@ -41,7 +41,7 @@ struct Directions {
 /// State of a solve, in either precision.
 struct Progress {
   /// Error data of one diagonal block.
-  struct OfPart {
+  struct BlockProgress {
     double energy = 0;  ///< ‖x‖²_A of the solution x without its step along Directions::start
     std::vector<double> gains,
         norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, divided by it
@@ -51,7 +51,7 @@ struct Progress {
    private:
     std::ptrdiff_t count_recent() const;
   };
-  std::vector<OfPart> parts;  ///< all diagonal blocks of the system
+  std::vector<BlockProgress> blocks;  ///< all diagonal blocks of the system
   int iterations = 0;
   bool is_exact = false;  ///< the residual is zero up to rounding
 
@@ -77,7 +77,7 @@ class Recurrence {
   /// Solves A x = b on these diagonal blocks; the particles of all others count as held. At the call, x must be zero
   /// or, if `progress` already has iterations, their result.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
-            const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
+            const Directions& directions, std::span<const std::size_t> blocks, Progress& progress);
 
   /// b − A x of the last solve, on the rows that it solved for.
   std::span<const PaddedVec3<Real>> residual() const { return r_; }
@@ -98,8 +98,8 @@ class Recurrence {
   std::vector<AlongMotions> along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<DiagonalBlock> parts_;
-  std::vector<std::size_t> all_parts_, selected_;
+  std::vector<DiagonalBlock> blocks_;
+  std::vector<std::size_t> all_blocks_, selected_;
   RowChunks rows_;  // of the selected blocks
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;

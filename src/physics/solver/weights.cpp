@@ -49,16 +49,16 @@ Weights<Real> Weights<Real>::times(const Weights& next) const {
 }
 
 template <class Real>
-Weights<Real> Weights<Real>::make_interpolation(const Aggregates& grouping, double smoothing,
+Weights<Real> Weights<Real>::make_interpolation(const Aggregates& aggregates, double smoothing,
                                                 std::vector<std::vector<Index>>& neighbours) {
-  std::vector<std::vector<Index>> next(static_cast<std::size_t>(grouping.count));
+  std::vector<std::vector<Index>> next(static_cast<std::size_t>(aggregates.count));
   Weights weights;
   weights.start.reserve(neighbours.size() + 1);
   weights.start.assign(1, 0);
   for (std::size_t m = 0; m < neighbours.size(); ++m) {
-    const Index own = grouping.of[m];
+    const Index own = aggregates.of[m];
     std::vector<Index> groups;
-    for (Index n : neighbours[m]) groups.push_back(grouping.of[n]);
+    for (Index n : neighbours[m]) groups.push_back(aggregates.of[n]);
     const double neighbour_weight = groups.empty() ? 0 : smoothing / static_cast<double>(groups.size());
     groups.push_back(own);
     std::ranges::sort(groups);

@@ -26,7 +26,7 @@ struct Weights {
   /// Interpolation from aggregates to their members. If a member has n neighbours, the aggregate of each neighbour gets
   /// the weight `smoothing` / n, and the member's own aggregate 1 − `smoothing`; an aggregate's weights add up. Without
   /// neighbours, the own aggregate has the weight 1. Replaces `neighbours` of each member by those of each aggregate.
-  static Weights make_interpolation(const Aggregates& grouping, double smoothing,
+  static Weights make_interpolation(const Aggregates& aggregates, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows: the number of columns of this matrix.
   Weights transposed(std::size_t rows) const;

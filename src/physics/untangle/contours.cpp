@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include "physics/collision/proximity/surface_point.hpp"
-#include "physics/untangle/solid.hpp"
+#include "physics/untangle/forbidden_region.hpp"
 
 namespace weft::untangle {
 namespace {
@@ -19,18 +19,18 @@ constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
 
 // Returns the number of the island of each particle. An island is a connected component of the mesh without the edges
 // in `cut`.
-std::vector<Index> label_islands(const Fabric& fabric, const std::set<std::array<Index, 2>>& cut) {
-  std::vector<Index> island(static_cast<std::size_t>(fabric.particles()), -1);
+std::vector<Index> label_islands(const UntangleInput& input, const std::set<std::array<Index, 2>>& cut) {
+  std::vector<Index> island(static_cast<std::size_t>(input.particles()), -1);
   std::vector<Index> open;
   Index count = 0;
-  for (Index first = 0; first < fabric.particles(); ++first) {
+  for (Index first = 0; first < input.particles(); ++first) {
     if (island[first] >= 0) continue;
     island[first] = count;
     open.assign(1, first);
     while (!open.empty()) {
       const Index i = open.back();
       open.pop_back();
-      for (const Index j : fabric.neighbours[i]) {
+      for (const Index j : input.neighbours[i]) {
         if (island[j] >= 0 || cut.contains({std::min(i, j), std::max(i, j)})) continue;
         island[j] = count;
         open.push_back(j);
@@ -59,29 +59,29 @@ const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {
   return *std::ranges::min_element(line, {}, [&](const CutPoint& c) { return (c.place - p).squaredNorm(); });
 }
 
-CrossedPair crossed_pair_of(const Fabric& fabric, const Crossing& c) {
-  return {fabric.bodies.body_of(fabric.edges.edges[c.edge].vertices[0]),
-          fabric.bodies.body_of(fabric.bodies.triangles()[c.triangle][0])};
+CrossedPair crossed_pair_of(const UntangleInput& input, const Crossing& c) {
+  return {input.bodies.body_of(input.edges.edges[c.edge].vertices[0]),
+          input.bodies.body_of(input.bodies.triangles()[c.triangle][0])};
 }
 
 // Adds to `cut` the edges of a cloth that would cross the other surface if that were extended beyond its border. A
 // particle is on the side given by the plane of the crossed triangle nearest to it.
-void extend_cut(const Fabric& fabric, std::span<const Crossing> crossings, std::size_t cloth, std::span<const Vec3> x,
-                std::set<std::array<Index, 2>>& cut) {
+void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings, std::size_t cloth,
+                std::span<const Vec3> x, std::set<std::array<Index, 2>>& cut) {
   std::vector<CutPoint> line;
   for (const Crossing& c : crossings) {
-    const auto [i, j] = fabric.edges.edges[c.edge].vertices;
+    const auto [i, j] = input.edges.edges[c.edge].vertices;
     line.push_back(
-        {x[i] + c.fraction * (x[j] - x[i]), collision::face_normal(fabric.bodies.triangles()[c.triangle], x)});
+        {x[i] + c.fraction * (x[j] - x[i]), collision::face_normal(input.bodies.triangles()[c.triangle], x)});
   }
-  const collision::Surface& surface = fabric.bodies.surfaces()[cloth];
+  const collision::Surface& surface = input.bodies.surfaces()[cloth];
   const Index first = surface.first_vertex, end = first + surface.vertex_count;
   std::vector<std::int8_t> side(static_cast<std::size_t>(surface.vertex_count));
   for (Index i = first; i < end; ++i) {
     const CutPoint& at = nearest(line, x[i]);
     side[i - first] = (x[i] - at.place).dot(at.normal) < 0 ? -1 : 1;
   }
-  for (const mesh::Edge& edge : fabric.edges.edges) {
+  for (const mesh::Edge& edge : input.edges.edges) {
     const auto [i, j] = edge.vertices;
     if (i >= first && i < end && side[i - first] != side[j - first]) cut.insert(edge.vertices);
   }
@@ -138,14 +138,14 @@ Vec3 direction_of(std::span<const CutPoint> line) {
 
 // The cheapest moves to the side of the rest of the cloth: flattened, or folded to one of two sides. A later candidate
 // must cost a tenth less than the best one so far.
-std::vector<Move> best_moves(const Fabric& fabric, const Island& island, double height,
+std::vector<Move> best_moves(const UntangleInput& input, const Island& island, double height,
                              const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
   Vec3 up = Vec3::Zero();
   for (const CutPoint& c : island.line) up += c.normal;
   if (up.norm() < 0.1 * static_cast<double>(island.line.size())) return {};  // the normals cancel: no clear direction
   up.normalize();
   std::vector<Move> best = flatten(island, up, height, surfaces, x);
-  double min_cost = stretch_cost(fabric, best, x);
+  double min_cost = stretch_cost(input, best, x);
   const Vec3 away = direction_of(island.line).cross(up).stableNormalized();
   if (away.isZero()) return best;
   // Try first the side on which most of the island lies.
@@ -154,7 +154,7 @@ std::vector<Move> best_moves(const Fabric& fabric, const Island& island, double 
   const double side = offset_sum.dot(away) < 0 ? -1 : 1;
   for (const double sign : {side, -side}) {
     std::vector<Move> moves = fold(island, up, sign * away, height, x);
-    const double cost = stretch_cost(fabric, moves, x);
+    const double cost = stretch_cost(input, moves, x);
     if (cost >= 0.9 * min_cost) continue;
     min_cost = cost;
     best = std::move(moves);
@@ -164,43 +164,43 @@ std::vector<Move> best_moves(const Fabric& fabric, const Island& island, double 
 
 }  // namespace
 
-std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<const Crossing> crossings) {
+std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::span<const Crossing> crossings) {
   std::set<CrossedPair> found;
   for (const Crossing& c : crossings)
-    if (!involves_solid(fabric, c) && fabric.is_cloth(fabric.edges.edges[c.edge].vertices[0]))
-      found.insert(crossed_pair_of(fabric, c));
+    if (!involves_solid(input, c) && input.is_cloth(input.edges.edges[c.edge].vertices[0]))
+      found.insert(crossed_pair_of(input, c));
   return {found.begin(), found.end()};
 }
 
-std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> all_crossings,
+std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> all_crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,
                                                     const std::optional<CrossedPair>& only, std::span<const Vec3> x) {
   std::vector<Crossing> crossings;
   std::ranges::copy_if(all_crossings, std::back_inserter(crossings), [&](const Crossing& c) {
-    if (involves_solid(fabric, c) || !fabric.is_cloth(fabric.edges.edges[c.edge].vertices[0])) return false;
-    return !only || crossed_pair_of(fabric, c) == *only;
+    if (involves_solid(input, c) || !input.is_cloth(input.edges.edges[c.edge].vertices[0])) return false;
+    return !only || crossed_pair_of(input, c) == *only;
   });
   std::set<std::array<Index, 2>> cut;
-  for (const Crossing& c : crossings) cut.insert(fabric.edges.edges[c.edge].vertices);
-  if (only && only->cloth != only->other) extend_cut(fabric, crossings, only->cloth, x, cut);
-  const std::vector<Index> whole = label_islands(fabric, {}), island_of = label_islands(fabric, cut);
+  for (const Crossing& c : crossings) cut.insert(input.edges.edges[c.edge].vertices);
+  if (only && only->cloth != only->other) extend_cut(input, crossings, only->cloth, x, cut);
+  const std::vector<Index> whole = label_islands(input, {}), island_of = label_islands(input, cut);
   const Index count = island_of.empty() ? 0 : 1 + *std::ranges::max_element(island_of);
   std::vector<Island> islands(static_cast<std::size_t>(count));
-  for (Index i = 0; i < fabric.particles(); ++i) islands[island_of[i]].particles.push_back(i);
+  for (Index i = 0; i < input.particles(); ++i) islands[island_of[i]].particles.push_back(i);
   std::vector<Index> largest(islands.size(), -1);  // per connected mesh
   for (Index p = 0; p < count; ++p) {
     Index& best = largest[whole[islands[p].particles.front()]];
     if (best < 0 || islands[p].particles.size() > islands[best].particles.size()) best = p;
   }
   for (const Crossing& c : crossings) {
-    const auto [i, j] = fabric.edges.edges[c.edge].vertices;
+    const auto [i, j] = input.edges.edges[c.edge].vertices;
     if (island_of[i] == island_of[j]) continue;
-    const collision::Triangle& t = fabric.bodies.triangles()[c.triangle];
+    const collision::Triangle& t = input.bodies.triangles()[c.triangle];
     const Vec3 place = x[i] + c.fraction * (x[j] - x[i]);
     Vec3 normal = collision::face_normal(t, x);
     if (normal.dot(x[j] - x[i]) < 0) normal = -normal;
-    const CrossedPair through = crossed_pair_of(fabric, c);
+    const CrossedPair through = crossed_pair_of(input, c);
     for (const auto& [inner, outer, sign] : {std::tuple{i, j, 1.0}, {j, i, -1.0}}) {
       Island& island = islands[island_of[inner]];
       island.beside.insert(outer);
@@ -221,27 +221,28 @@ std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::s
     const bool stays = largest[whole[island.particles.front()]] == p || island.line.empty() ||
                        std::ranges::any_of(island.through, has_moved) ||
                        std::ranges::any_of(island.beside, has_moved) ||
-                       std::ranges::any_of(island.particles, [&](Index i) { return !fabric.movable[i]; });
+                       std::ranges::any_of(island.particles, [&](Index i) { return !input.movable[i]; });
     if (stays) continue;
-    const std::size_t cloth = fabric.bodies.body_of(island.particles.front());
+    const std::size_t cloth = input.bodies.body_of(island.particles.front());
     const double height = above[cloth];
-    const auto is_other = [&](Index v) { return fabric.bodies.body_of(v) == island.other; };
+    const auto is_other = [&](Index v) { return input.bodies.body_of(v) == island.other; };
     if (island.other == cloth || !std::ranges::all_of(island.through, is_other)) island.other.reset();
-    std::vector<Move> moves = best_moves(fabric, island, height, surfaces, x);
+    std::vector<Move> moves = best_moves(input, island, height, surfaces, x);
     for (const Move& move : moves) moved[move.particle] = 1;
     if (!moves.empty()) all.push_back(std::move(moves));
   }
   return all;
 }
 
-void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings, double length, std::span<Vec3> x) {
+void shorten_contours(const UntangleInput& input, std::span<const Crossing> crossings, double length,
+                      std::span<Vec3> x) {
   std::vector<Vec3> push(x.size(), Vec3::Zero());
   std::vector<double> weight(x.size(), 0);
   for (const Crossing& c : crossings) {
-    if (involves_solid(fabric, c)) continue;
-    const mesh::Edge& edge = fabric.edges.edges[c.edge];
+    if (involves_solid(input, c)) continue;
+    const mesh::Edge& edge = input.edges.edges[c.edge];
     const auto [i, j] = edge.vertices;
-    const collision::Triangle& t = fabric.bodies.triangles()[c.triangle];
+    const collision::Triangle& t = input.bodies.triangles()[c.triangle];
     const Vec3 n = collision::face_normal(t, x), e = (x[j] - x[i]).stableNormalized();
     const double across = e.dot(n);
     if (std::abs(across) < 1e-3) continue;
@@ -249,7 +250,7 @@ void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings,
     Vec3 gradient = Vec3::Zero();
     for (const Index triangle : edge.triangles) {
       if (triangle < 0) continue;
-      const collision::Triangle& beside = fabric.bodies.triangles()[triangle];
+      const collision::Triangle& beside = input.bodies.triangles()[triangle];
       Index third = beside[0];
       for (const Index v : beside)
         if (v != i && v != j) third = v;
@@ -268,33 +269,33 @@ void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings,
     add(j, c.fraction, 1);
     for (std::size_t k = 0; k < 3; ++k) add(t[k], c.weights[k], -1);
   }
-  for (Index v = 0; v < fabric.particles(); ++v)
-    if (weight[v] > 0 && fabric.movable[v]) x[v] += length * push[v] / std::max(weight[v], 0.5);
+  for (Index v = 0; v < input.particles(); ++v)
+    if (weight[v] > 0 && input.movable[v]) x[v] += length * push[v] / std::max(weight[v], 0.5);
 }
 
-void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossings, std::span<const Solid> solids,
-                        std::span<const double> above, std::span<Vec3> x) {
-  const auto raise = [&](const Solid& solid, std::span<const Index> corners, std::span<const double> weights,
+void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
+                        std::span<const ForbiddenRegion> solids, std::span<const double> above, std::span<Vec3> x) {
+  const auto raise = [&](const ForbiddenRegion& solid, std::span<const Index> corners, std::span<const double> weights,
                          double height) {
     Vec3 p = Vec3::Zero();
     double sum_sq = 0;
     for (std::size_t k = 0; k < corners.size(); ++k) {
       p += weights[k] * x[corners[k]];
-      sum_sq += fabric.movable[corners[k]] ? weights[k] * weights[k] : 0;
+      sum_sq += input.movable[corners[k]] ? weights[k] * weights[k] : 0;
     }
-    const Solid::Exit exit = solid.exit(p);
+    const ForbiddenRegion::Exit exit = solid.exit(p);
     if (exit.height >= height || sum_sq == 0) return;
     for (std::size_t k = 0; k < corners.size(); ++k)
-      if (fabric.movable[corners[k]]) x[corners[k]] += (height - exit.height) * weights[k] / sum_sq * exit.normal;
+      if (input.movable[corners[k]]) x[corners[k]] += (height - exit.height) * weights[k] / sum_sq * exit.normal;
   };
   for (const Crossing& c : crossings) {
-    if (!involves_solid(fabric, c)) continue;
-    const std::array<Index, 2>& edge = fabric.edges.edges[c.edge].vertices;
-    const collision::Triangle& t = fabric.bodies.triangles()[c.triangle];
-    const bool cloth_edge = fabric.is_cloth(edge[0]);
-    const std::size_t cloth = fabric.bodies.body_of(cloth_edge ? edge[0] : t[0]),
-                      body = fabric.bodies.body_of(cloth_edge ? t[0] : edge[0]);
-    const auto solid = std::ranges::find(solids, body, &Solid::number);
+    if (!involves_solid(input, c)) continue;
+    const std::array<Index, 2>& edge = input.edges.edges[c.edge].vertices;
+    const collision::Triangle& t = input.bodies.triangles()[c.triangle];
+    const bool cloth_edge = input.is_cloth(edge[0]);
+    const std::size_t cloth = input.bodies.body_of(cloth_edge ? edge[0] : t[0]),
+                      body = input.bodies.body_of(cloth_edge ? t[0] : edge[0]);
+    const auto solid = std::ranges::find(solids, body, &ForbiddenRegion::number);
     if (cloth_edge) {
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
         raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);

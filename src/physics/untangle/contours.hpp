@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "physics/untangle/crossings.hpp"
+#include "physics/untangle/forbidden_region.hpp"
 #include "physics/untangle/problem.hpp"
-#include "physics/untangle/solid.hpp"
 
 namespace weft::untangle {
 
@@ -19,7 +19,7 @@ struct CrossedPair {
 
 /// Lists each cloth with each surface that its edges cross in `crossings`. Ignores crossings with solids, floors and
 /// layers.
-std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<const Crossing> crossings);
+std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::span<const Crossing> crossings);
 
 /// Lines of crossing divide a mesh into islands. Returns moves for each island except the largest of its mesh, the
 /// smallest island first. The moves take the island to the side of the crossed surface on which the largest island is
@@ -29,7 +29,7 @@ std::vector<CrossedPair> list_crossed_pairs(const Fabric& fabric, std::span<cons
 /// refitted at x. `above`: height of the moved island over the other surface, per body of cloth [m]. `only`: restricts
 /// the search to this pair. If its two surfaces differ, the other one is extended beyond its border as a plane, so that
 /// a line of crossing that ends at this border still divides the cloth.
-std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::span<const Crossing> crossings,
+std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,
                                                     const std::optional<CrossedPair>& only, std::span<const Vec3> x);
@@ -37,12 +37,13 @@ std::vector<std::vector<Move>> move_cut_off_islands(const Fabric& fabric, std::s
 /// Moves each crossing edge and its triangle in opposite directions, so that the line of crossing shortens fastest
 /// (Volino & Magnenat-Thalmann, "Resolving Surface Collisions through Intersection Contour Minimization", 2006). No
 /// particle moves farther than `length` [m]. Ignores crossings with solids, floors and layers.
-void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings, double length, std::span<Vec3> x);
+void shorten_contours(const UntangleInput& input, std::span<const Crossing> crossings, double length,
+                      std::span<Vec3> x);
 
 /// Pushes edges and triangles of cloth that cross a solid, floor or layer outward; they can cross it even if all their
 /// particles are outside. `above`: minimum height of the crossing points over the solid after the push, per body of
 /// cloth [m].
-void push_out_of_solids(const Fabric& fabric, std::span<const Crossing> crossings, std::span<const Solid> solids,
-                        std::span<const double> above, std::span<Vec3> x);
+void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
+                        std::span<const ForbiddenRegion> solids, std::span<const double> above, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -27,28 +27,28 @@ std::optional<SegmentHit> intersect_segment(const Vec3& p, const Vec3& q, const 
   return SegmentHit{from / (from - to), {u / sum, v / sum, w / sum}};
 }
 
-bool is_solid(const Fabric& fabric, Index vertex) {
-  const Kind kind = fabric.kinds[fabric.bodies.body_of(vertex)];
-  return kind == Kind::solid || kind == Kind::floor || kind == Kind::layer;
+bool is_solid(const UntangleInput& input, Index vertex) {
+  const SurfaceKind kind = input.kinds[input.bodies.body_of(vertex)];
+  return kind == SurfaceKind::solid || kind == SurfaceKind::floor || kind == SurfaceKind::layer;
 }
 
 }  // namespace
 
-bool involves_solid(const Fabric& fabric, const Crossing& crossing) {
-  return is_solid(fabric, fabric.edges.edges[crossing.edge].vertices[0]) ||
-         is_solid(fabric, fabric.bodies.triangles()[crossing.triangle][0]);
+bool involves_solid(const UntangleInput& input, const Crossing& crossing) {
+  return is_solid(input, input.edges.edges[crossing.edge].vertices[0]) ||
+         is_solid(input, input.bodies.triangles()[crossing.triangle][0]);
 }
 
-CrossingFinder::CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles)
-    : fabric_(fabric), broad_phase_(fabric.bodies.surfaces(), x) {
-  const collision::Bodies& bodies = fabric.bodies;
+CrossingFinder::CrossingFinder(const UntangleInput& input, std::span<const Vec3> x, bool self, bool obstacles)
+    : input_(input), broad_phase_(input.bodies.surfaces(), x) {
+  const collision::Bodies& bodies = input.bodies;
   for (std::size_t a = 0; a < bodies.size() && bodies[a].deformable; ++a)
     for (std::size_t b = a; b < bodies.size(); ++b)
       if (bodies[b].deformable ? self : obstacles) wanted_.push_back({a, b});
 }
 
 void CrossingFinder::collect(std::span<const Vec3> x, double margin) {
-  for (std::size_t b = 0; b < fabric_.bodies.size(); ++b) broad_phase_.refit(b, x, x, margin);
+  for (std::size_t b = 0; b < input_.bodies.size(); ++b) broad_phase_.refit(b, x, x, margin);
   candidates_.clear();
   for (const auto& [a, b] : wanted_)
     a == b ? broad_phase_.self_pairs(a, candidates_) : broad_phase_.pairs(a, b, candidates_);
@@ -63,10 +63,10 @@ std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Ve
 // it are skipped. Returns whether any edge crosses.
 bool CrossingFinder::test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x) {
   bool any = false;
-  for (const Index e : fabric_.edges.of_triangle[of_edge]) {
-    const auto [i, j] = fabric_.edges.edges[e].vertices;
+  for (const Index e : input_.edges.of_triangle[of_edge]) {
+    const auto [i, j] = input_.edges.edges[e].vertices;
     if (i == without || j == without) continue;
-    const auto hit = intersect_segment(x[i], x[j], fabric_.bodies.triangles()[triangle], x);
+    const auto hit = intersect_segment(x[i], x[j], input_.bodies.triangles()[triangle], x);
     if (!hit) continue;
     any = true;
     crossings_.push_back({e, triangle, hit->fraction, hit->weights});
@@ -84,8 +84,8 @@ std::span<const Crossing> CrossingFinder::find(std::span<const Vec3> x) {
   };
   for (const auto& [a, b] : candidates_.apart) both(a, b, -1);
   for (const auto& [a, b] : candidates_.one_shared) {
-    const auto& corners = fabric_.bodies.triangles()[b];
-    for (const Index v : fabric_.bodies.triangles()[a])
+    const auto& corners = input_.bodies.triangles()[b];
+    for (const Index v : input_.bodies.triangles()[a])
       if (std::ranges::find(corners, v) != corners.end()) both(a, b, v);
   }
   const auto key = [](const Crossing& c) { return std::tie(c.edge, c.triangle); };

@@ -12,20 +12,20 @@ namespace weft::untangle {
 
 /// An edge that crosses a triangle.
 struct Crossing {
-  Index edge;                     ///< index into Fabric::edges.edges
+  Index edge;                     ///< index into UntangleInput::edges.edges
   Index triangle;                 ///< index into Bodies::triangles()
   double fraction;                ///< position on the edge, from its first vertex (0) to its second (1)
   std::array<double, 3> weights;  ///< barycentric, of the crossing point in the triangle
 };
 
 /// Whether the edge or the triangle belongs to a solid, a floor or a layer.
-bool involves_solid(const Fabric& fabric, const Crossing& crossing);
+bool involves_solid(const UntangleInput& input, const Crossing& crossing);
 
-/// Finds crossings between surfaces of which at least one is Kind::cloth.
+/// Finds crossings between surfaces of which at least one is SurfaceKind::cloth.
 class CrossingFinder {
  public:
-  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The fabric must outlive the finder.
-  CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles);
+  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The input must outlive the finder.
+  CrossingFinder(const UntangleInput& input, std::span<const Vec3> x, bool self, bool obstacles);
 
   /// All crossings at x [m], sorted by edge and triangle, each once. An edge that touches a triangle also crosses it,
   /// except if it lies in the triangle's plane.
@@ -42,7 +42,7 @@ class CrossingFinder {
   void collect(std::span<const Vec3> x, double margin);
   bool test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x);
 
-  const Fabric& fabric_;
+  const UntangleInput& input_;
   collision::BroadPhase broad_phase_;
   std::vector<std::array<std::size_t, 2>> wanted_;
   collision::CandidatePairs candidates_;

@@ -12,8 +12,9 @@ constexpr double kMinLengthRatio = 0.6;
 
 }  // namespace
 
-Fabric::Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
-               std::span<const Vec3> rest, std::span<const std::uint8_t> may_move)
+UntangleInput::UntangleInput(const collision::Bodies& of_bodies, std::vector<SurfaceKind> of_kinds,
+                             std::span<const Vec3> x, std::span<const Vec3> rest,
+                             std::span<const std::uint8_t> may_move)
     : bodies(of_bodies),
       kinds(std::move(of_kinds)),
       movable(may_move),
@@ -43,7 +44,7 @@ Fabric::Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, s
   }
 }
 
-double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x) {
+double stretch_cost(const UntangleInput& input, std::span<const Move> moves, std::span<const Vec3> x) {
   std::unordered_map<Index, Vec3> targets;
   for (const Move& move : moves) targets.emplace(move.particle, move.target);
   const auto at = [&](Index i) {
@@ -52,7 +53,7 @@ double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span
   };
   double sum = 0;
   std::size_t count = 0;
-  for (const Fabric::Link& link : fabric.links) {
+  for (const UntangleInput::Link& link : input.links) {
     if (link.is_bend || (!targets.contains(link.i) && !targets.contains(link.j))) continue;
     const double now = (x[link.i] - x[link.j]).norm(), then = (at(link.i) - at(link.j)).norm();
     const double beyond = then / std::max(link.max_length, now) - 1, below = 1 - then / std::min(link.min_length, now);

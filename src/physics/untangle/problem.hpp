@@ -13,7 +13,7 @@
 namespace weft::untangle {
 
 /// Kinds of surfaces, by the sides on which other cloth may be.
-enum class Kind : std::uint8_t {
+enum class SurfaceKind : std::uint8_t {
   cloth,  ///< cloth to be untangled; other cloth may be on both sides
   solid,  ///< closed body; cloth may not be inside
   floor,  ///< cloth may not be below it
@@ -22,12 +22,12 @@ enum class Kind : std::uint8_t {
 };
 
 /// Constant input: connectivity of surfaces, and allowed lengths of threads. A thread is a link along an edge.
-struct Fabric {
-  /// `x`: start positions of all vertices [m]. Those of Kind::cloth must come first: they are the particles. `rest`:
-  /// stress-free positions of the particles [m]. `may_move`: per vertex. `of_bodies` and `may_move` must outlive this
-  /// object.
-  Fabric(const collision::Bodies& of_bodies, std::vector<Kind> of_kinds, std::span<const Vec3> x,
-         std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
+struct UntangleInput {
+  /// `x`: start positions of all vertices [m]. Those of SurfaceKind::cloth must come first: they are the particles.
+  /// `rest`: stress-free positions of the particles [m]. `may_move`: per vertex. `of_bodies` and `may_move` must
+  /// outlive this object.
+  UntangleInput(const collision::Bodies& of_bodies, std::vector<SurfaceKind> of_kinds, std::span<const Vec3> x,
+                std::span<const Vec3> rest, std::span<const std::uint8_t> may_move);
 
   /// Allowed range of the distance between two particles [m].
   struct Link {
@@ -37,7 +37,7 @@ struct Fabric {
   };
 
   const collision::Bodies& bodies;
-  std::vector<Kind> kinds;                     ///< per body
+  std::vector<SurfaceKind> kinds;              ///< per body
   std::span<const std::uint8_t> movable;       ///< per vertex
   mesh::EdgeSet edges;                         ///< of all triangles, with global numbers
   std::vector<Link> links;                     ///< of cloth
@@ -58,6 +58,6 @@ struct Move {
 
 /// Cost of moves: mean squared strain of the threads of the moved particles. Strain is the relative excess over the
 /// maximum length, or the relative deficit below the minimum length. Excess or deficit before the moves does not count.
-double stretch_cost(const Fabric& fabric, std::span<const Move> moves, std::span<const Vec3> x);
+double stretch_cost(const UntangleInput& input, std::span<const Move> moves, std::span<const Vec3> x);
 
 }  // namespace weft::untangle

@@ -9,51 +9,51 @@ namespace weft::untangle {
 namespace {
 
 constexpr int kSweepsPerRaise = 5;
-// Fraction of its error by which a bending link (Fabric::Link::is_bend) is corrected.
+// Fraction of its error by which a bending link (UntangleInput::Link::is_bend) is corrected.
 constexpr double kBendFraction = 0.2;
 constexpr std::size_t kParticlesPerTask = 256;
 
 }  // namespace
 
-void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x) {
-  parallel_for(static_cast<std::size_t>(fabric.particles()), kParticlesPerTask,
-               [&](std::size_t begin, std::size_t end) {
-                 for (std::size_t i = begin; i < end; ++i) {
-                   if (!fabric.movable[i]) continue;
-                   const double height = above[fabric.bodies.body_of(static_cast<Index>(i))];
-                   for (const Solid& solid : solids) {
-                     if (!solid.is_near(x[i], height)) continue;
-                     const Solid::Exit exit = solid.exit(x[i]);
-                     if (exit.height < height) x[i] = exit.place + height * exit.normal;
-                   }
-                 }
-               });
+void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
+           std::span<Vec3> x) {
+  parallel_for(static_cast<std::size_t>(input.particles()), kParticlesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!input.movable[i]) continue;
+      const double height = above[input.bodies.body_of(static_cast<Index>(i))];
+      for (const ForbiddenRegion& solid : solids) {
+        if (!solid.is_near(x[i], height)) continue;
+        const ForbiddenRegion::Exit exit = solid.exit(x[i]);
+        if (exit.height < height) x[i] = exit.place + height * exit.normal;
+      }
+    }
+  });
 }
 
-void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
-           std::span<Vec3> x) {
+void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
+           int sweeps, std::span<Vec3> x) {
   for (int sweep = 1; sweep <= sweeps; ++sweep) {
-    for (const Fabric::Link& link : fabric.links) {
+    for (const UntangleInput::Link& link : input.links) {
       const Vec3 between = x[link.j] - x[link.i];
       const double sq = between.squaredNorm();
       if (sq <= link.max_length * link.max_length && sq >= link.min_length * link.min_length) continue;
-      const int ends = (fabric.movable[link.i] ? 1 : 0) + (fabric.movable[link.j] ? 1 : 0);
+      const int ends = (input.movable[link.i] ? 1 : 0) + (input.movable[link.j] ? 1 : 0);
       if (ends == 0 || sq == 0) continue;
       const double length = std::sqrt(sq);
       const double error = length - std::clamp(length, link.min_length, link.max_length);
       const Vec3 push = (link.is_bend ? kBendFraction : 1.0) * error / (length * ends) * between;
-      if (fabric.movable[link.i]) x[link.i] += push;
-      if (fabric.movable[link.j]) x[link.j] -= push;
+      if (input.movable[link.i]) x[link.i] += push;
+      if (input.movable[link.j]) x[link.j] -= push;
     }
-    if (sweep % kSweepsPerRaise == 0 || sweep == sweeps) raise(fabric, solids, above, x);
+    if (sweep % kSweepsPerRaise == 0 || sweep == sweeps) raise(input, solids, above, x);
   }
 }
 
-void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x) {
-  std::vector<std::uint8_t> in_region(static_cast<std::size_t>(fabric.particles()), 0);
+void smooth(const UntangleInput& input, std::span<const Index> particles, int rings, int times, std::span<Vec3> x) {
+  std::vector<std::uint8_t> in_region(static_cast<std::size_t>(input.particles()), 0);
   std::vector<Index> region;
   const auto take = [&](Index i) {
-    if (!fabric.is_cloth(i) || in_region[i]) return;
+    if (!input.is_cloth(i) || in_region[i]) return;
     in_region[i] = 1;
     region.push_back(i);
   };
@@ -61,19 +61,19 @@ void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, i
   std::size_t begin = 0;
   for (int ring = 0; ring < rings; ++ring)
     for (const std::size_t end = region.size(); begin < end; ++begin)
-      for (const Index j : fabric.neighbours[region[begin]]) take(j);
+      for (const Index j : input.neighbours[region[begin]]) take(j);
   std::ranges::sort(region);
   for (int time = 0; time < times; ++time) {
     for (const Index i : region) {
-      if (!fabric.movable[i]) continue;
+      if (!input.movable[i]) continue;
       Vec3 sum = Vec3::Zero();
       int count = 0;
-      for (const Index j : fabric.neighbours[i]) {
-        if (fabric.on_border[i] && !fabric.on_border[j]) continue;
+      for (const Index j : input.neighbours[i]) {
+        if (input.on_border[i] && !input.on_border[j]) continue;
         sum += x[j];
         ++count;
       }
-      if (count > (fabric.on_border[i] ? 1 : 0)) x[i] = sum / count;
+      if (count > (input.on_border[i] ? 1 : 0)) x[i] = sum / count;
     }
   }
 }

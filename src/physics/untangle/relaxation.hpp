@@ -4,8 +4,8 @@
 
 #include <span>
 
+#include "physics/untangle/forbidden_region.hpp"
 #include "physics/untangle/problem.hpp"
-#include "physics/untangle/solid.hpp"
 
 namespace weft::untangle {
 
@@ -13,15 +13,16 @@ namespace weft::untangle {
 /// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). Corrects links
 /// of bending only in part. After every few sweeps and after the last one, calls raise(). `above`: minimum height over
 /// solids [m], per body.
-void relax(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, int sweeps,
-           std::span<Vec3> x);
+void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
+           int sweeps, std::span<Vec3> x);
 
 /// Moves movable particles that are lower than `above` over a solid to the height `above` over their nearest exit
-/// (Solid::Exit).
-void raise(const Fabric& fabric, std::span<const Solid> solids, std::span<const double> above, std::span<Vec3> x);
+/// (ForbiddenRegion::Exit).
+void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
+           std::span<Vec3> x);
 
 /// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times. For
 /// a particle on the border, only neighbours on the border are used, so that it stays on the border.
-void smooth(const Fabric& fabric, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
+void smooth(const UntangleInput& input, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
 
 }  // namespace weft::untangle

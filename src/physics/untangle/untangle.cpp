@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 #include "physics/untangle/contours.hpp"
 #include "physics/untangle/crossings.hpp"
+#include "physics/untangle/forbidden_region.hpp"
 #include "physics/untangle/relaxation.hpp"
-#include "physics/untangle/solid.hpp"
 
 namespace weft::untangle {
 namespace {
@@ -46,19 +46,19 @@ constexpr int kMaxGapRounds = 60;
 
 class Untangling {
  public:
-  Untangling(const Fabric& fabric, const Options& options, std::span<Vec3> x)
-      : fabric_(fabric), x_(x), start_(x.begin(), x.end()), finder_(fabric, x, options.self, options.obstacles) {
-    for (std::size_t b = 0; b < fabric.bodies.size(); ++b) {
-      above_.push_back(kHeightInThicknesses * fabric.thickness[b]);
-      const bool solid = fabric.kinds[b] == Kind::solid || fabric.kinds[b] == Kind::floor;
-      if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, fabric.kinds[b], x);
+  Untangling(const UntangleInput& input, const Options& options, std::span<Vec3> x)
+      : input_(input), x_(x), start_(x.begin(), x.end()), finder_(input, x, options.self, options.obstacles) {
+    for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+      above_.push_back(kHeightInThicknesses * input.thickness[b]);
+      const bool solid = input.kinds[b] == SurfaceKind::solid || input.kinds[b] == SurfaceKind::floor;
+      if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, input.kinds[b], x);
     }
-    const std::vector<Solid> bodies = solids_;
-    for (std::size_t b = 0; b < fabric.bodies.size(); ++b)
-      if (fabric.kinds[b] == Kind::layer) solids_.emplace_back(finder_.surfaces(), b, x, fabric.on_border, bodies);
+    const std::vector<ForbiddenRegion> bodies = solids_;
+    for (std::size_t b = 0; b < input.bodies.size(); ++b)
+      if (input.kinds[b] == SurfaceKind::layer) solids_.emplace_back(finder_.surfaces(), b, x, input.on_border, bodies);
     double sum = 0;
     std::size_t count = 0;
-    for (const Fabric::Link& link : fabric.links) {
+    for (const UntangleInput::Link& link : input.links) {
       if (link.is_bend) continue;
       sum += link.max_length;
       ++count;
@@ -83,8 +83,8 @@ class Untangling {
   bool move_out_of_solids() {
     for (int pass = 0; pass < kMaxPasses && report_.locked.empty(); ++pass) {
       std::vector<InsideRegion> regions;
-      for (const Solid& solid : solids_) {
-        for (InsideRegion& region : find_inside(fabric_, solid, above_, x_)) {
+      for (const ForbiddenRegion& solid : solids_) {
+        for (InsideRegion& region : find_inside(input_, solid, above_, x_)) {
           const bool shallow = region.farthest < kShallowDepth * above_[region.cloth];
           const bool free = !region.moves.empty() && region.farthest <= kMaxDisplacementRatio * region.size &&
                             region.blocked <= kMaxBlockedFraction;
@@ -93,7 +93,7 @@ class Untangling {
       }
       if (regions.empty() || !report_.locked.empty()) break;
       for (const InsideRegion& region : regions) apply(region.moves);
-      relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
+      relax(input_, solids_, above_, kSweepsAfterMove, x_);
       for (InsideRegion& region : regions)
         if (is_overstretched(region)) report_.locked.push_back(std::move(region));
     }
@@ -104,9 +104,9 @@ class Untangling {
   }
 
   bool is_overstretched(const InsideRegion& region) const {
-    std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric_.particles()), 0);
+    std::vector<std::uint8_t> in(static_cast<std::size_t>(input_.particles()), 0);
     for (const Move& move : region.moves) in[move.particle] = 1;
-    return std::ranges::any_of(fabric_.links, [&](const Fabric::Link& link) {
+    return std::ranges::any_of(input_.links, [&](const UntangleInput::Link& link) {
       return !link.is_bend && (in[link.i] || in[link.j]) &&
              (x_[link.i] - x_[link.j]).norm() > (1 + kMaxStrain) * link.max_length;
     });
@@ -115,7 +115,7 @@ class Untangling {
   bool apply(std::span<const Move> moves) {
     bool any = false;
     for (const Move& move : moves) {
-      if (!fabric_.movable[move.particle]) continue;
+      if (!input_.movable[move.particle]) continue;
       x_[move.particle] = move.target;
       any = true;
     }
@@ -127,7 +127,7 @@ class Untangling {
   // later surface cannot move (an obstacle), moves the cloth to the front of it. If that surface has no front (a rope),
   // moves the cloth back, against its own normal.
   void separate_touching() {
-    std::vector<Vec3> normals(static_cast<std::size_t>(fabric_.particles()), Vec3::Zero());
+    std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {
       return Vec3((x_[of[1]] - x_[of[0]]).cross(x_[of[2]] - x_[of[0]]).stableNormalized());
     };
@@ -135,21 +135,21 @@ class Untangling {
       for (const Index v : corners) normals[v] += along;
     };
     for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
-      const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
-      if (fabric_.bodies.body_of(corners.a[0]) == fabric_.bodies.body_of(corners.b[0])) continue;
+      const collision::CornerPair corners{input_.bodies.triangles()[pair.a], input_.bodies.triangles()[pair.b]};
+      if (input_.bodies.body_of(corners.a[0]) == input_.bodies.body_of(corners.b[0])) continue;
       if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
-      if (fabric_.can_move[fabric_.bodies.body_of(corners.b[0])] == 0) {
+      if (input_.can_move[input_.bodies.body_of(corners.b[0])] == 0) {
         const Vec3 front = normal(corners.b);
         move(corners.a, front.isZero() ? Vec3(-normal(corners.a)) : front);
         continue;
       }
       move(corners.b, normal(corners.a));
-      if (std::ranges::any_of(corners.b, [&](Index v) { return fabric_.movable[v] == 0; }))
+      if (std::ranges::any_of(corners.b, [&](Index v) { return input_.movable[v] == 0; }))
         move(corners.a, -normal(corners.a));
     }
-    for (Index i = 0; i < fabric_.particles(); ++i)
-      if (fabric_.movable[i])
-        x_[i] += 1.1 * kGapInThicknesses * fabric_.thickness[fabric_.bodies.body_of(i)] * normals[i].stableNormalized();
+    for (Index i = 0; i < input_.particles(); ++i)
+      if (input_.movable[i])
+        x_[i] += 1.1 * kGapInThicknesses * input_.thickness[input_.bodies.body_of(i)] * normals[i].stableNormalized();
   }
 
   // Moves islands, shortens lines of crossing and smooths, until nothing crosses or kMaxSmoothings or kMaxRounds is
@@ -160,9 +160,9 @@ class Untangling {
     fewest_pairs_ = finder_.pairs();
     for (int waited = 0, smoothings = 0; report_.rounds < kMaxRounds && fewest_pairs_ > 0; ++report_.rounds) {
       if (waited == 0 && move_islands()) continue;
-      push_out_of_solids(fabric_, crossings_, solids_, above_, x_);
-      shorten_contours(fabric_, crossings_, step_, x_);
-      relax(fabric_, solids_, above_, kSweeps, x_);
+      push_out_of_solids(input_, crossings_, solids_, above_, x_);
+      shorten_contours(input_, crossings_, step_, x_);
+      relax(input_, solids_, above_, kSweeps, x_);
       find();
       waited = keep_if_better() ? 0 : waited + 1;
       if (waited < kPatience) continue;
@@ -183,7 +183,7 @@ class Untangling {
       bool any = false;
       for (const std::vector<Move>& moves : islands) any = apply(moves) || any;
       if (!any) return false;
-      relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
+      relax(input_, solids_, above_, kSweepsAfterMove, x_);
       find();
       if (keep_if_better()) return true;
       std::ranges::copy(before, x_.begin());
@@ -191,10 +191,10 @@ class Untangling {
       return false;
     };
     const auto islands_of = [&](const std::optional<CrossedPair>& only) {
-      return move_cut_off_islands(fabric_, crossings_, finder_.surfaces(), above_, only, x_);
+      return move_cut_off_islands(input_, crossings_, finder_.surfaces(), above_, only, x_);
     };
     if (try_moves(islands_of(std::nullopt))) return true;
-    for (const CrossedPair& only : list_crossed_pairs(fabric_, crossings_)) {
+    for (const CrossedPair& only : list_crossed_pairs(input_, crossings_)) {
       const auto islands = islands_of(only);
       if (try_moves(islands)) return true;
       for (std::size_t p = 0; islands.size() > 1 && p < std::min(islands.size(), kMaxSingleIslands); ++p)
@@ -208,13 +208,13 @@ class Untangling {
   void smooth_around(int smoothings) {
     std::vector<Index> around;
     for (const Crossing& c : crossings_) {
-      if (involves_solid(fabric_, c)) continue;
-      const auto& edge = fabric_.edges.edges[c.edge].vertices;
-      const auto& t = fabric_.bodies.triangles()[c.triangle];
+      if (involves_solid(input_, c)) continue;
+      const auto& edge = input_.edges.edges[c.edge].vertices;
+      const auto& t = input_.bodies.triangles()[c.triangle];
       around.insert(around.end(), {edge[0], edge[1], t[0], t[1], t[2]});
     }
-    smooth(fabric_, around, 1 + smoothings, 4 * smoothings, x_);
-    relax(fabric_, solids_, above_, kSweepsAfterMove, x_);
+    smooth(input_, around, 1 + smoothings, 4 * smoothings, x_);
+    relax(input_, solids_, above_, kSweepsAfterMove, x_);
     find();
     keep_if_better();
   }
@@ -237,11 +237,11 @@ class Untangling {
   void restore_gaps() {
     std::vector<Vec3> good(x_.begin(), x_.end());
     double max_gap = 0;
-    for (const double thickness : fabric_.thickness) max_gap = std::max(max_gap, kGapInThicknesses * thickness);
+    for (const double thickness : input_.thickness) max_gap = std::max(max_gap, kGapInThicknesses * thickness);
     for (int round = 0; round < kMaxGapRounds; ++round) {
       int close = 0;
       for (const collision::TrianglePair& pair : finder_.near(x_, max_gap)) {
-        const collision::CornerPair corners{fabric_.bodies.triangles()[pair.a], fabric_.bodies.triangles()[pair.b]};
+        const collision::CornerPair corners{input_.bodies.triangles()[pair.a], input_.bodies.triangles()[pair.b]};
         close += push(corners);
       }
       if (close == 0) break;
@@ -254,8 +254,8 @@ class Untangling {
 
   // Pushes two triangles apart to slightly more than the minimum gap. Returns whether any particle has moved.
   bool push(const collision::CornerPair& pair) {
-    const double wanted = kGapInThicknesses * std::max(fabric_.thickness[fabric_.bodies.body_of(pair.a[0])],
-                                                       fabric_.thickness[fabric_.bodies.body_of(pair.b[0])]);
+    const double wanted = kGapInThicknesses * std::max(input_.thickness[input_.bodies.body_of(pair.a[0])],
+                                                       input_.thickness[input_.bodies.body_of(pair.b[0])]);
     const collision::ClosestFeatures closest = collision::closest_features(pair, x_);
     const double distance = std::sqrt(closest.points.distance_sq);
     if (distance >= wanted) return false;
@@ -264,27 +264,27 @@ class Untangling {
                        : (x_[pair.b[1]] - x_[pair.b[0]]).cross(x_[pair.b[2]] - x_[pair.b[0]]).stableNormalized();
     double sum_sq = 0;
     for (std::size_t k = 0; k < 4; ++k)
-      if (fabric_.movable[closest.vertices[k]]) sum_sq += closest.points.weights[k] * closest.points.weights[k];
+      if (input_.movable[closest.vertices[k]]) sum_sq += closest.points.weights[k] * closest.points.weights[k];
     if (sum_sq == 0) return false;
     for (std::size_t k = 0; k < 4; ++k)
-      if (fabric_.movable[closest.vertices[k]])
+      if (input_.movable[closest.vertices[k]])
         x_[closest.vertices[k]] += (1.1 * wanted - distance) * closest.points.weights[k] / sum_sq * n;
     return true;
   }
 
   void measure() {
-    for (Index i = 0; i < fabric_.particles(); ++i)
+    for (Index i = 0; i < input_.particles(); ++i)
       report_.farthest = std::max(report_.farthest, (x_[i] - start_[i]).norm());
-    for (const Fabric::Link& link : fabric_.links)
+    for (const UntangleInput::Link& link : input_.links)
       if (!link.is_bend)
         report_.stretch = std::max(report_.stretch, (x_[link.i] - x_[link.j]).norm() / link.max_length - 1);
   }
 
-  const Fabric& fabric_;
+  const UntangleInput& input_;
   std::span<Vec3> x_;
   std::vector<Vec3> start_;
   CrossingFinder finder_;
-  std::vector<Solid> solids_;
+  std::vector<ForbiddenRegion> solids_;
   std::vector<double> above_;  // per body: height over other surfaces to which it is moved [m]
   double step_ = 0;            // maximum displacement by shorten_contours() [m]
   std::vector<Crossing> crossings_;
@@ -295,8 +295,8 @@ class Untangling {
 
 }  // namespace
 
-Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x) {
-  return Untangling(fabric, options, x).run();
+Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x) {
+  return Untangling(input, options, x).run();
 }
 
 }  // namespace weft::untangle

@@ -1,7 +1,7 @@
 // Separates surfaces that touch or cross at the start, before the simulation.
 //
-//   Solid             a region where cloth may not be, such as the inside of an obstacle, and exits from it
-//   find_inside       finds connected regions of cloth inside a Solid, and one way out for each
+//   ForbiddenRegion             a region where cloth may not be, such as the inside of an obstacle, and exits from it
+//   find_inside       finds connected regions of cloth inside a ForbiddenRegion, and one way out for each
 //   CrossingFinder    finds edges that cross triangles
 //   contours.hpp      cloth through cloth: takes islands to the other side, shortens lines of crossing
 //   relax             moves the rest of the cloth so that threads have allowed lengths again
@@ -33,6 +33,6 @@ struct Report {
 /// Moves particles in x [m] until no triangle of cloth crosses other cloth or an obstacle, and their gaps are at least
 /// a tenth of the larger thickness of the two. If that is not reached within a bounded number of rounds, keeps the
 /// state with the fewest crossings. The result is deterministic.
-Report untangle(const Fabric& fabric, const Options& options, std::span<Vec3> x);
+Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

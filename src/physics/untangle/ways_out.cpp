@@ -38,12 +38,12 @@ struct Threads {
   double blocked = 0;  // fraction deeper than kBlockedDepth
   bool free = true;    // whether all are less deep than kFreeDepth
 };
-Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const Move> moves,
+Threads threads_after(const UntangleInput& input, const ForbiddenRegion& solid, std::span<const Move> moves,
                       const std::vector<Index>& move_of, std::span<const Vec3> x) {
   std::size_t blocked = 0, all = 0;
   Threads threads;
   for (const Move& move : moves) {
-    for (const Index j : fabric.neighbours[move.particle]) {
+    for (const Index j : input.neighbours[move.particle]) {
       if (move_of[j] >= 0 && j < move.particle) continue;
       const double depth = solid.midpoint_depth(move.target, move_of[j] >= 0 ? moves[move_of[j]].target : x[j]);
       ++all;
@@ -65,12 +65,12 @@ Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move
 }
 
 // All particles that are connected to this one.
-std::vector<Index> mesh_of(const Fabric& fabric, Index first) {
+std::vector<Index> mesh_of(const UntangleInput& input, Index first) {
   std::vector<Index> mesh{first};
-  std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric.particles()), 0);
+  std::vector<std::uint8_t> in(static_cast<std::size_t>(input.particles()), 0);
   in[first] = 1;
   for (std::size_t m = 0; m < mesh.size(); ++m)
-    for (const Index j : fabric.neighbours[mesh[m]])
+    for (const Index j : input.neighbours[mesh[m]])
       if (!in[j]) {
         in[j] = 1;
         mesh.push_back(j);
@@ -80,12 +80,12 @@ std::vector<Index> mesh_of(const Fabric& fabric, Index first) {
 
 }  // namespace
 
-std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
-                                      std::span<const Vec3> x) {
-  const Index particles = fabric.particles();
+std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
+                                      std::span<const double> above, std::span<const Vec3> x) {
+  const Index particles = input.particles();
   std::vector<std::uint8_t> inside(particles, 0);
   for (Index i = 0; i < particles; ++i)
-    inside[i] = fabric.can_move[fabric.bodies.body_of(i)] != 0 && solid.is_near(x[i], 0) && solid.inside(x[i]);
+    inside[i] = input.can_move[input.bodies.body_of(i)] != 0 && solid.is_near(x[i], 0) && solid.inside(x[i]);
   std::vector<Index> move_of(x.size(), -1);  // per vertex: index among the moves of the present region
   std::vector<InsideRegion> regions;
   for (Index first = 0; first < particles; ++first) {
@@ -94,20 +94,20 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
     std::vector<Index> members{first};
     inside[first] = 0;
     for (std::size_t m = 0; m < members.size(); ++m)
-      for (const Index j : fabric.neighbours[members[m]])
+      for (const Index j : input.neighbours[members[m]])
         if (inside[j]) {
           inside[j] = 0;
           members.push_back(j);
         }
     InsideRegion region;
-    region.cloth = fabric.bodies.body_of(first);
+    region.cloth = input.bodies.body_of(first);
     region.body = solid.number();
     for (std::size_t m = 0; m < members.size(); ++m) move_of[members[m]] = static_cast<Index>(m);
     // Extend the box half-way to neighbours, so that a region of one particle has the size of a cell of the mesh.
     Box3 box;
     for (const Index i : members) {
       box.extend(x[i]);
-      for (const Index j : fabric.neighbours[i]) box.extend(0.5 * (x[i] + x[j]));
+      for (const Index j : input.neighbours[i]) box.extend(0.5 * (x[i] + x[j]));
     }
     region.centre = box.center();
     region.size = box.sizes().maxCoeff();
@@ -122,8 +122,8 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
         if (!moves.back().target.allFinite()) return;
         farthest = std::max(farthest, (moves.back().target - x[i]).norm());
       }
-      const double cost = stretch_cost(fabric, moves, x);
-      const Threads threads = threads_after(fabric, solid, moves, move_of, x);
+      const double cost = stretch_cost(input, moves, x);
+      const Threads threads = threads_after(input, solid, moves, move_of, x);
       const double whole =
           cost + kBlockedCost * threads.blocked + kDisplacementCost * farthest / std::max(region.size, height);
       if (threads.free) region.shortest = std::min(region.shortest, farthest);
@@ -135,7 +135,7 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       region.moves = std::move(moves);
     };
     consider([&](const Vec3& p) -> Vec3 {
-      const Solid::Exit exit = solid.exit(p);
+      const ForbiddenRegion::Exit exit = solid.exit(p);
       return exit.place + height * exit.normal;
     });
     // Considers a move of the region's whole mesh along d, if it takes the region out of the body and no other particle
@@ -147,15 +147,15 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       if (!(way <= kMaxWholeMeshRatio * region.size) || whole >= best) return;
       std::vector<Move> moves;
       std::size_t through = 0;
-      for (const Index i : mesh_of(fabric, members.front())) {
+      for (const Index i : mesh_of(input, members.front())) {
         const Vec3 target = x[i] + way * d;
-        if (!fabric.movable[i] || (solid.is_near(target, 0) && solid.inside(target))) return;
+        if (!input.movable[i] || (solid.is_near(target, 0) && solid.inside(target))) return;
         through += move_of[i] < 0 && solid.crosses_surface(x[i], target);
         moves.push_back({i, target});
       }
       if (static_cast<double>(through) > kMaxThroughFraction * static_cast<double>(moves.size())) return;
       for (const Move& move : moves)
-        for (const Index j : fabric.neighbours[move.particle])
+        for (const Index j : input.neighbours[move.particle])
           if (solid.midpoint_depth(move.target, x[j] + way * d) > kBlockedDepth) return;
       best = whole;
       region.cost = region.blocked = 0;
@@ -164,7 +164,7 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
       region.moves = std::move(moves);
     };
     std::vector<Vec3> ways = directions();
-    const Vec3 normal = mean_normal(fabric.bodies.surfaces()[region.cloth], move_of, x);
+    const Vec3 normal = mean_normal(input.bodies.surfaces()[region.cloth], move_of, x);
     if (!normal.isZero()) ways.insert(ways.begin(), {normal, -normal});
     for (const Vec3& d : ways)
       consider([&](const Vec3& p) -> Vec3 { return p + (solid.distance_out(p, d) + height) * d; });

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "physics/untangle/forbidden_region.hpp"
 #include "physics/untangle/problem.hpp"
-#include "physics/untangle/solid.hpp"
 
 namespace weft::untangle {
 
@@ -27,7 +27,7 @@ struct InsideRegion {
 /// takes its nearest way out, or all particles move in one direction, or the whole mesh moves. For example, a sheet
 /// through a ball moves to the side where its smaller part is; a garment that is too small moves outward on all sides.
 /// `above`: height over the surface, per body of cloth [m].
-std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
-                                      std::span<const Vec3> x);
+std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
+                                      std::span<const double> above, std::span<const Vec3> x);
 
 }  // namespace weft::untangle

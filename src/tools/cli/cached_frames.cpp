@@ -14,7 +14,7 @@ struct Missing {
   std::vector<int> absent, broken;
   std::string first_problem;  ///< message of the first broken frame
 
-  void look_at(const cache::Reader& reader, int frame) {
+  void check_frame(const cache::Reader& reader, int frame) {
     if (!reader.has(frame)) return absent.push_back(frame);
     try {
       reader.verify(frame);
@@ -45,7 +45,7 @@ FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& sele
   FrameRange before{wanted.begin, wanted.begin, wanted.step};  // frames before the first missing one
   Missing missing;
   for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
-    missing.look_at(reader, frame);
+    missing.check_frame(reader, frame);
     if (missing.none()) before.end = frame + 1;
   }
   if (missing.none()) return wanted;
@@ -63,7 +63,7 @@ void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
   const cache::Reader any(reader.folder(), cache::Looks::any);
   for (const int frame : any.frames()) {
     const cache::CachedFrame cached = any.read(frame);
-    if (cached.scene_hash == any.manifest().scene_hash) camera.see(*cached.snapshot);
+    if (cached.scene_hash == any.manifest().scene_hash) camera.add_frame(*cached.snapshot);
   }
 }
 

@@ -88,7 +88,7 @@ std::string error_sentence(const ErrorEstimate& estimate, double cloth_size) {
   const std::string length = relative_length(at(estimate.all, Quantity::position), cloth_size);
   const std::string remark =
       estimate.steps_irregular ? "; steps twice as long fail or change it hardly more than steps half as long" : "";
-  if (estimate.start_matters)
+  if (estimate.is_chaotic)
     return fmt::format(
         "the motion is chaotic: a start moved by 1 µm alone moves positions by {} mm; in all they are off by {} or "
         "more, and no setting reduces that{}",

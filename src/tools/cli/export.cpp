@@ -46,7 +46,7 @@ class Cameras {
       render::CameraPath path(name, static_cast<double>(scene.width) / scene.height);
       if (render::CameraPath::is_computed(first, name)) {
         show_frames(reader, path);
-        path.find();
+        path.compute_cameras();
       }
       paths_.emplace_back(name.empty() ? "camera" : name, std::move(path));
     }

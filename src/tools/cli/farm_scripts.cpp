@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Maximum number of tasks in a job array of Slurm: the default MaxArraySize minus one.
-constexpr std::size_t kArray = 1000;
+constexpr std::size_t kMaxArrayTasks = 1000;
 
 // Quotes a text as one word of the shell.
 std::string quoted(const std::string& text) {
@@ -142,12 +142,13 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
     after = " --dependency=\"afterok:$unpack\"";
   }
-  // The simulations of up to kArray runs form one job array. The drawing of a run waits only for its own element.
+  // The simulations of up to kMaxArrayTasks runs form one job array. The drawing of a run waits only for its own
+  // element.
   for (std::size_t at = 0; at < plan.submitted.size();) {
     const std::size_t base = plan.submitted[at];
     std::vector<std::size_t> offsets;
     std::size_t end = at;
-    for (; end < plan.submitted.size() && plan.submitted[end] - base < kArray; ++end)
+    for (; end < plan.submitted.size() && plan.submitted[end] - base < kMaxArrayTasks; ++end)
       offsets.push_back(plan.submitted[end] - base);
     fmt::format_to(out, "hand_in simulate 'simulate {}+' --time={} --array={}{}\nsimulate=$job\n", base,
                    plan.needs.simulate_minutes, array_text(offsets), after);

@@ -64,9 +64,9 @@ class Film {
     try {
       const std::unique_ptr<FrameSource> source = open_source();
       const bool found_beforehand = camera_ && source->show_all(*camera_);
-      if (found_beforehand) camera_->find();
+      if (found_beforehand) camera_->compute_cameras();
       if (camera_ && !found_beforehand) {
-        make_then_hand_on(*source);
+        make_then_push(*source);
       } else {
         make_frames(*source, false);
       }
@@ -94,10 +94,10 @@ class Film {
       record(frame).report = std::move(made.report);
       ++made_so_far_;
       progress_.advance(Stage::simulate);
-      if (only_show) camera_->see(*made.snapshot);
+      if (only_show) camera_->add_frame(*made.snapshot);
       if (!wanted_.contains(frame) || parts_.drawn.contains(frame)) {
         log_.write("frame_done", frame_json(record(frame)));
-      } else if (!only_show && !hand_on(made.snapshot, &source)) {
+      } else if (!only_show && !push_to_drawing(made.snapshot, &source)) {
         break;
       }
       if (parts_.motion && (frame - wanted_.begin) % wanted_.step == 0) before_ = std::move(made.snapshot);
@@ -107,7 +107,7 @@ class Film {
 
   /// Hands a frame to the drawing thread, with the previous wanted frame if the painter needs it. Returns false if that
   /// thread has ended.
-  bool hand_on(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
+  bool push_to_drawing(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;
     if (parts_.motion && !before_ && frame >= 0)
       before_ = source ? source->earlier(frame) : parts_.store->stored(frame);
@@ -116,14 +116,14 @@ class Film {
 
   /// Makes all frames and passes them to the camera. Then reads the wanted frames from the store, and hands them to the
   /// drawing thread. If making frames fails, hands over those made so far.
-  void make_then_hand_on(FrameSource& source) {
+  void make_then_push(FrameSource& source) {
     std::exception_ptr failure;
     try {
       make_frames(source, true);
     } catch (...) {
       failure = std::current_exception();
     }
-    camera_->find();
+    camera_->compute_cameras();
     before_ = nullptr;
     const bool stopped = result_.interrupted;
     for (int frame = wanted_.begin; frame <= wanted_.last() && frame < made_.begin + made_so_far_;
@@ -133,7 +133,7 @@ class Film {
         break;
       }
       const frame::SnapshotPtr snapshot = parts_.store->stored(frame);
-      if (!hand_on(snapshot, nullptr)) break;
+      if (!push_to_drawing(snapshot, nullptr)) break;
       if (parts_.motion) before_ = snapshot;
     }
     if (failure) std::rethrow_exception(failure);

@@ -87,7 +87,7 @@ void PathLedger::writes_content(const std::string& option, const fs::path& file,
   outputs_.back().content = content;
 }
 
-void PathLedger::fills(const std::string& option, const fs::path& folder) {
+void PathLedger::register_output_folder(const std::string& option, const fs::path& folder) {
   add_output(option, folder);
   places_.emplace(resolved(folder), Place{"what " + option + " fills"});
 }
@@ -103,7 +103,7 @@ void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
       // A symbolic link counts as an existing file even if its target does not exist.
       if (overwrite) continue;
       if (!fs::exists(fs::symlink_status(file, ignored))) {
-        keep_if_made_meanwhile(file);
+        protect_missing_file(file);
         continue;
       }
       if (!output.content.empty() && holds(file, output.content)) continue;

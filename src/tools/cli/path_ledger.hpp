@@ -31,7 +31,7 @@ class PathLedger {
   /// Registers an output file. An existing file with the same content may be overwritten.
   void writes_content(const std::string& option, const std::filesystem::path& file, const std::string& content);
   /// Registers a folder that the command uses exclusively. The code that creates the folder checks what it contains.
-  void fills(const std::string& option, const std::filesystem::path& folder);
+  void register_output_folder(const std::string& option, const std::filesystem::path& folder);
 
   /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if a folder has its name. If
   /// `overwrite` is false, files that other processes create after this call are not replaced either. `own`: outputs()
@@ -40,7 +40,7 @@ class PathLedger {
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.
   void check_writable() const;
-  /// Option and place of each output, without the folders of fills().
+  /// Option and place of each output, without the folders of register_output_folder().
   std::set<std::string> outputs() const;
 
  private:

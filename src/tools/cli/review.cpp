@@ -19,7 +19,7 @@ ExitCode review(const ReviewOptions& options) {
   PathLedger paths;
   for (const std::filesystem::path& folder : options.folders) paths.searches(folder, "a folder of runs");
   if (!options.reference.empty()) paths.searches(options.reference, "the folder of references");
-  paths.fills("-o", request.output);
+  paths.register_output_folder("-o", request.output);
   request.stop = [&signals] { return signals.requested().load(); };
   const review::Outcome outcome = review::write_review(request);
   std::string line = fmt::format("{}: {} run{}", outcome.page.string(), outcome.runs, outcome.runs == 1 ? "" : "s");

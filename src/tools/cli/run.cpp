@@ -82,7 +82,7 @@ void warn_of_odd_size(const FilmPlan& plan, video::Codec codec) {
 void take_output(FilmPlan& plan, const RunOptions& options) {
   plan.target = parse_output(options.output, plan.scene.scene);
   plan.settings.layers = plan.target.layered();
-  plan.settings.deep = options.depth == 16;
+  plan.settings.needs_image16 = options.depth == 16;
   const bool video = plan.target.kind == Kind::video;
   if (options.depth == 16 && (video || plan.settings.layers))
     throw Error(ExitCode::usage, "--depth: expected pictures (.png), got {}", plan.target.text);
@@ -357,7 +357,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
   if (session.wants_error())
     parts.on_frame = [&](const MadeFrame& made) {
       if (recorder)
-        recorder->see(made.snapshot, made.report);
+        recorder->add_frame(made.snapshot, made.report);
       else
         recorder.emplace(scene, *made.snapshot, made.report);
     };
@@ -379,7 +379,7 @@ ExitCode run(const RunOptions& options) {
   add_inputs(paths, scene);
   add_outputs(paths, plan, options);
   const fs::path cache = working_cache(plan.target, scene.name);
-  paths.fills("-o, for its working cache,", cache);
+  paths.register_output_folder("-o, for its working cache,", cache);
   const bool overwrite = options.common.overwrite;
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
       is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
@@ -411,7 +411,7 @@ ExitCode simulate(const SimulateOptions& options) {
   plan.target = {Kind::none, options.cache.string()};
   PathLedger paths;
   add_inputs(paths, scene);
-  paths.fills("--cache", options.cache);
+  paths.register_output_folder("--cache", options.cache);
   add_outputs(paths, plan, options);
   Store store(options.cache, Store::Need::required, plan.scene, plan.scene_text);
   if (options.resume) store.find_start();

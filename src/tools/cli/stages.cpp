@@ -26,13 +26,13 @@ bool shows_single_color(const image::Image& image) {
 
 class GlPainter : public FramePainter {
  public:
-  explicit GlPainter(const render::Settings& settings) : renderer_(settings), deep_(settings.deep) {}
+  explicit GlPainter(const render::Settings& settings) : renderer_(settings), needs_image16_(settings.needs_image16) {}
 
   void set_camera_path(render::CameraPath path) override { renderer_.set_camera_path(std::move(path)); }
 
   Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
     Picture picture{renderer_.draw(snapshot, before), renderer_.layers()};
-    if (deep_) picture.deep = renderer_.deep();
+    if (needs_image16_) picture.image16 = renderer_.image16();
     if (!warned_ && shows_single_color(picture.image)) {
       warned_ = true;
       log::warn(fmt::format("frame {} shows a single color: does the camera look at the scene?", snapshot.frame));
@@ -49,7 +49,7 @@ class GlPainter : public FramePainter {
 
  private:
   render::Renderer renderer_;
-  bool deep_ = false, warned_ = false;
+  bool needs_image16_ = false, warned_ = false;
 };
 
 // Adds the name of each object, under the number that the object has in the layer id.object.
@@ -74,7 +74,7 @@ class OutputWriter : public FrameWriter {
     if (settings_.target.layered()) {
       image::write_exr(file, picture.layers, name_objects(metadata, snapshot));
     } else if (settings_.depth == 16) {
-      image::write_png(file, picture.deep, metadata);
+      image::write_png(file, picture.image16, metadata);
     } else {
       image::write_png(file, picture.image, metadata);
     }

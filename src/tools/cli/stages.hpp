@@ -21,8 +21,8 @@ namespace weft::cli {
 /// A drawn frame.
 struct Picture {
   image::Image image;
-  image::Layers layers = {};  ///< if requested
-  image::Image16 deep = {};   ///< with 16 bits per channel, if requested
+  image::Layers layers = {};    ///< if requested
+  image::Image16 image16 = {};  ///< with 16 bits per channel, if requested
 };
 
 class FramePainter {

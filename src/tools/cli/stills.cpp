@@ -90,12 +90,12 @@ class CacheStills : public Stills {
 void Stills::show(const frame::FrameSnapshot& snapshot) {
   if (!render::CameraPath::is_computed(snapshot, settings_.camera)) return;
   if (!camera_) camera_.emplace(settings_.camera, settings_.aspect());
-  camera_->see(snapshot);
+  camera_->add_frame(snapshot);
 }
 
 render::CameraPath Stills::camera() {
   if (!camera_) return {settings_.camera, settings_.aspect()};
-  camera_->find();
+  camera_->compute_cameras();
   return *camera_;
 }
 

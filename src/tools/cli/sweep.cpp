@@ -46,7 +46,7 @@ struct Job : SweepJob {
     return std::ranges::find(kFailures, told) != kFailures.end() ? told : ExitCode::frames_missing;
   }
 
-  std::string last_words() const {
+  std::string last_log_line() const {
     std::string last;
     std::istringstream in(read_end(log(), kMaxTextBytes));
     for (std::string line; std::getline(in, line);)
@@ -71,7 +71,7 @@ class Sweep {
     }
     const std::vector<SweepResult> results = collect();
     write_reports(results);
-    return tell(results);
+    return report_results(results);
   }
 
  private:
@@ -125,9 +125,9 @@ class Sweep {
         if (::waitpid(job->process, &status, WNOHANG) == 0) return false;
         // A process without an exit code was killed by a signal, for example for lack of memory.
         job->code = WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
-        const std::string how = job->code == ExitCode::ok
-                                    ? "done"
-                                    : fmt::format("exit code {}: {}", static_cast<int>(job->code), job->last_words());
+        const std::string how = job->code == ExitCode::ok ? "done"
+                                                          : fmt::format("exit code {}: {}", static_cast<int>(job->code),
+                                                                        job->last_log_line());
         log::info(fmt::format("[{}/{}] {}: {}", ++ended, jobs_.size(), label_of(job->run), how));
         return true;
       });
@@ -157,7 +157,7 @@ class Sweep {
     review::write_review({.folders = {folder}, .reference = {}, .output = folder / "page", .overwrite = true});
   }
 
-  ExitCode tell(const std::vector<SweepResult>& results) const {
+  ExitCode report_results(const std::vector<SweepResult>& results) const {
     const auto failed = std::ranges::find_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     const auto count = std::ranges::count_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     if (stop_.requested()) {

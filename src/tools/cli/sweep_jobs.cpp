@@ -60,11 +60,11 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
 }
 
 void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
-  paths.fills("-o", options.output);
+  paths.register_output_folder("-o", options.output);
   const fs::path& folder = options.output;
   review::check_replaceable(folder / "page", true);
   for (const char* name : {"table.csv", "table.md", "sheet.png", review::kSweepName})
-    if (!fs::exists(fs::symlink_status(folder / name))) keep_if_made_meanwhile(folder / name);
+    if (!fs::exists(fs::symlink_status(folder / name))) protect_missing_file(folder / name);
   if (!fs::exists(folder) || fs::is_empty(folder)) return;
   const Json before = read_json_or_null(folder / review::kSweepName);
   if (!before.is_object() || !before.contains("runs") || !before.contains("options"))

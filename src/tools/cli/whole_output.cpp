@@ -51,7 +51,7 @@ State state_of_picture(const fs::path& file, int frame, const render::Settings& 
     found.width = image.width;
     found.height = image.height;
     constexpr std::size_t kBitDepthPlace = 24;  // offset in the file; PNG specification, 11.2.2 (IHDR)
-    if (read_start(file, kBitDepthPlace + 1).back() != (settings.deep ? 16 : 8)) return State::other;
+    if (read_start(file, kBitDepthPlace + 1).back() != (settings.needs_image16 ? 16 : 8)) return State::other;
   }
   const bool fits = found.width == settings.width && found.height == settings.height;
   return fits && agrees(found.metadata, std::move(expected)) ? State::whole : State::other;

@@ -44,7 +44,8 @@ float lab_curve(float t) {
 
 // Contrast sensitivity function a1 exp(-b1 f²) + a2 exp(-b2 f²), f in cycles per degree. Its inverse Fourier transform
 // in one dimension is the kernel a1 sqrt(pi/b1) exp(-pi² x²/b1) + a2 sqrt(pi/b2) exp(-pi² x²/b2), x in degrees. Like
-// the paper, as_seen() uses this kernel in two dimensions, with x as the distance from the centre.
+// the paper, filter_by_contrast_sensitivity() uses this kernel in two dimensions, with x as the distance from the
+// centre.
 struct Sensitivity {
   double a1, b1, a2, b2;
 };
@@ -122,7 +123,7 @@ Channels opponent_channels(const image::Image& image) {
 // Filters the channels, clamps the colours to those that a display shows, and converts them with hunt_lab().
 Channels seen_colors(const Channels& opponent) {
   Channels seen;
-  for (int c = 0; c < 3; ++c) seen[c] = as_seen(opponent[c], c);
+  for (int c = 0; c < 3; ++c) seen[c] = filter_by_contrast_sensitivity(opponent[c], c);
   for_each_row(seen[0].height, [&](int y) {
     for (int x = 0; x < seen[0].width; ++x) {
       const Color linear = linear_from_opponent({seen[0].row(y)[x], seen[1].row(y)[x], seen[2].row(y)[x]});
@@ -162,7 +163,7 @@ float hyab(const Color& a, const Color& b) {
   return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-float remapped(float distance) {
+float remap_distance(float distance) {
   constexpr float kPower = 0.7f, kBend = 0.4f, kAtBend = 0.95f;
   static const float largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kPower);
   const float fraction = std::pow(distance, kPower) / largest;
@@ -171,7 +172,7 @@ float remapped(float distance) {
   return std::min(value, 1.0f);
 }
 
-Plane<float> as_seen(const Plane<float>& plane, int channel) {
+Plane<float> filter_by_contrast_sensitivity(const Plane<float>& plane, int channel) {
   const Sensitivity& s = kSensitivities[channel];
   const auto weighted = [&](double a, double b, double& total) {
     std::vector<float> kernel = gaussian(b);
@@ -220,7 +221,7 @@ Plane<float> flip_map(const image::Image& reference, const image::Image& test) {
       const flip::Color lab_a(a[0].row(y)[x], a[1].row(y)[x], a[2].row(y)[x]);
       const flip::Color lab_b(b[0].row(y)[x], b[1].row(y)[x], b[2].row(y)[x]);
       // A colour difference has more weight where features differ too (Section 4.3).
-      to[x] = std::pow(flip::remapped(flip::hyab(lab_a, lab_b)), 1 - std::min(to[x], 1.0f));
+      to[x] = std::pow(flip::remap_distance(flip::hyab(lab_a, lab_b)), 1 - std::min(to[x], 1.0f));
     }
   });
   return map;

@@ -37,10 +37,10 @@ float hyab(const Color& a, const Color& b);
 
 /// Maps a HyAB distance to [0, 1] (Section 4.1.3): raises it to the power 0.7, divides it by the same power of the
 /// distance between pure green and pure blue, then maps [0, 0.4] linearly to [0, 0.95] and the rest to [0.95, 1].
-float remapped(float distance);
+float remap_distance(float distance);
 
 /// Filters channel 0 to 2 of Y C_x C_z with the contrast sensitivity function of the eye (Section 4.1.1, Table 1).
-Plane<float> as_seen(const Plane<float>& plane, int channel);
+Plane<float> filter_by_contrast_sensitivity(const Plane<float>& plane, int channel);
 
 /// Difference of edges and points, 0 to 1 (Section 4.2). Arguments: Y channels, scaled to [0, 1].
 Plane<float> feature_difference(const Plane<float>& reference, const Plane<float>& test);

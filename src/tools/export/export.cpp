@@ -151,7 +151,7 @@ class Sink {
       gltf_->add(snapshot, (snapshot.frame - request_.frames.front()) / request_.fps);
     else
       gltf_.emplace(snapshot);
-    gltf_->see(views(snapshot));
+    gltf_->add_views(views(snapshot));
   }
 
   const Request& request_;

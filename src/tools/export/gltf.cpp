@@ -102,7 +102,7 @@ GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z(
     Object object{.surface = s, .groups = group_normals(surface, positions)};
     object.group_of = cut_at_creases(cut, object.groups);
     object.vertex_of = cut.vertex_of;
-    object.start = turned(positions, object.vertex_of);
+    object.start = to_y_up(positions, object.vertex_of);
     object.start_normals = normals(object, first);
     document_["meshes"].push_back(
         {{"name", surface.name}, {"primitives", primitives(cut, object, surface, materials)}});
@@ -110,7 +110,7 @@ GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z(
   }
 }
 
-std::vector<float> GltfFile::turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const {
+std::vector<float> GltfFile::to_y_up(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const {
   std::vector<float> result;
   result.reserve(3 * vertices.size());
   for (const Index vertex : vertices) {
@@ -130,7 +130,7 @@ std::vector<float> GltfFile::normals(const Object& object, const frame::FrameSna
     places.push_back(static_cast<Index>(of_place.size()));
     of_place.push_back(group < 0 ? Vec3(0, 0, 1) : all[static_cast<std::size_t>(group)]);  // −1: not in any triangle
   }
-  return turned(of_place, places);
+  return to_y_up(of_place, places);
 }
 
 // Appends bytes to the buffer. Returns the index of their buffer view.
@@ -254,7 +254,7 @@ void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
   times_.push_back(static_cast<float>(time));
   frames_.push_back(snapshot.frame);
   for (Object& object : objects_) {
-    const std::vector<float> positions = turned(snapshot.states[object.surface].positions, object.vertex_of);
+    const std::vector<float> positions = to_y_up(snapshot.states[object.surface].positions, object.vertex_of);
     Target target;
     if (positions != object.start) {
       target.positions = add_vectors(difference(positions, object.start));
@@ -292,40 +292,42 @@ json GltfFile::animation(const std::vector<int>& nodes) {
   return result;
 }
 
-void GltfFile::see(const std::vector<View>& views) {
+void GltfFile::add_views(const std::vector<View>& views) {
   Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
   if (z_up_) turned << 1, 0, 0, 0, 0, 1, 0, -1, 0;
   for (std::size_t c = 0; c < views.size(); ++c) {
-    if (c == eyes_.size()) eyes_.push_back({.name = views[c].name, .field_of_view = views[c].field_of_view});
-    Eye& eye = eyes_[c];
+    if (c == camera_tracks_.size())
+      camera_tracks_.push_back({.name = views[c].name, .field_of_view = views[c].field_of_view});
+    CameraTrack& camera = camera_tracks_[c];
     const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
     Eigen::Vector4f turn =
         Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
     // q and -q are the same rotation. The one nearer to the previous frame makes readers interpolate along the shorter
     // arc.
-    if (!eye.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(eye.turns.end() - 4))) < 0) turn = -turn;
-    for (int axis = 0; axis < 3; ++axis) eye.positions.push_back(static_cast<float>(position[axis]));
-    for (int part = 0; part < 4; ++part) eye.turns.push_back(turn[part]);
+    if (!camera.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(camera.turns.end() - 4))) < 0)
+      turn = -turn;
+    for (int axis = 0; axis < 3; ++axis) camera.positions.push_back(static_cast<float>(position[axis]));
+    for (int part = 0; part < 4; ++part) camera.turns.push_back(turn[part]);
   }
 }
 
 // Adds cameras as nodes after those of the objects.
 void GltfFile::add_cameras(json& animation, double aspect) {
-  for (const Eye& eye : eyes_) {
+  for (const CameraTrack& camera : camera_tracks_) {
     const std::size_t node = document_["nodes"].size();
-    document_["nodes"].push_back({{"name", eye.name},
+    document_["nodes"].push_back({{"name", camera.name},
                                   {"camera", document_["cameras"].size()},
-                                  {"translation", std::vector(eye.positions.begin(), eye.positions.begin() + 3)},
-                                  {"rotation", std::vector(eye.turns.begin(), eye.turns.begin() + 4)}});
-    document_["cameras"].push_back({{"name", eye.name},
+                                  {"translation", std::vector(camera.positions.begin(), camera.positions.begin() + 3)},
+                                  {"rotation", std::vector(camera.turns.begin(), camera.turns.begin() + 4)}});
+    document_["cameras"].push_back({{"name", camera.name},
                                     {"type", "perspective"},
                                     {"perspective",
-                                     {{"yfov", eye.field_of_view * std::numbers::pi / 180},
+                                     {{"yfov", camera.field_of_view * std::numbers::pi / 180},
                                       {"aspectRatio", aspect},
                                       {"znear", kNearPlane},
                                       {"zfar", kFarPlane}}}});
     for (const auto& [path, type, values] :
-         {std::tuple("translation", "VEC3", &eye.positions), std::tuple("rotation", "VEC4", &eye.turns)}) {
+         {std::tuple("translation", "VEC3", &camera.positions), std::tuple("rotation", "VEC4", &camera.turns)}) {
       const std::ptrdiff_t each = type[3] - '0';
       if (std::equal(values->begin() + each, values->end(), values->begin())) continue;  // the camera does not move
       const int input = animation["samplers"].empty() ? add_values(times_, "SCALAR", true)

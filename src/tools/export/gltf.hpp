@@ -34,7 +34,7 @@ class GltfFile {
 
   /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their field of view, so
   /// they keep that of the first frame.
-  void see(const std::vector<View>& views);
+  void add_views(const std::vector<View>& views);
 
   /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed the
   /// limit of the format.
@@ -53,7 +53,7 @@ class GltfFile {
     std::vector<Index> group_of = {};   // index of the normal group, per written vertex; −1: none
     std::vector<Target> targets = {};   // one per later frame
   };
-  struct Eye {
+  struct CameraTrack {
     std::string name = {};
     double field_of_view = 35;                      // vertical [degrees]
     std::vector<float> positions = {}, turns = {};  // per frame: x, y, z; and quaternion x, y, z, w
@@ -69,11 +69,11 @@ class GltfFile {
   nlohmann::json animation(const std::vector<int>& nodes);
   void add_cameras(nlohmann::json& animation, double aspect);
   std::vector<float> normals(const Object& object, const frame::FrameSnapshot& snapshot) const;
-  std::vector<float> turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const;
+  std::vector<float> to_y_up(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const;
 
   bool z_up_;
   std::vector<Object> objects_;
-  std::vector<Eye> eyes_;
+  std::vector<CameraTrack> camera_tracks_;
   std::vector<float> times_{0};
   std::vector<int> frames_;
   nlohmann::json document_;

@@ -34,7 +34,7 @@ std::uint8_t byte_of(double share) {
 }
 
 // Combines a texel with the surface's colour in linear space, as the renderer does.
-void lay_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
+void blend_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
   const double opacity = texel[3] / 255.0;
   for (int c = 0; c < 3; ++c) {
     const double light = linear_of_bytes()[texel[c]];
@@ -62,7 +62,7 @@ std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture,
 
 // Exported formats have no Wrap::once (the picture occurs once along this axis). An empty rim with Wrap::clamp looks
 // the same. `row`: the row of Material::picture_from_uv for this axis.
-void widen(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
+void add_rim(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
   rim = wrap == Wrap::once;
   if (!rim) return;
   wrap = Wrap::clamp;
@@ -85,8 +85,8 @@ Material material_of(const frame::Surface& surface, const frame::Appearance& loo
   made.cutout = picture.alpha == Alpha::cutout;
   made.picture_from_uv = paint.texture_from_uv;
   Eigen::RowVector3d across = made.picture_from_uv.row(0), up = made.picture_from_uv.row(1);
-  widen(made.wrap_u, picture.rim_u, paint.texture->width, across);
-  widen(made.wrap_v, picture.rim_v, paint.texture->height, up);
+  add_rim(made.wrap_u, picture.rim_u, paint.texture->width, across);
+  add_rim(made.wrap_v, picture.rim_v, paint.texture->height, up);
   made.picture_from_uv << across, up;
   made.picture = add_picture(materials.pictures, std::move(picture), surface.name);
   return made;
@@ -110,7 +110,7 @@ std::string PictureFile::png() const {
       const bool inside = from_x >= 0 && from_y >= 0 && from_x < texture->width && from_y < texture->height;
       const std::size_t from = inside ? 4 * (static_cast<std::size_t>(from_y) * texture->width + from_x) : 0;
       const std::size_t to = 4 * (static_cast<std::size_t>(y) * laid.width + x);
-      lay_texel(*this, inside ? &texture->rgba[from] : kNothing.data(), &laid.rgba[to]);
+      blend_texel(*this, inside ? &texture->rgba[from] : kNothing.data(), &laid.rgba[to]);
     }
   if (alpha == Alpha::cutout) return image::png_bytes(laid);
   image::Image opaque(laid.width, laid.height);

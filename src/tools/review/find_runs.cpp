@@ -58,7 +58,7 @@ bool is_statistics(const Json& json) {
          std::all_of(frames->begin(), frames->end(), [](const Json& frame) { return frame.is_object(); });
 }
 
-bool is_positive(const Json& value) {
+bool is_not_negative(const Json& value) {
   return value.is_number() && value >= 0;
 }
 
@@ -68,7 +68,7 @@ bool is_list_of(const Json& value, const std::function<bool(const Json&)>& fits)
 
 bool is_object_entry(const Json& entry) {
   const auto text = [&](const char* key) { return entry.contains(key) && entry[key].is_string(); };
-  const auto count = [&](const char* key) { return !entry.contains(key) || is_positive(entry[key]); };
+  const auto count = [&](const char* key) { return !entry.contains(key) || is_not_negative(entry[key]); };
   return entry.is_object() && text("name") && text("kind") && count("vertices") && count("faces");
 }
 
@@ -85,7 +85,7 @@ void drop_invalid_values(Json& stats, const std::string& file, std::vector<std::
   for (const char* key : {"scene_file", "scene_hash", "version", "cpu", "gl", "message", "output"})
     drop(key, "a text", is_text);
   for (const char* key : {"threads", "exit_code", "width", "height", "fps", "particles", "peak_memory_bytes"})
-    drop(key, "a number, 0 or more", is_positive);
+    drop(key, "a number, 0 or more", is_not_negative);
   drop("totals", "numbers by name", [](const Json& value) {
     return value.is_object() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
   });

@@ -86,7 +86,7 @@ Survey survey(const RunFiles& run) {
   return found;
 }
 
-long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to) {
+long long index_at_same_time(long long k, const PictureTimes& from, const PictureTimes& to) {
   if (!(from.fps > 0 && to.fps > 0)) return k;
   const auto step = static_cast<double>(from.step), other_step = static_cast<double>(to.step);
   const double time = (static_cast<double>(from.first) / step + static_cast<double>(k)) / from.fps;
@@ -101,7 +101,7 @@ std::vector<PairComparison> compare_with_reference(const RunFiles& run, const Pi
   Reader ours(run), theirs(reference);
   long long last = -1;
   for (const long long picture : at) {
-    const long long other = same_moment(picture, times, reference_times);
+    const long long other = index_at_same_time(picture, times, reference_times);
     if (other <= last) continue;  // before the start of the reference, or already compared
     last = other;
     const std::optional<image::Image> b = theirs.skip_to(other), a = b ? ours.skip_to(picture) : std::nullopt;

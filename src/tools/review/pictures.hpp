@@ -45,6 +45,6 @@ std::vector<PairComparison> compare_with_reference(const RunFiles& run, const Pi
 
 /// Index of the picture of `to` that is closest in time to picture k of `from`; it may be negative or beyond the last
 /// picture of `to`. Returns k if a frame rate is unknown.
-long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to);
+long long index_at_same_time(long long k, const PictureTimes& from, const PictureTimes& to);
 
 }  // namespace weft::review

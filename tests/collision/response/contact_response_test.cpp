@@ -39,7 +39,7 @@ TEST(ContactResponse, SpringsHoldNothingAndAreSolvedOnce) {
   of.response.prepare(of.x_t0, of.x_t1);
   EXPECT_EQ(of.response.springs().size(), 1U);
   EXPECT_TRUE(of.response.prescribed().empty());
-  EXPECT_EQ(of.response.active(of.x_t1), 1);
+  EXPECT_EQ(of.response.count_active(of.x_t1), 1);
   EXPECT_EQ(of.response.revise(of.x_t0, of.x_t1, [](Index) { return Vec3(Vec3::Zero()); }), 0);
 }
 

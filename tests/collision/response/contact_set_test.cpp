@@ -100,7 +100,7 @@ TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
   for (int trial = 0; trial < 20; ++trial) {
     std::vector<Vec3> x = pair.jittered(0.002);
     const auto f = forces_of(contacts, x);
-    pushing += contacts.active(x);
+    pushing += contacts.count_active(x);
     for (std::size_t i = 0; i < 4; ++i)
       for (int axis = 0; axis < 3; ++axis) {
         const double place = x[i][axis];
@@ -127,7 +127,7 @@ TEST(ContactSet, ForceIsContinuousAtTheRangeAndNoneBeyond) {
     const double force = forces_of(contacts, x)[0].norm();
     // Coordinates are rounded by 1e-17 m.
     EXPECT_NEAR(force, 500 * std::max(0.0, -offset), 1e-13) << offset;
-    EXPECT_EQ(contacts.active(x), offset < 0 ? 1 : 0);
+    EXPECT_EQ(contacts.count_active(x), offset < 0 ? 1 : 0);
   }
 }
 
@@ -297,7 +297,7 @@ TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
     // Frictionless contacts may be anywhere within the range; rough ones must not have slipped yet.
     const VertexOnFace smooth(0), rough(0.4);
     std::vector<Vec3> x = smooth.jittered(0.0003);
-    ASSERT_EQ(smooth.set().active(x), 1);
+    ASSERT_EQ(smooth.set().count_active(x), 1);
     const Eigen::MatrixXd spring = assembled(linearised(smooth.set(), x, rate));
     // Rounding: 1e-17 of a coordinate over 1e-10 m, times the stiffness.
     EXPECT_LT((spring - differences(smooth.set(), x, rate)).cwiseAbs().maxCoeff(), 1e-5 * spring.maxCoeff());

@@ -155,7 +155,7 @@ TEST_F(PinchedTriangle, IsReportedOnceWithTheObstacleThatIsNearestBesides) {
   ASSERT_EQ(pinches.size(), 1U);
   EXPECT_EQ(pinches[0].cloth, 0U);
   EXPECT_EQ(pinches[0].obstacle, 1U);
-  EXPECT_EQ(pinches[0].other, 2U);
+  EXPECT_EQ(pinches[0].pressing_obstacle, 2U);
   EXPECT_EQ(pinches[0].place, x_[0]);
 }
 

@@ -1,4 +1,4 @@
-// Compares certificates of separation with exact decisions, family by family.
+// Compares the separating planes of Separation with exact decisions, family by family.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct SeparationTally {
   std::array<int, 8> apart{}, refused{};
 };
 
-/// Where the search for the certificates of a step begins.
+/// Where the search for the separating planes of a step begins.
 enum class Watched {
   at_start,    ///< from the start of this step
   on_the_way,  ///< from the middle of the step, after one check of its first quarter, so that directions are known
@@ -49,7 +49,7 @@ struct SeparationBatch {
       x_t1.insert(x_t1.end(), s->t1.begin(), s->t1.end());
     }
   }
-  /// 1 for pairs without a certificate.
+  /// 1 for pairs without a separating plane.
   std::vector<char> refused(Watched watched) const {
     const auto mixed = [&](double t) {
       std::vector<Vec3> x;

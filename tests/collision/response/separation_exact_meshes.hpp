@@ -1,5 +1,5 @@
-// Compares certificates with exact decisions for meshes: pairs with a common vertex, vertex star by vertex star, and
-// the result of corrections.
+// Compares separating planes with exact decisions for meshes: pairs with a common vertex, vertex star by vertex star,
+// and the result of corrections.
 #pragma once
 
 #include <numbers>

@@ -99,7 +99,7 @@ TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
 }
 
 TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
-  // With motions of a tenth of their size a few per cent meet; not many more may be refused a certificate.
+  // With motions of a tenth of their size a few per cent meet; not many more may be refused a separating plane.
   const LonePairs pairs = random_pairs(200, 0.005, 2);
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
@@ -244,8 +244,8 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
   separation.watch(pairs, x_t0);
   const SeparationReport report = separation.enforce(x_t0, x_t1, movable);
   EXPECT_FALSE(report.separated);
-  EXPECT_TRUE(report.stuck == (CornerPair{triangles[0], triangles[1]}) ||
-              report.stuck == (CornerPair{triangles[1], triangles[2]}));
+  EXPECT_TRUE(report.unseparated_pair == (CornerPair{triangles[0], triangles[1]}) ||
+              report.unseparated_pair == (CornerPair{triangles[1], triangles[2]}));
   for (std::size_t i : {0u, 1u, 2u, 6u, 7u, 8u}) EXPECT_EQ(x_t1[i], wanted[i]);
 
   // If some clearance remains, the triangle moves there.

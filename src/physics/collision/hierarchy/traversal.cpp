@@ -1,6 +1,6 @@
 #include "physics/collision/hierarchy/traversal.hpp"
 
-#include "physics/collision/hierarchy/walk.hpp"
+#include "physics/collision/hierarchy/traverser.hpp"
 
 namespace weft::collision {
 
@@ -10,9 +10,11 @@ template <int K>
 void walk(const Tree<K>& a, const Tree<K>& b, CandidatePairs& out, const Traversal& how) {
   if (a.empty() || b.empty()) return;
   if (how.open_longer_side)
-    how.list != nullptr ? Walk<K, true, true>(a, b, how, out).run() : Walk<K, true, false>(a, b, how, out).run();
+    how.list != nullptr ? Traverser<K, true, true>(a, b, how, out).run()
+                        : Traverser<K, true, false>(a, b, how, out).run();
   else
-    how.list != nullptr ? Walk<K, false, true>(a, b, how, out).run() : Walk<K, false, false>(a, b, how, out).run();
+    how.list != nullptr ? Traverser<K, false, true>(a, b, how, out).run()
+                        : Traverser<K, false, false>(a, b, how, out).run();
 }
 
 }  // namespace

@@ -182,20 +182,20 @@ void Tree<K>::fit_node(std::size_t n) {
 /// old bound is still valid.
 template <int K>
 bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
-  Resting& resting = resting_[v];
-  const double slack_sq = resting.slack * resting.slack;
+  VertexSlack& vertex_slack = vertex_slacks_[v];
+  const double slack_sq = vertex_slack.slack * vertex_slack.slack;
   const bool to_one_place = low == high;
-  if (resting.slack >= 0 && to_one_place && (p - resting.place).squaredNorm() <= slack_sq &&
-      (low - resting.place).squaredNorm() <= slack_sq)
+  if (vertex_slack.slack >= 0 && to_one_place && (p - vertex_slack.place).squaredNorm() <= slack_sq &&
+      (low - vertex_slack.place).squaredNorm() <= slack_sq)
     return false;
   // The bound covers the ball of radius `slack` around the end of this step. The ball contains the start, too. If this
   // needs too much slack, the bound is as tight as after refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
-    resting = {low, slack};
+    vertex_slack = {low, slack};
     vertex_bounds_[v] = moving_point<K>(low, low, low, margin + slack * (1 + 1e-12));
   } else {
-    resting.slack = -1;
+    vertex_slack.slack = -1;
     vertex_bounds_[v] = moving_point<K>(p, low, high, margin);
   }
   return true;
@@ -204,7 +204,7 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
 template <int K>
 void Tree<K>::refit_lazily(const Motion& motion, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
-  if (resting_margin_ != margin) resting_.assign(vertex_bounds_.size(), {});
+  if (resting_margin_ != margin) vertex_slacks_.assign(vertex_bounds_.size(), {});
   resting_margin_ = margin;
   moved_.resize(vertex_bounds_.size());
   changed_.resize(nodes_.size());

@@ -90,7 +90,7 @@ class Tree {
   struct Builder;
 
   /// A vertex bound holds while the vertex is within `slack` [m] of `place`; slack < 0: the bound has no slack.
-  struct Resting {
+  struct VertexSlack {
     Vec3 place = Vec3::Zero();
     double slack = -1;
   };
@@ -107,7 +107,7 @@ class Tree {
   std::vector<Bound> vertex_bounds_;  ///< per vertex: bound of its trajectory; only lazy refits reuse it
 
   // Used only by lazy refits.
-  std::vector<Resting> resting_;                      // by vertex
+  std::vector<VertexSlack> vertex_slacks_;            // by vertex
   std::vector<std::uint8_t> moved_;                   // by vertex: has a new bound
   std::vector<std::uint8_t> changed_, leaf_changed_;  // by node, by leaf: has a new bound
   double resting_margin_ = -1;                        // margin of the bounds with slack [m]

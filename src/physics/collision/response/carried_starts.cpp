@@ -14,7 +14,7 @@ void CarriedStarts::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3>
   for (std::vector<Vec3>& starts : starts_) starts.clear();
 }
 
-void CarriedStarts::make() const {
+void CarriedStarts::compute_all() const {
   for (std::size_t body = 0; any_turns_ && body < motions_.size(); ++body)
     if (motions_[body].turns()) by(body);
 }

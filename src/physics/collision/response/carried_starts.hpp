@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/types.hpp"
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 
 namespace weft::collision {
 
@@ -41,7 +41,7 @@ class CarriedStarts {
   /// obstacles at their start.
   std::span<const Vec3> by(std::size_t body) const;
   /// Computes all starts that of() can return. Threads may then call of() at the same time.
-  void make() const;
+  void compute_all() const;
 
   /// Start positions for testing a pair: carried by the obstacle of the pair if this obstacle turns, else `x_t0`.
   std::span<const Vec3> of(const CornerPair& pair, std::span<const Vec3> x_t0) const {

@@ -46,7 +46,7 @@ class ContactResponse {
   void accept();
 
   /// As the functions of ContactSet. Forces and derivatives include the friction of the walls. update(), add_impacts()
-  /// and active() concern springs only.
+  /// and count_active() concern springs only.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
@@ -58,7 +58,7 @@ class ContactResponse {
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
-  int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
+  int count_active(std::span<const Vec3> x_end) const { return springs_.count_active(x_end); }
 
   std::span<const Contact> springs() const { return springs_.contacts(); }
   /// Whether there is no contact of either form.

@@ -327,7 +327,7 @@ bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag,
   return true;
 }
 
-int ContactSet::active(std::span<const Vec3> x_end) const {
+int ContactSet::count_active(std::span<const Vec3> x_end) const {
   return static_cast<int>(std::ranges::count_if(contacts_, [&](const Contact& contact) {
     return contact.normal.dot(relative_end(contact, x_end)) < contact.range;
   }));

@@ -117,7 +117,7 @@ class ContactSet {
                  solver::LinearSystem& system) const;
 
   /// Number of contacts with a normal force, with the particles at x_end.
-  int active(std::span<const Vec3> x_end) const;
+  int count_active(std::span<const Vec3> x_end) const;
 
  private:
   struct Response {

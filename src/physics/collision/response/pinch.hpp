@@ -13,7 +13,7 @@
 #include "physics/collision/hierarchy/broad_phase.hpp"
 #include "physics/collision/proximity/feature_pair.hpp"
 #include "physics/collision/proximity/surface_point.hpp"
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 
 namespace weft::collision {
 

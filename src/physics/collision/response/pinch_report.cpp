@@ -22,8 +22,9 @@ double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhas
 }
 
 // The obstacle that presses the cloth into key.body: the nearest other one, or key.body if two of its parts pinch.
-std::optional<std::size_t> find_other(const PinchedPairs& pinched, const PinchedPairs::Key& key, const Vec3& place,
-                                      const Bodies& bodies, const BroadPhase& surfaces, std::span<const Vec3> x) {
+std::optional<std::size_t> find_pressing_obstacle(const PinchedPairs& pinched, const PinchedPairs::Key& key,
+                                                  const Vec3& place, const Bodies& bodies, const BroadPhase& surfaces,
+                                                  std::span<const Vec3> x) {
   std::optional<std::size_t> other;
   double nearest = kNoFaces;
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
@@ -50,7 +51,7 @@ std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodie
     const auto same = [&](const Pinch& p) { return p.cloth == cloth && p.obstacle == obstacle; };
     if (std::ranges::any_of(found, same)) continue;
     const Vec3& place = x[key.cloth[0]];
-    found.push_back({cloth, obstacle, find_other(pinched, key, place, bodies, surfaces, x), place});
+    found.push_back({cloth, obstacle, find_pressing_obstacle(pinched, key, place, bodies, surfaces, x), place});
   }
   return found;
 }

@@ -13,9 +13,9 @@ namespace weft::collision {
 
 /// A cloth that intersects an obstacle because there is no space for it.
 struct Pinch {
-  std::size_t cloth = 0, obstacle = 0;  ///< bodies
-  std::optional<std::size_t> other;     ///< obstacle that presses; `obstacle` if two of its own parts pinch
-  Vec3 place;                           ///< position of a pinched particle [m]
+  std::size_t cloth = 0, obstacle = 0;           ///< bodies
+  std::optional<std::size_t> pressing_obstacle;  ///< obstacle that presses; `obstacle` if two of its own parts pinch
+  Vec3 place;                                    ///< position of a pinched particle [m]
 };
 
 /// One entry for each pair of a cloth and an obstacle, with `place` at its first pinched triangle at x [m].

@@ -140,7 +140,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
       changed_[t] = changed[corners[0]] | changed[corners[1]] | changed[corners[2]];
     }
   });
-  if (carried != nullptr) carried->make();
+  if (carried != nullptr) carried->compute_all();
   parallel_append(pairs_.size(), kGrainSize, failing, [&](std::size_t begin, std::size_t end, auto& list) {
     find_failing(begin, end, {reference, x_t0, x_t1, carried, which}, list);
   });

@@ -12,7 +12,7 @@
 #include "physics/collision/hierarchy/lanes.hpp"
 #include "physics/collision/hierarchy/surface.hpp"
 #include "physics/collision/response/carried_starts.hpp"
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 
 namespace weft::collision {
 

@@ -359,7 +359,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
     }
     // No vertex can move any more: the remaining pairs cannot be separated.
     if (!changed && is_final) {
-      step.report.stuck = failing_.front();
+      step.report.unseparated_pair = failing_.front();
       return step.report;
     }
     if (!changed) round_ = by_halves;

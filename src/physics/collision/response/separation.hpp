@@ -8,9 +8,9 @@
 #include "core/types.hpp"
 #include "physics/collision/hierarchy/surface.hpp"
 #include "physics/collision/response/carried_starts.hpp"
-#include "physics/collision/response/certificate.hpp"
 #include "physics/collision/response/pinch.hpp"
 #include "physics/collision/response/planes.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 #include "physics/collision/response/vertex_stars.hpp"
 
 namespace weft::collision {
@@ -30,7 +30,7 @@ struct SeparationReport {
   int corrected_pairs = 0;                     ///< pairs that needed a correction
   double largest_push = 0;                     ///< longest single push or backtrack [m]
   std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that had to move
-  CornerPair stuck{};                          ///< if not `separated`: a pair that is not
+  CornerPair unseparated_pair{};               ///< if not `separated`: a pair that is not
 };
 
 /// Vertices that move only together: those of a rigid body, and the particles that carry it (mesh::RigidFrame).
@@ -40,8 +40,8 @@ struct RigidGroup {
   double mass;               ///< [kg]
 };
 
-/// Keeps triangles apart on the linear motion from x_t0 to x_t1, by separating planes (certificate.hpp). Pairs without
-/// a common vertex are tested one by one. Pairs of a surface with one common vertex are tested by vertex stars.
+/// Keeps triangles apart on the linear motion from x_t0 to x_t1, by separating planes (separating_plane.hpp). Pairs
+/// without a common vertex are tested one by one. Pairs of a surface with one common vertex are tested by vertex stars.
 /// Triangles with a common edge are not tested: they meet only if they are folded exactly onto each other.
 ///
 /// If a pair has no separating plane, enforce() corrects the ends x_t1 of its vertices:

@@ -251,7 +251,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
   const double change = wall.friction * std::abs(memory.normal_force - particle.friction_normal_force);
   const bool other_load = change > negligible && change > numerics.walls.negligible_change * limit;
   const bool fast = slip(particle, x_end).norm() >= numerics.contact.stick_velocity * step_;
-  particle.slow = limit > 0 && !other_load && !other_walls && !fast;
+  particle.may_stick = limit > 0 && !other_load && !other_walls && !fast;
   hold(particle, held_at, next);
   particle.friction_normal_force = memory.normal_force;
   const bool matters =
@@ -270,7 +270,7 @@ void VelocityConstraints::accept() {
   for (const TouchingParticle& particle : touched_) {
     if (particle.memory.state == State::away) continue;
     Memory& memory = memory_[particle.particle] = particle.memory;
-    if (particle.slow && !any_overloaded) memory.state = State::sticking;
+    if (particle.may_stick && !any_overloaded) memory.state = State::sticking;
     remembered_.push_back(particle.particle);
   }
 }

@@ -135,7 +135,7 @@ class VelocityConstraints {
     double friction_normal_force = 0;  // normal force that limits friction in this solve [N]
     Vec3 drag = Vec3::Zero();          // −friction / maximum friction at the expected end x_t1
     int constraint_changes = 0;        // how often its constraint changed in this step
-    bool slow = false;                 // slides so slowly that it may stick
+    bool may_stick = false;            // slides so slowly that it may stick
     bool overloaded = false;           // began to slide: sticking would have taken noticeably more than static friction
   };
 

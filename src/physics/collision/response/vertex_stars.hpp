@@ -9,7 +9,7 @@
 
 #include "core/types.hpp"
 #include "physics/collision/hierarchy/surface.hpp"
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 
 namespace weft::collision {
 

@@ -30,12 +30,12 @@ std::size_t surface_of(Index vertex, std::span<const Surface> surfaces) {
 
 }  // namespace
 
-CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> wanted,
+CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> surface_pairs,
                                      std::span<const Vec3> x, const CoherenceParameters& parameters)
     : surfaces_(surfaces.begin(), surfaces.end()),
-      wanted_(std::move(wanted)),
+      surface_pairs_(std::move(surface_pairs)),
       parameters_(parameters),
-      kept_(wanted_.size()) {
+      kept_(surface_pairs_.size()) {
   for (const Surface& surface : surfaces) add_groups(surface, x);
 }
 
@@ -72,8 +72,8 @@ int CoherentDetection::update(BroadPhase& broad_phase, ProximityFinder& finder, 
                               std::span<const Vec3> x_t1) {
   update_cones(x_t0, x_t1);
   std::vector<std::size_t> outdated;
-  for (std::size_t w = 0; w < wanted_.size(); ++w)
-    if (!is_still_valid(wanted_[w], kept_[w])) outdated.push_back(w);
+  for (std::size_t w = 0; w < surface_pairs_.size(); ++w)
+    if (!is_still_valid(surface_pairs_[w], kept_[w])) outdated.push_back(w);
   for (std::size_t s = 0; s < surfaces_.size(); ++s)
     broad_phase.refit(s, x_t0, x_t1, 0.5 * (parameters_.detection_distance + parameters_.budget));
   if (!outdated.empty()) search_again(outdated, broad_phase, finder, x_t0);
@@ -138,7 +138,7 @@ void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, Broa
   CandidatePairs all;
   std::vector<Surface> with_themselves;
   for (const std::size_t w : pairs) {
-    const auto& [a, b] = wanted_[w];
+    const auto& [a, b] = surface_pairs_[w];
     KeptResult& kept = kept_[w];
     kept = {};
     kept.valid = true;
@@ -162,7 +162,7 @@ void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, Broa
     const std::size_t one = surface_of(proximity.vertices[0], surfaces_),
                       other = surface_of(proximity.vertices[3], surfaces_);
     const auto is_its = [&](std::size_t w) {
-      return wanted_[w].a == std::min(one, other) && wanted_[w].b == std::max(one, other);
+      return surface_pairs_[w].a == std::min(one, other) && surface_pairs_[w].b == std::max(one, other);
     };
     kept_[*std::ranges::find_if(pairs, is_its)].proximities.push_back(proximity);
   }

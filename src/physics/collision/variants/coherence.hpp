@@ -45,15 +45,15 @@ struct CoherenceParameters {
 class CoherentDetection {
  public:
   CoherentDetection() = default;
-  /// `surfaces`: numbered as in the broad phase and the finder. `wanted`: the pairs of surfaces to search.
-  CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> wanted, std::span<const Vec3> x,
+  /// `surfaces`: numbered as in the broad phase and the finder. `surface_pairs`: the pairs of surfaces to search.
+  CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> surface_pairs, std::span<const Vec3> x,
                     const CoherenceParameters& parameters);
 
   /// Updates to the step from x_t0 to x_t1 [m]. Refits all bounds, searches the pairs of surfaces whose result is no
   /// longer valid, and returns their number; 0: the candidates are unchanged. Call again if the motion changes.
   int update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Candidate pairs of all wanted pairs of surfaces.
+  /// Candidate pairs of all listed pairs of surfaces.
   const CandidatePairs& candidates() const { return candidates_; }
   /// Near pairs, with distances and normals that follow from the kept weights at x_t0. Pairs of an earlier search are
   /// listed up to a distance of D + 2 R.
@@ -91,7 +91,7 @@ class CoherentDetection {
   void append_proximities(const KeptResult& kept, std::span<const Vec3> x);
 
   std::vector<Surface> surfaces_;
-  std::vector<SurfacePair> wanted_;
+  std::vector<SurfacePair> surface_pairs_;
   CoherenceParameters parameters_;
   std::vector<KeptResult> kept_;            // by wanted pair
   std::vector<std::vector<Group>> groups_;  // by surface

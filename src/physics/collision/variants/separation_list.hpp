@@ -10,9 +10,9 @@ namespace weft::collision {
 /// Pairs of subtrees at which the last traversal stopped. Together they cover all pairs of triangles between two trees,
 /// or within one tree, whatever the bounds become. So a traversal may start from them instead of the roots. If the
 /// bounds of an entry overlap now, entries for its children replace it. No entry moves up again: one that is lower than
-/// necessary costs one overlap test per traversal until the list is rebuilt. A rebuild is due after kWalks traversals,
-/// or once the list has grown by more than half. These limits keep the unnecessary tests at about half of the necessary
-/// ones.
+/// necessary costs one overlap test per traversal until the list is rebuilt. A rebuild is due after kMaxTraversals
+/// traversals, or once the list has grown by more than half. These limits keep the unnecessary tests at about half of
+/// the necessary ones.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree
@@ -30,9 +30,11 @@ class SeparationList {
     Ref a, b;
   };
 
-  static constexpr int kWalks = 64;
+  static constexpr int kMaxTraversals = 64;
 
-  bool due() const { return walks_ == 0 || walks_ >= kWalks || 2 * size() > 3 * size_when_built_; }
+  bool needs_rebuild() const {
+    return traversals_ == 0 || traversals_ >= kMaxTraversals || 2 * size() > 3 * size_when_built_;
+  }
   std::size_t size() const { return missed.size() + leaf_pairs.size(); }
 
   /// Empties the list before a traversal from the roots.
@@ -41,11 +43,11 @@ class SeparationList {
     leaf_pairs.clear();
     self_leaves.clear();
     closed.clear();
-    walks_ = 0;
+    traversals_ = 0;
   }
   /// Call at the end of each traversal.
-  void walked() {
-    if (walks_++ == 0) size_when_built_ = size();
+  void end_traversal() {
+    if (traversals_++ == 0) size_when_built_ = size();
   }
 
   std::vector<Missed> missed;
@@ -54,7 +56,7 @@ class SeparationList {
   std::vector<Ref> closed;       ///< flat regions (NormalCones), which are not tested with themselves
 
  private:
-  int walks_ = 0;
+  int traversals_ = 0;
   std::size_t size_when_built_ = 0;
 };
 

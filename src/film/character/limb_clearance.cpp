@@ -1,4 +1,4 @@
-#include "film/character/room.hpp"
+#include "film/character/limb_clearance.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,8 +22,8 @@ constexpr std::size_t kLinesPerTask = 512;
 /// Number of grid cells along the longest side of the body: 3 cm for a person.
 constexpr double kCellsPerSide = 60;
 
-/// Maximum number of rounds of make(). If both sides face each other, one is enough; otherwise each round halves the
-/// missing clearance.
+/// Maximum number of rounds of move_skin(). If both sides face each other, one is enough; otherwise each round halves
+/// the missing clearance.
 constexpr int kMaxRounds = 8;
 
 /// Missing clearance that is tolerated at the end, as a fraction of the clearance.
@@ -64,11 +64,11 @@ constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left uppe
                                                    "left upper leg",  "left lower leg",  "right upper arm",
                                                    "right lower arm", "right upper leg", "right lower leg"};
 
-const char* name_of(const Room::LimbWeights& weights) {
+const char* name_of(const LimbClearance::LimbWeights& weights) {
   return kLimbNames[static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin())];
 }
 
-std::vector<Room::LimbWeights> limb_weights_of(const Rig& rig) {
+std::vector<LimbClearance::LimbWeights> limb_weights_of(const Rig& rig) {
   const Character& body = rig.character;
   std::vector<std::uint8_t> limb_of_node(body.nodes.size(), 0);
   for (std::size_t n = 0; n < limb_of_node.size(); ++n) {
@@ -79,7 +79,7 @@ std::vector<Room::LimbWeights> limb_weights_of(const Rig& rig) {
       limb_of_node[n] = limb_of_node[body.nodes[n].parent];
     }
   }
-  std::vector<Room::LimbWeights> weights(body.mesh.positions.size(), Room::LimbWeights{});
+  std::vector<LimbClearance::LimbWeights> weights(body.mesh.positions.size(), LimbClearance::LimbWeights{});
   for (std::size_t v = 0; v < weights.size(); ++v)
     for (Index i = body.first_influence[v]; i < body.first_influence[v + 1]; ++i)
       weights[v][limb_of_node[body.bones[body.influences[i].bone].node]] +=
@@ -88,7 +88,7 @@ std::vector<Room::LimbWeights> limb_weights_of(const Rig& rig) {
 }
 
 /// Half of the sum of all differences: 0 for equal weights, 1 for weights without a common limb.
-float difference(const Room::LimbWeights& a, const Room::LimbWeights& b) {
+float difference(const LimbClearance::LimbWeights& a, const LimbClearance::LimbWeights& b) {
   float sum = 0;
   for (std::size_t l = 0; l < a.size(); ++l) sum += std::abs(a[l] - b[l]);
   return 0.5F * sum;
@@ -115,9 +115,9 @@ Character rebind_to_bones(const Character& body, const std::vector<Vec3>& places
 
 }  // namespace
 
-Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double room,
-           std::vector<Ground> grounds)
-    : room_(room),
+LimbClearance::LimbClearance(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double clearance,
+                             std::vector<Ground> grounds)
+    : clearance_(clearance),
       grounds_(std::move(grounds)),
       limb_weights_(limb_weights_of(rig)),
       near_(std::move(near_cloth)),
@@ -138,7 +138,7 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
   std::vector<Vec3> skinned(rig.character.mesh.positions.size());
   skin(rig.character, rest, skinned);
   missing_at_rest_.assign(touched_.size(), 0);
-  std::vector<Missing> missing(touched_.size());
+  std::vector<MissingClearance> missing(touched_.size());
   find_missing(places, skinned, skinned, missing);
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
@@ -146,8 +146,8 @@ Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cl
 // Computes per vertex the length of the part of its line that lies in another limb, minus this length at rest. The line
 // goes from the bone to the skin and is extended by the clearance. `from`: points on the bones. `skin`: unmoved skin,
 // which defines the lines. `x`: present positions of the skin.
-void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
-                        std::vector<Missing>& missing) const {
+void LimbClearance::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
+                                 std::vector<MissingClearance>& missing) const {
   Box3 box;
   for (const mesh::Triangle& t : triangles_) box.extend(x[t[0]]);
   if (triangles_.empty()) return;
@@ -157,14 +157,14 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
       missing[v] = {};
       const double length = (skin[v] - from[v]).norm();
       // If more than the clearance is missing at rest, limbs cross there on purpose, as the plates of armour do.
-      if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
-      const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
+      if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > clearance_) continue;
+      const Vec3 to = x[v] + clearance_ / length * (skin[v] - from[v]);
       const mesh::Entry entry = grid.find_first_crossing(from[v], to, [&](Index t) {
         return difference(limb_weights_of_triangle_[t], limb_weights_[v]) > kMinWeightDifference;
       });
       if (entry.triangle < 0) continue;
       const double all = (1 - entry.t) * (to - from[v]).norm();
-      const double shallow = std::clamp(2 - 2 * (all - room_) / kMaxNearClothDepth, 0.0, 1.0);
+      const double shallow = std::clamp(2 - 2 * (all - clearance_) / kMaxNearClothDepth, 0.0, 1.0);
       missing[v] = {std::max(0.0, all - missing_at_rest_[v]),
                     std::max(near_[v], static_cast<float>(shallow) * near_of_triangle_[entry.triangle]),
                     entry.triangle};
@@ -174,7 +174,7 @@ void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, 
 
 // Moves each vertex back at least by the mean fraction of its neighbours. A neighbour counts less over an edge longer
 // than kFullFollowEdge. `lengths`: of the edges. `remaining`: per vertex, the fraction of its line that remains.
-void Room::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
+void LimbClearance::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
   std::vector<double> sums(remaining.size()), counts(remaining.size());
   for (int round = 0; round < kSmoothingPasses; ++round) {
     std::ranges::fill(sums, 0);
@@ -192,20 +192,20 @@ void Room::smooth(std::span<const double> lengths, std::vector<double>& remainin
 
 // Lifts skin out of the ground. Does not lift limbs whose bones are in the ground: the scene intends this, or lifting
 // the skin does not help.
-void Room::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
+void LimbClearance::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
       if (touched_[v] == 0 || foot_[v] != 0 || near_[v] <= 0) continue;
-      const double missing = ground.height + kGroundClearanceRatio * room_ - ground.up.dot(x[v]);
-      const double lift_fraction = std::clamp((ground.up.dot(from[v]) - ground.height) / room_, 0.0, 1.0);
+      const double missing = ground.height + kGroundClearanceRatio * clearance_ - ground.up.dot(x[v]);
+      const double lift_fraction = std::clamp((ground.up.dot(from[v]) - ground.height) / clearance_, 0.0, 1.0);
       if (missing > 0) x[v] += static_cast<double>(near_[v]) * lift_fraction * missing * ground.up;
     }
 }
 
 // Finds the vertex that moved farthest: first back from `before` to `unlifted`, then up to `x`. `other`: per vertex,
 // the triangle of another limb that made it move back; -1: none, but it may have followed its neighbours.
-Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
-                     std::vector<Index> other) const {
+Moved LimbClearance::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
+                              std::vector<Index> other) const {
   Moved moved;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double distance = (x[v] - before[v]).norm();
@@ -229,7 +229,7 @@ Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifte
   return moved;
 }
 
-Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
+Moved LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
   const std::vector<Vec3> original(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(touched_.size()));
   std::vector<Vec3> from(touched_.size());
   skin(bones_, {pose.nodes, {}}, from);
@@ -240,7 +240,7 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> max_given(touched_.size(), 0);
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);
-  std::vector<Missing> missing(touched_.size());
+  std::vector<MissingClearance> missing(touched_.size());
   for (int round = 0; round < kMaxRounds; ++round) {
     find_missing(from, original, x, missing);
     bool changed = false;
@@ -253,14 +253,14 @@ Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
       const double length = (original[v] - from[v]).norm(), before = remaining[v];
       const double lower_limit = std::max(kMinRemainingFraction, 1 - max_given[v] / length);
       remaining[v] = std::min(before, std::max(lower_limit, before - kMaxGivenFraction * missing[v].distance / length));
-      changed |= (before - remaining[v]) * length > kMissingTolerance * room_;
+      changed |= (before - remaining[v]) * length > kMissingTolerance * clearance_;
     }
     // Smooths in every round: a vertex that moves back alone leaves its neighbours inside the other limb.
     smooth(lengths, remaining);
     for (std::size_t v = 0; v < remaining.size(); ++v) {
       if (!(remaining[v] < 1)) continue;
       const double max_move =
-          std::lerp(kMaxMoveWithoutCloth, std::max(kMaxMoveNearCloth, 2 * room_), static_cast<double>(near[v]));
+          std::lerp(kMaxMoveWithoutCloth, std::max(kMaxMoveNearCloth, 2 * clearance_), static_cast<double>(near[v]));
       remaining[v] = std::max({remaining[v], kMinRemainingFraction, 1 - max_move / (original[v] - from[v]).norm()});
       x[v] = from[v] + remaining[v] * (original[v] - from[v]);
     }

@@ -1,6 +1,6 @@
 // Planes that separate two triangles for a whole step and turn with them. For random motions, separation_exact_test.cpp
-// compares the certificates with exact predicates.
-#include "physics/collision/response/certificate.hpp"
+// compares the separating planes with exact predicates.
+#include "physics/collision/response/separating_plane.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ bool any_direction_separates(const std::vector<Vec3>& x_t0, const std::vector<Ve
 }
 
 // A separating plane turns with the layers by up to 90 degrees; beyond that, the step is divided.
-TEST(Certificate, LayersThatTurnTogetherHaveAPlaneThatTurnsWithThem) {
+TEST(SeparatingPlane, LayersThatTurnTogetherHaveAPlaneThatTurnsWithThem) {
   for (const double angle : {20.0, 45.0, 80.0, 100.0, 140.0}) {
     SCOPED_TRACE(angle);
     const std::vector<Vec3> x_t0 = layers(), x_t1 = turned(x_t0, angle * kDegree);
@@ -50,7 +50,7 @@ TEST(Certificate, LayersThatTurnTogetherHaveAPlaneThatTurnsWithThem) {
   }
 }
 
-TEST(Certificate, LayersThatTurnAndPassThroughEachOtherHaveNone) {
+TEST(SeparatingPlane, LayersThatTurnAndPassThroughEachOtherHaveNone) {
   for (const double angle : {0.0, 20.0, 45.0, 80.0, 100.0, 140.0}) {
     SCOPED_TRACE(angle);
     std::vector<Vec3> x_t0 = layers(), x_t1 = x_t0;
@@ -59,7 +59,7 @@ TEST(Certificate, LayersThatTurnAndPassThroughEachOtherHaveNone) {
   }
 }
 
-TEST(Certificate, LayersThatHardlyTurnNeedNoPlaneThatTurns) {
+TEST(SeparatingPlane, LayersThatHardlyTurnNeedNoPlaneThatTurns) {
   const std::vector<Vec3> x_t0 = layers(), x_t1 = turned(x_t0, 2 * kDegree);
   const auto found = find_separating_plane(kPair, x_t0, x_t1);
   ASSERT_TRUE(found);

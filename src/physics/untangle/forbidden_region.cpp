@@ -1,4 +1,4 @@
-#include "physics/untangle/solid.hpp"
+#include "physics/untangle/forbidden_region.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -20,12 +20,13 @@ const Vec3 kRayDirection(1, 0.00137, 0.00211);
 
 }  // namespace
 
-Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x)
+ForbiddenRegion::ForbiddenRegion(const collision::BroadPhase& surfaces, std::size_t number, SurfaceKind kind,
+                                 std::span<const Vec3> x)
     : surfaces_(surfaces), number_(number), kind_(kind), x_(x) {
   const collision::Surface& surface = surfaces.surface(number);
   for (const collision::Triangle& t : surface.triangles)
     for (const Index v : t) box_.extend(x[v]);
-  if (kind == Kind::floor) {
+  if (kind == SurfaceKind::floor) {
     normal_ = collision::face_normal(surface.triangles.front(), x);
     place_ = x[surface.triangles.front()[0]];
     return;
@@ -35,9 +36,9 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kin
     buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
 }
 
-Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
-             std::span<const std::uint8_t> on_border, std::span<const Solid> below)
-    : surfaces_(surfaces), number_(number), kind_(Kind::layer), x_(x), on_border_(on_border) {
+ForbiddenRegion::ForbiddenRegion(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
+                                 std::span<const std::uint8_t> on_border, std::span<const ForbiddenRegion> below)
+    : surfaces_(surfaces), number_(number), kind_(SurfaceKind::layer), x_(x), on_border_(on_border) {
   const collision::Surface& surface = surfaces.surface(number);
   for (const collision::Triangle& t : surface.triangles)
     for (const Index v : t) box_.extend(x[v]);
@@ -46,7 +47,7 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::spa
     const Vec3 centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
     Vec3 away = (centre - box_.center()).stableNormalized();
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Solid& body : below) {
+    for (const ForbiddenRegion& body : below) {
       const Exit exit = body.exit(centre);
       if (std::abs(exit.height) >= nearest) continue;
       nearest = std::abs(exit.height);
@@ -57,13 +58,13 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::spa
   if (outward < 0) outer_sign_ = -1;
 }
 
-bool Solid::is_near(const Vec3& p, double distance) const {
-  if (kind_ == Kind::floor) return normal_.dot(p - place_) < distance;
+bool ForbiddenRegion::is_near(const Vec3& p, double distance) const {
+  if (kind_ == SurfaceKind::floor) return normal_.dot(p - place_) < distance;
   return box_.squaredExteriorDistance(p) <= distance * distance;
 }
 
 // Where the segment from p to p + `way` crosses faces, in the order along the segment.
-std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
+std::vector<ForbiddenRegion::Hit> ForbiddenRegion::hits(const Vec3& p, const Vec3& way) const {
   const collision::Surface& surface = surfaces_.surface(number_);
   std::vector<Index> numbers;
   surfaces_.triangles_in_box(number_, p.cwiseMin(p + way), p.cwiseMax(p + way), numbers);
@@ -85,9 +86,9 @@ std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
   return found;
 }
 
-bool Solid::inside(const Vec3& p) const {
-  if (kind_ == Kind::floor) return normal_.dot(p - place_) < 0;
-  if (kind_ == Kind::layer) return exit_of_layer(p).height < 0;
+bool ForbiddenRegion::inside(const Vec3& p) const {
+  if (kind_ == SurfaceKind::floor) return normal_.dot(p - place_) < 0;
+  if (kind_ == SurfaceKind::layer) return exit_of_layer(p).height < 0;
   if (!box_.contains(p)) return false;
   int turns = 0;
   for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRayDirection)) turns += hit.winding;
@@ -96,7 +97,7 @@ bool Solid::inside(const Vec3& p) const {
 
 // If the nearest point of the layer is on its border, p is beside the cloth, neither in front of it nor behind it, and
 // counts as outside.
-Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
+ForbiddenRegion::Exit ForbiddenRegion::exit_of_layer(const Vec3& p) const {
   const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
   const Vec3 place = p - point.height * point.normal;
   bool beside = true;
@@ -107,9 +108,9 @@ Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
   return {place, arm.isZero() ? Vec3(outer_sign_ * point.normal) : arm.normalized(), arm.norm()};
 }
 
-Solid::Exit Solid::exit(const Vec3& p) const {
-  if (kind_ == Kind::layer) return exit_of_layer(p);
-  if (kind_ == Kind::floor) {
+ForbiddenRegion::Exit ForbiddenRegion::exit(const Vec3& p) const {
+  if (kind_ == SurfaceKind::layer) return exit_of_layer(p);
+  if (kind_ == SurfaceKind::floor) {
     const double height = normal_.dot(p - place_);
     return {p - height * normal_, normal_, height};
   }
@@ -133,15 +134,15 @@ Solid::Exit Solid::exit(const Vec3& p) const {
   return {place, point.normal, side * std::abs(point.height)};
 }
 
-double Solid::distance_out(const Vec3& p, const Vec3& d) const {
-  if (kind_ == Kind::floor) {
+double ForbiddenRegion::distance_out(const Vec3& p, const Vec3& d) const {
+  if (kind_ == SurfaceKind::floor) {
     const double rise = normal_.dot(d);
     return rise > 0 ? -normal_.dot(p - place_) / rise : std::numeric_limits<double>::infinity();
   }
   const double length = 1.01 * box_.diagonal().norm();
   int depth = 0, shells = 0;
   const std::vector<Hit> found = hits(p, length * d);
-  if (kind_ == Kind::layer) {
+  if (kind_ == SurfaceKind::layer) {
     for (const Hit& hit : found)
       if (hit.winding < 0) return length * hit.fraction;
     return std::numeric_limits<double>::infinity();
@@ -155,7 +156,7 @@ double Solid::distance_out(const Vec3& p, const Vec3& d) const {
   return 0;
 }
 
-double Solid::midpoint_depth(const Vec3& p, const Vec3& q) const {
+double ForbiddenRegion::midpoint_depth(const Vec3& p, const Vec3& q) const {
   const Vec3 middle = 0.5 * (p + q);
   return is_near(middle, 0) && inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
 }

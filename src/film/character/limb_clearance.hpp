@@ -20,7 +20,7 @@ struct Ground {
   double height = 0;  ///< up · x of the plane [m]
 };
 
-/// The vertex that Room::make() has moved farthest.
+/// The vertex that LimbClearance::move_skin() has moved farthest.
 struct Moved {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
@@ -33,35 +33,35 @@ struct Moved {
 /// each moves back by at most half of the missing clearance; it moves farther only to follow its neighbours. If skin is
 /// closer to another limb at rest, as at their common joint, it keeps its clearance at rest. Limbs that cross at rest
 /// do not change. Skin near cloth is also lifted out of the ground, except that of feet.
-class Room {
+class LimbClearance {
  public:
   /// Weight of each limb at a vertex.
   using LimbWeights = std::array<float, 9>;
 
   /// `touched`: per vertex, whether cloth can touch it. `near_cloth`: per vertex, from 0 (no cloth near) to 1 (cloth
-  /// lies on it). `room`: clearance [m]; half of it is kept above the ground.
-  Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double room,
-       std::vector<Ground> grounds);
+  /// lies on it). `clearance`: between limbs [m]; half of it is kept above the ground.
+  LimbClearance(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double clearance,
+                std::vector<Ground> grounds);
 
   /// Moves the skin `x`, which must be the result of skin() for the pose.
-  Moved make(const Pose& pose, std::span<Vec3> x) const;
+  Moved move_skin(const Pose& pose, std::span<Vec3> x) const;
 
  private:
-  /// Missing clearance of one vertex in one round of make().
-  struct Missing {
+  /// Missing clearance of one vertex in one round of move_skin().
+  struct MissingClearance {
     double distance = 0;  // missing clearance [m]
     float near = 0;       // nearness of cloth, 0 to 1: the larger one of its own and that of the other limb
     Index triangle = -1;  // of the other limb; -1: none
   };
 
   void find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
-                    std::vector<Missing>& missing) const;
+                    std::vector<MissingClearance>& missing) const;
   void smooth(std::span<const double> lengths, std::vector<double>& remaining) const;
   void lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const;
   Moved farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
                  std::vector<Index> other) const;
 
-  double room_;
+  double clearance_;
   std::vector<Ground> grounds_;
   std::vector<mesh::Triangle> triangles_;  // of the skin that cloth can touch
   std::vector<LimbWeights> limb_weights_, limb_weights_of_triangle_;

@@ -1,4 +1,4 @@
-#include "physics/collision/response/certificate.hpp"
+#include "physics/collision/response/separating_plane.hpp"
 
 #include <algorithm>
 #include <array>

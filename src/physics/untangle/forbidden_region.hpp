@@ -12,16 +12,16 @@
 namespace weft::untangle {
 
 /// A region where cloth may not be; it does not move. There are three kinds: the inside of a body, whose closed shells
-/// may cross each other; the space below a floor; the space behind a layer (Kind::layer). A point is not behind a layer
-/// if the nearest point of the layer is on its border.
-class Solid {
+/// may cross each other; the space below a floor; the space behind a layer (SurfaceKind::layer). A point is not behind
+/// a layer if the nearest point of the layer is on its border.
+class ForbiddenRegion {
  public:
   /// A body or floor with this number in the broad phase at x [m]. `surfaces` and x must outlive this object.
-  Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x);
+  ForbiddenRegion(const collision::BroadPhase& surfaces, std::size_t number, SurfaceKind kind, std::span<const Vec3> x);
   /// A layer. Its outer side is the one that mostly faces away from the nearest body of `below` or, if there are none,
   /// from the layer's own centre. `on_border`: per vertex. `surfaces`, x and `on_border` must outlive this object.
-  Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
-        std::span<const std::uint8_t> on_border, std::span<const Solid> below);
+  ForbiddenRegion(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
+                  std::span<const std::uint8_t> on_border, std::span<const ForbiddenRegion> below);
 
   std::size_t number() const { return number_; }
   /// Whether p is less than `distance` [m] outside of the bounds of the solid. False: p is certainly farther outside.
@@ -39,7 +39,9 @@ class Solid {
   /// does not leave a floor or layer.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; false for a floor.
-  bool crosses_surface(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }
+  bool crosses_surface(const Vec3& p, const Vec3& q) const {
+    return kind_ != SurfaceKind::floor && !hits(p, q - p).empty();
+  }
   /// Depth of the midpoint of the segment from p to q inside the solid, divided by the length of the segment; 0 if it
   /// is outside. Examples: 0.21 for a chord of a quarter circle, 0.5 for the diameter of a circle.
   double midpoint_depth(const Vec3& p, const Vec3& q) const;
@@ -54,7 +56,7 @@ class Solid {
 
   const collision::BroadPhase& surfaces_;
   std::size_t number_;
-  Kind kind_;
+  SurfaceKind kind_;
   std::span<const Vec3> x_;
   Box3 box_;
   Vec3 normal_ = Vec3::UnitZ(), place_ = Vec3::Zero();  // of a floor

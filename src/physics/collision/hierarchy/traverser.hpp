@@ -17,27 +17,27 @@ constexpr std::size_t kMinLeavesForThreads = 512, kMinThreadTasks = 64;
 /// side. kListed: records in a separation list where the traversal stops. Both are compile-time constants, so that the
 /// plain traversal has no branches for them.
 template <int K, bool kLonger, bool kListed>
-class Walk {
+class Traverser {
  public:
   using TreeType = Tree<K>;
   using Ref = typename TreeType::Ref;
   using Leaf = typename TreeType::Leaf;
   using Node = typename TreeType::Node;
 
-  Walk(const TreeType& tree_a, const TreeType& tree_b, const Traversal& how, CandidatePairs& out)
+  Traverser(const TreeType& tree_a, const TreeType& tree_b, const Traversal& how, CandidatePairs& out)
       : a_(tree_a), b_(tree_b), same_(&tree_a == &tree_b), how_(how), out_(out) {}
 
   /// Lists all pairs, from the roots or from where the last traversal stopped.
   void run() {
     if constexpr (kListed) {
       SeparationList& list = *how_.list;
-      if (list.due()) {
+      if (list.needs_rebuild()) {
         list.restart();
         from_roots();
       } else {
         resume();
       }
-      list.walked();
+      list.end_traversal();
     } else {
       from_roots_in_threads();
     }
@@ -71,8 +71,8 @@ class Walk {
     deferred_ = nullptr;
     parallel_append(stops.size(), 1 + stops.size() / kMinThreadTasks, out_,
                     [&](std::size_t begin, std::size_t end, CandidatePairs& list) {
-                      Walk walk(a_, b_, how_, list);
-                      for (std::size_t s = begin; s < end; ++s) walk.resume_from(stops[s]);
+                      Traverser traverser(a_, b_, how_, list);
+                      for (std::size_t s = begin; s < end; ++s) traverser.resume_from(stops[s]);
                     });
   }
 

@@ -13,11 +13,11 @@ namespace weft::garment {
 /// that share a vertex may give different ones. x minimises Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all
 /// triangles, plus anchor · Σ ‖x_i − p_i‖² over their corners.
 template <int N>
-class JoinedPlaces {
+class LeastSquaresPositions {
  public:
   using Place = Eigen::Matrix<double, N, 1>;
 
-  JoinedPlaces(std::size_t vertices, double anchor)
+  LeastSquaresPositions(std::size_t vertices, double anchor)
       : anchor_(anchor), right_(Right::Zero(static_cast<Eigen::Index>(vertices), N)) {}
 
   void add(const mesh::Triangle& triangle, const std::array<Place, 3>& corners) {
