@@ -257,8 +257,8 @@ TEST_F(EveryKey, OfAnObstacleFillsItsMember) {
 TEST_F(EveryKey, OfAnObstacleThatFollowsFillsItsMember) {
   const Obstacle& lid = scene_.obstacles[8];
   EXPECT_EQ(lid.follow, "ball");
-  EXPECT_TRUE(moves(scene_, lid)) << "as the ball does";
-  EXPECT_FALSE(moves(scene_, scene_.obstacles[1]));
+  EXPECT_TRUE(has_prescribed_motion(scene_, lid)) << "as the ball does";
+  EXPECT_FALSE(has_prescribed_motion(scene_, scene_.obstacles[1]));
   EXPECT_EQ(lid.look.image->filename(), "check.png");
   EXPECT_EQ(lid.look.tile_width, 0.23);
   EXPECT_EQ(lid.look.metal, 0.7);

@@ -65,7 +65,7 @@ CornerMap::CornerMap(std::span<const Triangle> triangles, std::size_t vertex_cou
   for (const Triangle& triangle : triangles) {
     for (const Index vertex : triangle) {
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertex_count) {
-        throw Error(ExitCode::internal, "triangle names vertex {}, expected 0 to {}", vertex, vertex_count);
+        throw Error(ExitCode::internal, "triangle names vertex {}, expected 0 to {}", vertex, vertex_count - 1);
       }
       ++first_[vertex + 1];
     }

@@ -58,8 +58,8 @@ const Table& contact_rules() {
                  "whether cloths and ropes collide with themselves and with each other")
           .plain(Type::boolean, "obstacles", &Contact::obstacles,
                  "whether anything collides with obstacles and characters")
-          .number("stiffness", &Contact::stiffness, above(0, 1e9), "N/m",
-                  "minimum stiffness of the spring of one contact; heavy particles and short steps get a higher one")
+          .number("stiffness", &Contact::stiffness, within(0, 1e9), "N/m",
+                  "minimum stiffness of the spring of one contact; 0: what mass and step of the particles need")
           .table("search", &Contact::search, search_rules())
           .list(Type::list, "pair", &Contact::pairs, friction_pair_rules())
           .choice("response", &Contact::response, {"springs", "velocity_constraints"},

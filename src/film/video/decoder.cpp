@@ -141,7 +141,8 @@ bool Decoder::lossy() const {
 }
 
 double Decoder::fps() const {
-  return av_q2d(impl_->input->streams[impl_->stream]->avg_frame_rate);
+  const AVRational rate = impl_->input->streams[impl_->stream]->avg_frame_rate;
+  return rate.den == 0 ? 0 : av_q2d(rate);  // unknown: 0/0
 }
 
 const std::map<std::string, std::string>& Decoder::metadata() const {

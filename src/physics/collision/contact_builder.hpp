@@ -26,7 +26,7 @@ struct PairFriction {
 };
 
 struct ContactParameters {
-  double stiffness = 100;                   ///< minimum of the full stiffness [N/m]; see stiffness_fraction()
+  double stiffness = 0;                     ///< minimum of the full stiffness [N/m]; see stiffness_fraction()
   double step = 0.01;                       ///< h in Numerics::Contact::inertial_stiffness [s]
   std::vector<PairFriction> friction = {};  ///< pairs with coefficients of their own
 };

@@ -34,9 +34,9 @@ struct FrictionPair {
 
 /// Parameters of all contacts.
 struct Contact {
-  bool self = true;        ///< cloth against itself and other cloths
-  bool obstacles = true;   ///< cloth against obstacles
-  double stiffness = 100;  ///< minimum stiffness of a contact [N/m]; see also Numerics::Contact::inertial_stiffness
+  bool self = true;       ///< cloth against itself and other cloths
+  bool obstacles = true;  ///< cloth against obstacles
+  double stiffness = 0;   ///< stiffness of a contact [N/m], at least Numerics::Contact::inertial_stiffness
   std::vector<FrictionPair> pairs;
   Search search;
   Response response = Response::springs;

@@ -20,6 +20,9 @@ bool is_driven_by_pins_alone(const model::Model& model) {
     if (!cloth.over.empty()) return false;             // this cloth, with its energy, is added later
     if (cloth.pressure.keys.size() > 1) return false;  // pumping does work
     if (cloth.rope && cloth.rope->keys.size() > 1) return false;
+    // A button or zip does work when it closes.
+    const auto closes = [](const mesh::Tie& tie) { return std::isfinite(tie.closed); };
+    if (std::ranges::any_of(cloth.sheet.ties, closes)) return false;
     // A pin with a strength is a spring, whose work is not measured.
     for (const model::Pin& pin : cloth.pins)
       if (pin.strength && (moves(pin.motion) || pin.body)) return false;
