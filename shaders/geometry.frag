@@ -1,6 +1,6 @@
 // Writes the surface data of each pixel, for deferred shading. Forward shading would cost more: llvmpipe shades a whole
-// 4x4 block for every triangle that touches it, which for the small triangles of cloth is about eight times the visible
-// pixels. The floor writes only distance_surface.
+// 4x4 block for every triangle that touches it. With the small triangles of cloth, it would shade about eight times as
+// many pixels as are visible. The floor writes only distance_surface.
 #include "frame.glsl"
 const float kMaxRise = 0.02;  // limit on rise() [m], for triangles at folds, whose corner normals differ too much
 in vec3 surface_normal_world;
@@ -13,14 +13,14 @@ layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // see "Surface numbers" in frame.glsl
 #ifdef PAINTED
 // `paint`: xyz: square root of the linear colour, which needs only 8 bits. w: above 0.5 if the pixel is painted; below
-// 1 if its picture lies over a colour and is transparent there.
+// 1 if a picture lies over a colour and is transparent there.
 #ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, premultiplied
 #endif
-uniform int laid;         // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 with holes
+uniform int laid;         // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 and holes
 uniform vec3 color;       // linear
-uniform vec4 back_color;  // w < 0: colour of the back; else the back is the front, paler by w
+uniform vec4 back_color;  // w < 0: colour of the back; else the back has the colour of the front, paler by w
 layout(location = 3) out vec4 paint;
 #endif
 #ifdef TRIMMED

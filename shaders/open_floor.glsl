@@ -28,7 +28,7 @@ float away_from_subjects(vec3 position_world) {
   return away * away / (1.0 + away * away);
 }
 
-// Fades the floor around the subjects slowly into the backdrop.
+// Fades the floor into the backdrop as the distance from the subjects grows.
 vec3 fade_out(vec3 color, vec3 position_world, vec3 ray_world) {
   return mix(color, backdrop_color(normalize(ray_world)), away_from_subjects(position_world));
 }

@@ -10,8 +10,9 @@ vec3 decode(vec3 srgb) { return srgb * (srgb * (srgb * 0.305306011 + 0.682171111
 // distance of the floor along the view axis [m].
 vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float share) {
   vec2 at = vec2(uv.x, 1.0 - uv.y);
-  // A rough floor scatters light into a cone (half of it is used), so the blur radius grows with the distance of the
-  // mirror image behind the floor. The nearest surface around sets this distance, so that outlines are blurred evenly.
+  // A rough floor scatters light into a cone (`cone`: tangent of its half angle). So the blur radius grows with the
+  // distance from the floor to the reflected surface. This is the nearest surface in the pixels around, so that outlines
+  // are blurred evenly.
   float cone = 0.5 * roughness * roughness, nearest = textureLod(mirror_distances, at, 0.0).r;
   vec2 aspect = vec2(frame.frustum.y / frame.frustum.x, 1.0);
   float widest = 0.5 * cone / frame.frustum.y;

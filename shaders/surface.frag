@@ -180,7 +180,8 @@ void main() {
 
   vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
   float open = from_surfaces.w;
-  // Near shaded floor, `from_surfaces` is negative and may exceed the light of the surroundings, hence the lower bound.
+  // Near shaded floor, `from_surfaces` is negative and may subtract more than the light of the surroundings, hence the
+  // lower bound.
   vec3 around_light = irradiance(at.n) * open;
   around_light = max(around_light + from_surfaces.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));
@@ -209,7 +210,8 @@ void main() {
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
 #elif defined(METAL)
-  // Nearby surfaces in the mirrored direction cover the surroundings and add their own light; shaded floor subtracts.
+  // Nearby surfaces in the mirrored direction cover the surroundings and add their own light; shaded floor subtracts
+  // light.
   vec3 mirrored = reflect(-at.v, at.n);
   vec4 near_by = texelFetch(mirrored_surfaces, pixel, 0);
   // Mirror rays exist only for metal and coats; other surfaces use the open fraction of the surroundings.

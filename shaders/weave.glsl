@@ -29,7 +29,7 @@ struct Weave {
   vec3 normal_world;
   float tone;   // factor on the colour
   float shine;  // factor on the highlight
-  float weft;   // visible fraction of weft, for cloth whose weft has another colour (denim)
+  float weft;   // visible fraction of weft, for denim, whose weft and warp differ in colour
   vec3 weft_world, warp_world;  // directions of the threads
   bool at_outline;              // derivatives cross an outline and are therefore invalid
 };

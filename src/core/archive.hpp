@@ -1,4 +1,4 @@
-// Serialisation: values to bytes and back. Each type has one function or member `serialize`. It is a template over the
+// Serialisation: values to bytes and back. Each type has one function or member `serialize`, a template over the
 // archive (ByteWriter or ByteReader), so that writing and reading cannot differ. A plain value has a trivially copyable
 // type with neither padding nor pointers.
 #pragma once
@@ -63,7 +63,7 @@ struct ByteReader {
   }
 };
 
-/// Checks data that was read: throws std::runtime_error if `holds` is false.
+/// Checks data that was read: throws std::runtime_error if `holds` is false. `expected`: for the message.
 inline void require(bool holds, const char* expected) {
   if (!holds) throw std::runtime_error(std::string("the data does not fit: expected ") + expected);
 }
@@ -89,7 +89,7 @@ void serialize_each(Archive& archive, List& list, const Serialize& serialize_one
 }
 
 /// Writes or reads a list of `count` finite points or vectors. When reading, throws std::runtime_error if the list has
-/// another length or a value that is not finite.
+/// a different length or contains a value that is not finite.
 template <class Archive>
 void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
   serialize_plain(archive, points);

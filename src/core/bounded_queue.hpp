@@ -12,8 +12,8 @@
 namespace weft {
 
 /// Passes items in order from one thread, the producer, to another, the consumer. If the producer fails, it calls
-/// close() with its exception, which the consumer gets after the last item, so that finished work is kept. If the
-/// consumer fails, it calls cancel(), which stops the producer at its next push.
+/// close() with its exception. The consumer first gets all waiting items, so that finished work is kept; then pop()
+/// throws the exception. If the consumer fails, it calls cancel(); then push() returns false.
 template <class T>
 class BoundedQueue {
  public:
@@ -31,8 +31,8 @@ class BoundedQueue {
     return true;
   }
 
-  /// Waits for an item. Returns nothing after cancel(), or if the queue is closed and empty. If it was closed with an
-  /// exception, throws that exception instead once it is empty.
+  /// Waits for an item. Returns nothing after cancel(), or if the queue is closed and empty. If the queue is empty and
+  /// was closed with an exception, throws that exception instead.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });
@@ -47,7 +47,7 @@ class BoundedQueue {
     return item;
   }
 
-  /// The producer calls it when it ends. Waiting items can still be popped. Only the first call has an effect.
+  /// The producer calls close() at its end. Waiting items can still be popped. Only the first call has an effect.
   void close(std::exception_ptr failure = nullptr) {
     {
       const std::lock_guard lock(mutex_);
@@ -58,7 +58,7 @@ class BoundedQueue {
     room_.notify_all();
   }
 
-  /// The consumer calls it when it ends. Waiting items are dropped.
+  /// The consumer calls cancel() at its end. Waiting items are dropped.
   void cancel() {
     {
       const std::lock_guard lock(mutex_);

@@ -7,8 +7,8 @@
 
 namespace weft {
 
-/// Knot i of a spline, for i from −1 to the number of knots. Beyond its ends, a closed spline wraps around, and an open
-/// spline is extended linearly.
+/// Knot i of a spline. `i`: from −1 to the number of knots n; if the spline is closed, to n + 1. Beyond its ends, a
+/// closed spline wraps around, and an open spline is extended linearly.
 inline Vec3 spline_knot(const std::vector<Vec3>& knots, bool closed, int i) {
   const auto count = static_cast<int>(knots.size());
   const auto knot = [&](int k) -> const Vec3& { return knots[static_cast<std::size_t>(k)]; };
@@ -18,7 +18,7 @@ inline Vec3 spline_knot(const std::vector<Vec3>& knots, bool closed, int i) {
   return knot(i);
 }
 
-/// Position on the spline between knots i and i + 1, at s from 0 to 1.
+/// Position on the spline between knots i and i + 1. `s`: parameter, from 0 at knot i to 1 at knot i + 1.
 inline Vec3 spline_point(const std::vector<Vec3>& knots, bool closed, int i, double s) {
   const Vec3 a = spline_knot(knots, closed, i - 1), b = spline_knot(knots, closed, i),
              c = spline_knot(knots, closed, i + 1), d = spline_knot(knots, closed, i + 2);

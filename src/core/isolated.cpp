@@ -108,7 +108,8 @@ void send(int descriptor, std::string_view bytes) {
   ::_exit(0);
 }
 
-// Receives bytes until the pipe ends. Throws if `stop` becomes true or the limit of wall time has passed.
+// Receives bytes until the child closes its end of the pipe. Throws if `stop` becomes true or the wall time limit has
+// passed.
 std::string receive(int descriptor, const Isolation& isolation) {
   using Clock = std::chrono::steady_clock;
   constexpr int kPollInterval = 100;  // [ms]

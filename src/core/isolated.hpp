@@ -1,4 +1,4 @@
-// Runs code in a child process, because it may crash on damaged input or its memory use is to be measured alone.
+// Runs code in a child process: code that may crash on damaged input, or whose memory use is to be measured alone.
 #pragma once
 
 #include <atomic>

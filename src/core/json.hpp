@@ -11,9 +11,10 @@
 
 namespace weft {
 
-/// Throws std::exception if the text is no JSON, nests too deep, or has too many keys in its objects. Depth is limited
-/// because nlohmann::json copies, compares and writes recursively. The number of keys is limited because
-/// nlohmann::ordered_json compares each key with all earlier keys of its object.
+/// Parses JSON. Throws an exception derived from std::exception if the text is no JSON, nests deeper than kMaxDepth
+/// (nesting.hpp), or has too many keys in its objects. Depth is limited because nlohmann::json copies, compares and
+/// writes recursively. The number of keys is limited because nlohmann::ordered_json compares each key with all earlier
+/// keys of its object.
 template <class Json = nlohmann::ordered_json>
 Json parse_json(std::string_view text);
 

@@ -33,8 +33,8 @@ void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-// Passes a text to the handler; returns false if there is none. Releases the lock first: the handler may wait for a
-// thread that itself waits here to log.
+// If there is no handler, returns false. Otherwise releases the lock and passes the text to the handler. The lock is
+// released first, because the handler may wait for a thread that itself waits for the lock.
 bool handled(std::string_view text, const State& s, std::unique_lock<std::mutex>& lock) {
   const auto handle = s.handle;
   if (!handle) return false;

@@ -5,8 +5,9 @@
 
 namespace weft {
 
-/// Maximum nesting depth of JSON; in TOML, of one header or of one key with its value. Lists, tables and components of
-/// a dotted key count as levels. No scene has more than ten. Each level takes less than 1 kB of a stack of 8 MB.
+/// Maximum number of nested levels: in JSON, of the whole text; in TOML, of one header, or of one key with its value.
+/// Lists, tables and components of a dotted key count as levels. No shipped scene has more than ten. Each level takes
+/// less than 1 kB of a stack of 8 MB.
 inline constexpr int kMaxDepth = 128;
 
 /// Whether TOML or JSON text nests deeper than kMaxDepth. Text behind the first syntax error is counted arbitrarily;

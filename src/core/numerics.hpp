@@ -16,8 +16,9 @@ struct Numerics {
     /// aggregate as a whole instead of interpolating between aggregates (Preconditioner). Larger: systems with slender
     /// cells or a viscosity of 1e4 N·s/m are not solved. Smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
-    /// After n iterations, the last max(`min_error_window`, n / `error_window_divisor`) of them estimate the error.
-    /// Fewer: solves end where the error only stagnates, and cloth with a viscosity of 1e4 N·s/m gains energy.
+    /// After n iterations, the last max(`min_error_window`, n / `error_window_divisor`) iterations give the estimate of
+    /// the error. Fewer: solves end where the error only stagnates, and cloth with a viscosity of 1e4 N·s/m gains
+    /// energy.
     int min_error_window = 3;
     int error_window_divisor = 5;
     /// Maximum number n of cloth aggregates on the coarsest multigrid level; with more than n cloths, one aggregate per
@@ -28,7 +29,7 @@ struct Numerics {
   /// Newton's method (src/physics/integrator).
   struct Newton {
     /// Allowed error of a linear solve, relative to the allowed error of Newton's method. A diagonal block (a cloth or
-    /// rigid body) whose Newton error is below this fraction of the allowed one is left out of the next linear solve
+    /// rigid body) whose Newton error is below this fraction of the allowed error is left out of the next linear solve
     /// (but see `slow_after`). 1: fewer iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on `solver.linear_tolerance` for the midpoint rule, which damps nothing. Larger:
@@ -38,14 +39,14 @@ struct Numerics {
     /// Smaller: more evaluations. Larger: more Newton iterations. `line_trials`: maximum number of evaluations.
     double slope_left = 0.5;
     int line_trials = 6;
-    /// Number of Newton iterations after which a solve is interrupted, to find contacts on its new trajectory early.
+    /// Number of Newton iterations after which a solve pauses, so that contacts on the new trajectory are found early.
     int check_after = 4;
     /// Number of Newton iterations after which a solve counts as slow. In a slow solve, friction keeps its normal
     /// forces, and velocity errors are allowed up to unseen_velocity() or, with implicit Euler, up to `velocity_ratio`
     /// times the local velocity error. From half of this number on, each linear solve includes all diagonal blocks.
-    /// Larger: friction and normal forces, or cloths that press on each other, oscillate. The same number limits how
-    /// often a step is solved further after cloth was pushed apart. 0: tests/bench/scenes/ring.toml takes four times
-    /// the steps.
+    /// Larger: friction and normal forces, or cloths that press on each other, oscillate. `slow_after` is also the
+    /// maximum number of times that the solve of a step continues after cloth was pushed apart. 0:
+    /// tests/bench/scenes/ring.toml takes four times the steps.
     int slow_after = 20;
     double velocity_ratio = 0.5;
     /// Time for which a velocity error is assumed to displace cloth [s]. Smaller: most of a run's error comes from the
@@ -57,8 +58,8 @@ struct Numerics {
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
     /// Ratio of friction to its limit above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
-    /// Newton's method reuses the matrix rows of a cloth until a particle has moved farther than this since their
-    /// assembly, in particle spacings. Larger: more iterations.
+    /// Newton's method reuses the matrix rows of a cloth until a particle has moved farther than this (in particle
+    /// spacings) since the rows were assembled. Larger: more iterations.
     double stale_motion = 0.005;
   } newton;
 
@@ -70,8 +71,8 @@ struct Numerics {
     /// 1. A larger maximum: BDF2 amplifies earlier errors.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Shortest step that the error control chooses [s]. If a step is not solved, it is halved even below this length;
-    /// if a step below this length is not solved, the run ends.
+    /// Shortest step that the error control chooses [s]. A step that is not solved is halved, if necessary to less than
+    /// this length. If a step shorter than this is not solved, the run ends.
     double min_step = 1e-5;
     /// If any particle is faster than this, cloth does not count as at rest [m/s]; see StepLoop::may_rest().
     double rest_velocity = 0.02;
@@ -86,15 +87,16 @@ struct Numerics {
     /// in detection distances:
     /// - 2 m: Verlet margin of candidate pairs; if a vertex moves farther than this in a step, the margin is 0,
     /// - m / 2: `search.coherence` keeps closest points until a vertex has moved farther than this,
-    /// - m: if the arc of a turning obstacle deviates from its chord by more than this, the step is halved,
+    /// - m: if, in a step, the arc of a vertex of a turning obstacle deviates from its chord by more than this, the
+    ///   step is halved,
     /// - m: if no obstacle moves farther than this in a step, shorter steps would find no more space for cloth.
     double margin = 0.25;
     /// Maximum contact thickness of cloth other than ropes, in particle spacings. Larger: a sheared sheet collides with
     /// itself.
     double thickness_of_spacing = 0.25;
     /// Minimum contact stiffness, in m/h². h: `time.step`. m: weighted mean mass of the contact's particles; if a rigid
-    /// body touches cloth or another such body, that of the lighter side. Thus a particle penetrates in one step of
-    /// implicit Euler by at most a hundredth of its motion without contact.
+    /// body that forces move touches cloth or another such body, only of the particles on the lighter side. Thus a
+    /// particle penetrates in one step of implicit Euler by at most a hundredth of its motion without contact.
     double inertial_stiffness = 100;
     /// Factor `stiffening` of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation
     /// distance r. 10: tips penetrate; 1000: more iterations.
@@ -106,16 +108,17 @@ struct Numerics {
     /// - for edge pairs with cloth, while the closest point moves from the fraction w of an edge to its end.
     double ramp_width = 0.1;
     double flat_fold() const { return 0.5 * ramp_width; }
-    /// Slip velocity below which friction sticks [m/s]. If contacts are springs, it is at least `stick_spacings` [1/s]
-    /// times the smallest particle spacing. Larger: cloth creeps down slopes. Smaller: a stiffer system.
+    /// Slip velocity below which friction sticks [m/s]. If contacts are springs, this velocity is at least
+    /// `stick_spacings` [1/s] times the smallest particle spacing. Larger: cloth creeps down slopes. Smaller: a stiffer
+    /// system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
     /// Slip velocity from which the friction coefficient is that of sliding, in stick velocities.
     double slide_velocity = 5;
-    /// Closing velocity from which BDF2 treats a contact as a full impact [m/s]; below it, as an impact in proportion
-    /// to the velocity. Larger: impacts in short steps rebound.
+    /// Closing velocity [m/s] from which BDF2 treats a contact fully as an impact; below it, in proportion to the
+    /// velocity. Larger: impacts in short steps rebound.
     double impact_velocity = 0.05;
-    /// How often a contact that slides may stick again in one step when its slip turns back. 0:
+    /// Maximum number of times in one step that a sliding contact sticks again when its slip reverses. 0:
     /// tests/bench/scenes/ribbons_in_half_pipe.toml takes 1.4 times the iterations. 20: friction with a coefficient of
     /// 10 does not settle.
     int max_resticks = 2;
@@ -134,9 +137,9 @@ struct Numerics {
     double least_gap = 1e-6;
     /// Pushing apart restores a gap of max(2 `least_gap`, min(`restored_gap`, half of the gap at the start)) [m].
     double restored_gap = 2e-4;
-    /// Maximum number of rounds of pushing apart. After them, particles move back: by half of their motion in up to
-    /// `rounds` / 2 rounds, then to the start of the step in up to `rounds` rounds. Smaller: particles move back
-    /// farther than necessary.
+    /// Maximum number of rounds of pushing apart. In later rounds, particles of failing pairs move back: by half of
+    /// their motion in up to `rounds` / 2 rounds, then to the start of the step in up to `rounds` rounds. Smaller:
+    /// particles move back farther than necessary.
     int rounds = 24;
   } separation;
 
@@ -144,10 +147,10 @@ struct Numerics {
   /// obstacle is a wall that the particle may not pass (VelocityConstraints).
   struct Walls {
     /// If a particle is closer to an obstacle than the minimum distance, a step restores this fraction of the missing
-    /// distance (γ of their Eq. 4).
+    /// distance (γ in Eq. 4 of Etzmuß et al.).
     double correction = 0.2;
-    /// Minimum sine of the angle between the normal of a wall and the span of the normals of the walls before it.
-    /// Below, the wall adds no constraint.
+    /// Minimum sine of the angle between the normal of a wall and the span of the normals of the walls before it. If
+    /// the sine is smaller, the wall adds no constraint.
     double min_independent_sine = 0.05;
     /// Maximum number of changes of a particle's constraints in a step (`flips`), of solves in a step (`solves`), and
     /// of walls per particle (`max_walls`).
@@ -163,12 +166,13 @@ struct Numerics {
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
     /// Number of tries after which the step loop accepts a compromise:
-    /// - after so many rejections of a step, cloth may count as pinched, and pushing apart may add much energy,
-    /// - after so many halvings of a trajectory, the search for its separating planes ends (0: a tenth more
+    /// - after this many rejections of a step, cloth may count as pinched, and pushing apart may add much energy,
+    /// - after this many halvings of a trajectory, the search for its separating planes ends (0: a tenth more
     ///   iterations),
-    /// - after so many tries of a step in which obstructed pins are released, pinned particles may be pushed.
+    /// - after this many tries of a step in which obstructed pins are released, pushing apart may move pinned
+    ///   particles.
     int max_retries = 3;
-    /// Maximum strain that pushing apart may add. If pushing apart adds more, or more energy than
+    /// Maximum strain that pushing apart may add. If pushing apart adds more strain than this, or more energy than
     /// Energy::doubtful_gain, the solve continues from the pushed positions. After the last such continuation, only
     /// added energy can reject the step. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;
@@ -203,13 +207,13 @@ struct Numerics {
   /// Bounds of energy without a source. Gains in a run are relative to EnergyBound::energy_in_play(): the kinetic and
   /// elastic energy at the start, plus the ranges that the potential energy and the work of pins have covered so far.
   struct Energy {
-    /// If the gain exceeds this value, the run fails; but if cloth can touch something, only with the midpoint rule, as
-    /// the other methods damp contacts. Also, the run warns if the work of the residual exceeds this value, relative to
-    /// the energy in play plus the largest kinetic and elastic energy so far.
+    /// If the gain exceeds this value, the run fails. But if cloth can touch something and the method is not the
+    /// midpoint rule, the run only warns, because the method damps contacts. The run also warns if the work of the
+    /// residual exceeds this value, relative to the energy in play plus the largest kinetic and elastic energy so far.
     double failing_gain = 0.3;
-    /// If the gain exceeds this value, the run warns. Also the maximum energy that pushing apart may add, relative to
-    /// the kinetic and elastic energy at the start of the step. Also the maximum work of the residual of a diagonal
-    /// block in a step, relative to the kinetic energy of the block.
+    /// If the gain exceeds this value, the run warns. This value is also the maximum energy that pushing apart may add,
+    /// relative to the kinetic and elastic energy at the start of the step; and the maximum work of the residual of a
+    /// diagonal block in a step, relative to the kinetic energy of the block.
     double doubtful_gain = 0.1;
     /// Energy per mass that is never an error [J/kg]: enough to lift cloth by 1 cm.
     double negligible = 0.1;

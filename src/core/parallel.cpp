@@ -16,8 +16,9 @@ int g_threads = 0;  // 0 until set: all cores
 std::unique_ptr<tbb::global_control> g_limit;
 
 #ifdef __SANITIZE_THREAD__
-// The thread sanitizer would report a data race in every loop, because libtbb is not built with it and hides how it
-// synchronises threads. These loops use two standard threads instead, so that races between chunks are detected.
+// The thread sanitizer would report a data race in every loop, because libtbb is not built with the sanitizer, which
+// therefore does not detect how TBB synchronises threads. Under the sanitizer, these loops use two standard threads
+// instead, so that races between chunks are detected.
 void run_on_threads(std::size_t chunks, FunctionOfIndex run) {
   const auto each_second = [&](std::size_t first) {
     for (std::size_t c = first; c < chunks; c += 2) run(c);

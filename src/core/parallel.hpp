@@ -78,7 +78,7 @@ class FunctionOfIndex {
 };
 
 /// Calls run(c) for each c below `chunks`, on several threads in any order, and returns when all calls have returned.
-/// No template: to instantiate TBB's code for each loop would take a tenth of the build time.
+/// Not a template, because instantiating TBB's code for each loop takes a tenth of the build time.
 void run_chunks(std::size_t chunks, FunctionOfIndex run);
 
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each, or fewer in the last. Chunks

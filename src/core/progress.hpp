@@ -32,8 +32,8 @@ class RemainingTime {
   void sample(double seconds, const StageCounts& done);
 
   /// Remaining time [s], that of the slowest stage, because stages work in parallel; 0 if all frames are done. A stage
-  /// that has finished no frame in the last half minute has no known pace, and is ignored. Nothing if this holds for
-  /// all stages with frames left.
+  /// that has finished no frame in the last half minute has no known pace, and is ignored. Nothing if no stage with
+  /// frames left has a known pace.
   std::optional<double> seconds() const;
 
  private:
@@ -46,7 +46,7 @@ class RemainingTime {
 };
 
 /// A line such as `[#####-------]  47 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to less than `columns`
-/// characters.
+/// characters (`columns` = 0: not cut).
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns);
 

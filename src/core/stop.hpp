@@ -14,7 +14,7 @@ namespace weft {
 inline std::atomic<long long> stop_requested_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-/// Time that a frame may still take after a request [ns]. Most frames end within it, and so are not lost.
+/// Time that the current frame may still take after a request [ns]. Most frames end within this time, and so are kept.
 inline constexpr long long kStopGrace = 3'000'000'000;
 
 /// Time on the monotonic clock [ns]. Safe in a signal handler.
@@ -24,7 +24,8 @@ inline long long monotonic_ns() {
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// A check, which a program that uses the library may set. If the check throws, its exception ends the computation.
+/// A check that a program that uses the library may set; empty: none. If the check throws, its exception ends the
+/// computation.
 inline std::function<void()> host_check;
 
 /// Throws what host_check throws; throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops

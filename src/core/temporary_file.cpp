@@ -108,7 +108,7 @@ fs::path normalise(const fs::path& file) {
   return fs::absolute(file, error).lexically_normal();
 }
 
-// Renames a file if the new name is free; otherwise fails with errno EEXIST.
+// Renames a file and returns true. If the new name is in use, returns false with errno EEXIST.
 bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;
@@ -123,8 +123,9 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0;
 }
 
-// Creates the file or folder and locks it. Another process that cleans up the folder may lock and remove it in between;
-// then tries again, for half a second at most, because that process may have to wait for a processor.
+// Creates the file or folder and locks it. Another process that cleans up the folder may lock and remove the new file
+// or folder before this process locks it. Then tries again, for half a second at most, because the other process may
+// have to wait for a processor.
 int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -244,7 +245,7 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
-  // Several machines may draw parts of one film. Each writes the same scene file beside the film.
+  // Several machines may draw parts of one film, and each writes the same scene file beside the film.
   const auto is_there = [&] { return !may_replace(file) && holds(file, content); };
   if (is_there()) return;
   try {

@@ -11,16 +11,16 @@ namespace weft {
 enum class Flush { yes, no };
 
 /// Name of a file or folder while it is written: `.<name>.weft-<process>.tmp` in the folder of the final name, so that
-/// the rename stays within one file system. If this would be too long for a file system, it contains a hash instead of
-/// `<name>`. The process keeps the file or folder locked (flock). The next process that writes into the same folder
-/// removes temporary files that are not locked, because their processes have died. Process numbers cannot show this:
-/// containers that share a folder do not share process numbers.
+/// the rename stays within one file system. If this name would be too long for a file system, it contains a hash
+/// instead of `<name>`. The process keeps the file or folder locked (flock). The next process that writes into the same
+/// folder removes temporary files that are not locked, because their processes have died. Process numbers cannot show
+/// whether a process has died: containers that share a folder do not share process numbers.
 class TemporaryName {
  public:
   enum class Kind { file, folder };
 
-  /// Creates missing parent folders, then the file or folder itself, empty. If a parent folder was used by this process
-  /// before and is now missing, does not create it again: somebody has removed it on purpose. Throws
+  /// Creates missing parent folders, then the file or folder itself, empty. If this process has used the parent folder
+  /// before and the folder is now missing, does not create the folder again: somebody has removed it on purpose. Throws
   /// Error(output_failed) with the system's reason.
   TemporaryName(const std::filesystem::path& final_name, Kind kind);
   /// Removes the file or folder, unless it was renamed or released.
@@ -48,8 +48,9 @@ class TemporaryFile {
 
   const std::filesystem::path& path() const { return temporary_.path(); }
 
-  /// Gives the file its final name; the caller must have closed it. Replaces an existing file if may_replace() is true.
-  /// Throws Error(output_failed).
+  /// Gives the file its final name; the caller must have closed the file. Replaces an existing file of this name if
+  /// may_replace() is true. Throws Error(output_failed) if the name exists and may_replace() is false, or if flushing
+  /// or renaming fails.
   void commit(Flush flush = Flush::yes);
 
  private:
@@ -57,8 +58,9 @@ class TemporaryFile {
   TemporaryName temporary_;
 };
 
-/// Call it if `file` does not exist when the command begins and the command must not replace files. If another process
-/// creates `file` later, that file stays, and commit() fails. In effect until this process has written `file`.
+/// Call protect_missing_file() if `file` does not exist when the command begins and the command must not replace files.
+/// If another process creates `file` later, that file stays, and commit() fails. In effect until this process has
+/// written `file`.
 void protect_missing_file(const std::filesystem::path& file);
 /// False while protect_missing_file() is in effect for `file`.
 bool may_replace(const std::filesystem::path& file);
@@ -69,14 +71,17 @@ std::string_view final_name_of(std::string_view temporary_name);
 /// Whether a file has exactly this content.
 bool holds(const std::filesystem::path& file, std::string_view content);
 
-/// Removes temporary files, but no folders. Async-signal-safe: a signal handler calls it right before _exit().
+/// Removes the temporary files of this process, but no folders. Async-signal-safe: a signal handler calls it right
+/// before _exit().
 void remove_temporary_files() noexcept;
 
-/// Writes `content` to `file` through a TemporaryFile. Throws Error(output_failed) with the system's reason.
+/// Writes `content` to `file` through a TemporaryFile. If may_replace() is false but `file` exists with this content,
+/// keeps `file`. Throws Error(output_failed) with the system's reason.
 void write_file(const std::filesystem::path& file, std::string_view content, Flush flush = Flush::yes);
 
 /// Throws Error(output_failed), with the system's reason, if `file` cannot be written. Permissions alone do not show
-/// this (read-only mounts, root, quotas), so creates and removes a temporary file beside it. Creates missing folders.
+/// this (read-only mounts, root, quotas), so the function creates and removes a temporary file beside `file`. Creates
+/// missing folders.
 void check_writable(const std::filesystem::path& file);
 
 }  // namespace weft

@@ -1,4 +1,4 @@
-// Structure of the threads of a cloth, as it is drawn.
+// Arrangement of the threads of a cloth, for drawing.
 #pragma once
 
 namespace weft {

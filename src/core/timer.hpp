@@ -48,8 +48,8 @@ struct StageTime {
 };
 
 /// Selects the CPU time that a Stopwatch adds to its stage. False: that of the calling thread alone, because other
-/// threads draw and encode while one simulates. True: that of all threads, to include the helper threads of parallel
-/// loops; correct only if the process does nothing else. Set it before any stage runs.
+/// threads draw and encode while this thread simulates. True: that of all threads, to include the helper threads of
+/// parallel loops; correct only if the process does nothing else. Set it before any stage runs.
 inline bool charge_all_threads = false;
 
 /// Adds the wall and CPU time of a scope to those of a stage.

@@ -2,8 +2,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# Adds a shared library. Links the objects of modules instead of the modules, which would add image libraries. If a
-# symbol is missing, the linker reports it. A program links only one of the two libraries: both have the physics.
+# Adds a shared library. Links the objects of modules instead of the modules, because the modules would add image
+# libraries. If a symbol is missing, the linker reports it. A program links only one of the two libraries: both have the
+# physics.
 function(weft_shared_library target name)
   cmake_parse_arguments(PARSE_ARGV 2 library "" "" "MODULES;SOURCES;LINKS")
   set(objects "")

@@ -13,7 +13,7 @@ namespace weft {
 struct Scene::Data {
   scene::Scene scene;
   std::string text;            ///< TOML without the changes
-  std::filesystem::path file;  ///< path as given
+  std::filesystem::path file;  ///< path as given by the caller
   std::vector<std::string> changes;
 };
 

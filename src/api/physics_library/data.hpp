@@ -24,20 +24,20 @@ struct Frame::Data {
   int number = 0;
   double time = 0;  ///< [s]
   Report report;
-  std::vector<std::vector<Vec3>> velocities;             ///< per cloth
-  std::vector<std::vector<float>> strains;               ///< per cloth
-  std::vector<std::vector<Vec3>> contact_forces;         ///< per cloth
-  std::vector<Object> objects;                           ///< views of the members above, and of `viewed` or `snapshot`
-  std::shared_ptr<const void> viewed;                    ///< positions and meshes; null for a simulation of a Scene
+  std::vector<std::vector<Vec3>> velocities;      ///< per cloth
+  std::vector<std::vector<float>> strains;        ///< per cloth
+  std::vector<std::vector<Vec3>> contact_forces;  ///< per cloth
+  std::vector<Object> objects;                    ///< views of the members above, and of `viewed` or `snapshot`
+  std::shared_ptr<const void> viewed;             ///< owns positions and meshes; null for a simulation of a Scene
   std::shared_ptr<const frame::FrameSnapshot> snapshot;  ///< for drawing; null for a simulation of a Model
 };
 
 struct Simulation::Impl {
-  /// Returns data with the objects of the current state; the data own what these objects view.
+  /// Returns data with the objects of the current state. The data own the arrays that these objects view.
   using MakeFrame = std::function<Frame::Data(const simulation::Simulation& now)>;
 
-  /// `heading_of_state`: first line of a saved state; see heading_of(). Throws std::invalid_argument if the options do
-  /// not fit.
+  /// `heading_of_state`: first line of a saved state; see heading_of(). If the options name no saved state, runs the
+  /// preroll. Throws std::invalid_argument if the options do not fit.
   Impl(std::unique_ptr<simulation::Simulation> of, std::string heading_of_state, const SimulationOptions& options,
        MakeFrame make_frame);
 
@@ -49,7 +49,7 @@ struct Simulation::Impl {
   std::unique_ptr<simulation::Simulation> simulation;
   std::string heading;
   std::vector<std::size_t> driven;  // indices of the driven bodies
-  std::vector<Vector> weather;      // gravity and wind of the last call of set_weather(); empty: it was not called
+  std::vector<Vector> weather;      // gravity and wind of the last call of set_weather(); empty: never called
   MakeFrame make_frame;
   std::optional<Frame> current;
 };
@@ -70,7 +70,8 @@ Report report_of(const simulation::FrameReport& report);
 /// Makes a frame. Adds views of velocities, strains and contact forces to its first objects, which are the cloths.
 Frame make_frame(Frame::Data data);
 
-/// First line of a saved state. It identifies the library version, the model or scene (`hash`) and the driven bodies.
+/// First line of a saved state. The line identifies the library version, the model or scene (`hash`) and the driven
+/// bodies.
 std::string heading_of(std::uint64_t hash, const SimulationOptions& options);
 
 /// Throws the exception of weft/errors.hpp that corresponds to `error`, or std::runtime_error.

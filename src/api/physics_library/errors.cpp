@@ -29,7 +29,7 @@ bool is_key(std::string_view text) {
 }
 
 // Splits a message such as "scenes/a.toml:12:8: cloth.band: expected ..." into file, line, column, key and text. Line
-// and column, or all before the text, may be missing.
+// and column may be missing, or all parts before the text.
 Mistake mistake_of(std::string_view text) {
   const std::string_view first_line = text.substr(0, text.find('\n'));
   std::size_t end = first_line.find(": ");

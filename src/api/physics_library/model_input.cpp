@@ -43,8 +43,8 @@ void check_range(double value, double low, double high, const std::string& objec
   if (!(value >= low && value <= high)) refuse(object, "{} from {:g} to {:g}, got {:g}", what, low, high, value);
 }
 
-// How many triangles may share an edge: one or two in a cloth, any number in a body, because meshes of other programs
-// often have such edges.
+// How many triangles may share an edge: one or two in a cloth; any number in a body, because meshes of other programs
+// often have edges with more than two triangles.
 enum class Edges { any, of_a_sheet };
 
 mesh::Mesh mesh_of(const Mesh& given, Edges edges, const std::string& object) {
@@ -93,8 +93,8 @@ void check_vertices_are_used(const mesh::Mesh& mesh, const std::string& object) 
   if (loose != used.end()) refuse(object, "vertices that triangles use, got number {} alone", loose - used.begin());
 }
 
-// Refuses vertices at the same place: they would touch at the start. Meshes of other programs often have two at a seam
-// of the texture.
+// Refuses vertices at the same place: they would touch at the start. Meshes of other programs often have two vertices
+// at the same place on a seam of the texture.
 void check_vertices_are_apart(const mesh::Mesh& mesh, const std::string& object) {
   std::map<std::array<double, 3>, std::size_t> places;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -199,7 +199,7 @@ std::size_t number_of(const std::string& name, const Objects& objects, const cha
   refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names, ", "), name);
 }
 
-// Adds a pin to its cloth, and its particles to `held`, which lists cloth and index of all pinned particles.
+// Adds a pin to its cloth, and the particles of the pin to `held`, the list of cloth and index of all pinned particles.
 void add_pin(const Pin& given, std::set<std::pair<std::string, int>>& held, model::Model& model) {
   model::Cloth& cloth = model.cloths[number_of(given.cloth, model.cloths, "cloth")];
   model::Pin& pin = cloth.pins.emplace_back();

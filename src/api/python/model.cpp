@@ -24,8 +24,8 @@ namespace {
 
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// The rows of an array, which must have as many columns as `Row` has numbers. Raises ValueError with the shape if the
-// array has another one.
+// The rows of an array, which must have as many columns as `Row` has numbers. Raises ValueError if the array has a
+// different shape or if an integer does not fit into the type of the numbers of `Row`.
 template <class Row, class Array>
 std::vector<Row> rows_of(const Array& array, const char* name) {
   constexpr std::size_t kColumns = std::tuple_size_v<Row>;
@@ -46,8 +46,8 @@ std::vector<Row> rows_of(const Array& array, const char* name) {
 
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-// Converts an array of integers. Raises ValueError with the type of the elements if they are no integers, such as those
-// of a mask.
+// Converts an array of integers. If the elements are no integers, for example the booleans of a mask, raises ValueError
+// with the type of the elements.
 Integers integers_of(const py::object& given, const char* name) {
   const py::array array = py::array::ensure(given);
   if (!array) throw py::value_error(fmt::format("{}: expected an array of integers", name));
@@ -169,7 +169,7 @@ void bind_model(py::module_& module) {
                     "What is simulated, made in memory. Positions are arrays n x 3 (m), triangles m x 3, "
                     "counter-clockwise seen from the front. Values are checked when a Simulation is made.")
       .def(py::init<>())
-      // copy.deepcopy() uses it, too.
+      // copy.deepcopy() uses the pickled form, too.
       .def(py::pickle([](const Model& model) { return py::bytes(library::bytes_of(model)); },
                       [](const py::bytes& bytes) { return library::model_of(bytes.cast<std::string>()); }))
       .def_readwrite("fps", &Model::fps, "Frames per second.")

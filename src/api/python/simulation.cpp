@@ -23,8 +23,8 @@
 namespace weft::python {
 namespace {
 
-// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too. Raises TypeError if TOML has no
-// such type, as for None or a set. `path`: key of the change, for messages.
+// Converts a value of a change to TOML text. Accepts scalars and arrays of numpy, too. Raises TypeError for values that
+// TOML cannot express, such as None or a set. `path`: key of the change, for messages.
 std::string toml_of(const py::handle& value, const std::string& path) {
   if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")(), path);
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
@@ -83,7 +83,7 @@ Scene change(const Scene& scene, const py::dict& changes) {
   return scene.with(texts);
 }
 
-/// An object of a frame. It also owns the frame, to which the data of the object belong.
+/// An object of a frame, together with the frame, which owns the data of the object.
 struct FrameObject {
   Frame frame;
   const Object* object;
@@ -261,7 +261,8 @@ void bind_frame(py::module_& module) {
 }
 
 /// A simulation that threads of Python share. All members are called with the global interpreter lock held; advance()
-/// releases it while it computes. So another thread, or a signal handler within advance(), may call members meanwhile.
+/// releases the lock while it computes. So another thread, or a signal handler within advance(), may call members while
+/// advance() computes.
 class GuardedSimulation {
  public:
   GuardedSimulation(const std::variant<Model, Scene>& of, const std::vector<std::string>& driven,
@@ -316,7 +317,7 @@ class GuardedSimulation {
   bool is_used_ = false;
 };
 
-// Makes Ctrl-C interrupt a frame. Only in the main thread does the interpreter run signal handlers.
+// Makes Ctrl-C interrupt a frame. The interpreter runs signal handlers only in the main thread.
 void check_signals() {
   using Clock = std::chrono::steady_clock;
   const auto main = py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>();

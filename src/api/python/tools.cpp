@@ -54,7 +54,7 @@ ErrorEstimate estimate_error(const Scene& public_scene, bool with_mesh_error) {
   });
 }
 
-/// The frames of a cache as Frame objects, without velocities, strains and contact forces.
+/// A frame cache on disk; gives its frames as Frame objects, without velocities, strains and contact forces.
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)

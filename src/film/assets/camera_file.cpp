@@ -121,7 +121,8 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);
-  // Without roll, the side vector is horizontal; also if the camera is upside down, which the sign of `up` shows.
+  // Without roll, the side vector is horizontal. It is also horizontal if the camera is upside down: then `up` points
+  // down.
   const double tilt = kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y())));
   constexpr double kSinglePrecision = 1e-6;
   camera.roll = std::max(camera.roll, up.y() < -kSinglePrecision ? 180 - tilt : tilt);

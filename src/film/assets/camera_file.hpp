@@ -15,14 +15,14 @@ struct LoadedCamera {
   std::vector<Vec3> positions;  ///< [m], in axes with y up
   std::vector<Vec3> forward;    ///< viewing directions, unit length
   double field_of_view = 0;     ///< vertical [degrees]
-  /// Largest roll of all samples [degrees]: the angle between the side vector of the camera and the horizontal, or 180
-  /// minus this angle if the camera is upside down.
+  /// Largest roll of all samples [degrees]. The roll is the angle between the side vector of the camera and the
+  /// horizontal plane or, if the camera is upside down, 180 minus this angle.
   double roll = 0;
 };
 
 /// Reads the camera on the node `object` of a glTF file (empty: the only camera), with the first animation that moves
-/// it. `where` names the scene entry, such as "scenes/a.toml:12:8: camera.shot". Throws Error(asset_unreadable) with
-/// `where`, the file and the reason.
+/// this node or one above it. `where` names the scene entry, such as "scenes/a.toml:12:8: camera.shot". Throws
+/// Error(asset_unreadable) with `where`, the file and the reason.
 LoadedCamera load_camera(const std::filesystem::path& file, const std::string& object, const std::string& where);
 
 }  // namespace weft::assets

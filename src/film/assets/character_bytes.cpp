@@ -38,7 +38,7 @@ void serialize(Archive& archive, character::Coloring& coloring) {
   serialize_plain(archive, coloring.uv);
 }
 
-/// One list of the members for writing and reading, so that both use the same order.
+/// Writes or reads all members, depending on the archive: one function, so that both use the same order.
 template <class Archive>
 void serialize(Archive& archive, ReadCharacter& read) {
   character::Character& character = read.character;

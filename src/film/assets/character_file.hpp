@@ -12,9 +12,10 @@
 
 namespace weft::assets {
 
-/// How to interpret the lengths and axes of a file.
+/// How to interpret the lengths and axes of a file. If `up` is as_file, the up axis is the one that the file states,
+/// else y.
 struct FileAxes {
-  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, else 1
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
 };
@@ -22,7 +23,7 @@ struct FileAxes {
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
   std::vector<std::string> warnings;  ///< each names scene entry, file, and mesh, bone or clip
-  double scale = 1;                   ///< metres per unit of the file that were applied
+  double scale = 1;                   ///< applied scale: metres per unit of the file
 };
 
 /// Reads skeleton, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada, X, B3D, BVH and
@@ -31,7 +32,8 @@ struct LoadedCharacter {
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 
-/// Reads only skeleton and clips, at least one clip. Arguments and exceptions are those of load_character().
+/// Reads only skeleton and clips. Arguments and exceptions are those of load_character(); also throws if there is no
+/// clip.
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
 
 /// Whether the extension of a file is .bvh, in upper or lower case.

@@ -131,7 +131,8 @@ class CharacterReader {
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
-      // In FBX and glTF, a mesh can have the name of a bone: a name means the first node without a mesh that has it.
+      // In FBX and glTF, a mesh can have the name of a bone: a name refers to the first node of this name that has no
+      // mesh.
       const auto [named, is_new] = targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
       if (!is_new && nodes_[named->second]->mNumMeshes > 0 && node->mNumMeshes == 0)
         named->second = static_cast<Index>(nodes_.size());
@@ -396,8 +397,8 @@ class CharacterReader {
     return uv.allFinite() ? placed_uv(*scene_.mMaterials[mesh.mMaterialIndex], uv) : Vec2(Vec2::Zero());
   }
 
-  /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged,
-  /// which has the same list of triangles.
+  /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged;
+  /// its list of triangles is the same.
   void color_faces(const Soup& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
@@ -445,7 +446,7 @@ class CharacterReader {
   std::vector<Affine> globals_;  // per node: transform to world at rest
   Soup soup_;
   std::vector<Weights> weights_;  // per vertex of the soup
-  std::vector<Index> materials_;  // per vertex of the soup; -1 if the file has none
+  std::vector<Index> materials_;  // per vertex of the soup; −1: no material
   std::vector<Vec2> uv_;          // per vertex of the soup
   std::vector<Morph> morphs_;
   std::set<const aiMesh*> skinned_;  // skinned meshes that have been read

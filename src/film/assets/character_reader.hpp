@@ -16,16 +16,16 @@ namespace weft::assets {
 /// A character in the unit and axes of its file.
 struct ReadCharacter {
   character::Character character;
-  std::optional<double> metres_per_unit;  ///< as the file states
-  std::optional<int> up;                  ///< up axis as the file states: 0 x, 1 y, 2 z
+  std::optional<double> metres_per_unit;  ///< as the file states; absent: not stated
+  std::optional<int> up;                  ///< up axis that the file states: 0 x, 1 y, 2 z; absent: not stated
   std::vector<std::string> warnings;      ///< about repaired or skipped parts, with their names
 };
 
-/// Selects meshes of a file for a character, by their names or those of their nodes.
+/// Selects meshes of a file for a character, by the names of meshes or of their nodes.
 struct MeshChoice {
   std::vector<std::string> only;       ///< meshes to use; empty: all
   std::vector<std::string> without;    ///< meshes to leave out
-  std::vector<std::string> elsewhere;  ///< meshes that cloths use, also left out; may contain unknown names
+  std::vector<std::string> elsewhere;  ///< meshes that cloths use, also left out; unknown names are no error
 };
 
 /// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share one list of bones. A

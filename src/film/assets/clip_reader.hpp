@@ -13,7 +13,7 @@ namespace weft::assets {
 
 /// The objects that channels of animations name.
 struct ClipTargets {
-  std::map<std::string, Index> nodes;
+  std::map<std::string, Index> nodes;  ///< by name: index of the node
   /// The morph targets of one mesh: first index and count. `morphs`: by the names of the mesh and of its nodes.
   struct Morphs {
     Index first = 0, count = 0;
@@ -21,9 +21,9 @@ struct ClipTargets {
   std::multimap<std::string, Morphs> morphs;
 };
 
-/// Converts an animation. Warns of skipped channels (those of unknown objects, and second ones of a node), and of keys
-/// past the end of the clip, to which the clip is extended. Throws std::runtime_error that names clip and channel if
-/// key times decrease or exceed a day, or if numbers are not finite.
+/// Converts an animation. Skips channels of unknown objects, and further channels of a node that already has one, with
+/// a warning. If keys lie past the end of the clip, extends the clip to the last key, with a warning. Throws
+/// std::runtime_error that names clip and channel if key times decrease or exceed a day, or if numbers are not finite.
 character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets, std::vector<std::string>& warnings);
 
 }  // namespace weft::assets

@@ -32,7 +32,8 @@ constexpr std::string_view kStart = "glTF";
 // Binary layout: "glTF", version, length; then chunks: length, "JSON" or "BIN\0", content.
 constexpr std::size_t kHeader = 12, kChunkHeader = 8;
 
-/// Parts of names of extensions that a file may require: they change only the appearance, or are supported.
+/// A required extension whose name contains one of these texts is accepted: it changes only the appearance, or is
+/// supported.
 constexpr std::array kAllowedExtensions = {"_materials_",           "_texture_", "_technique", "_lights_", "_xmp",
                                            "KHR_mesh_quantization", "VRM"};
 
@@ -163,8 +164,8 @@ class Rewriter {
     return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
   }
 
-  /// Replaces accessors of integers by new accessors of floats. Joints and colours keep theirs, since assimp reads
-  /// joints as integers and converts colours.
+  /// Replaces accessors of integers by new accessors of floats. Joints and colours keep their integers, since assimp
+  /// reads joints as integers and converts colours.
   void use_floats(Json& accessors) {
     if (!accessors.is_object()) return;
     for (auto& [name, accessor] : accessors.items()) {
@@ -294,7 +295,7 @@ class Rewriter {
   std::string own_data_;
   const std::filesystem::path& file_;
   std::map<int, std::string> buffers_;
-  std::map<int, int> new_accessors_;  // accessor of floats by that of integers
+  std::map<int, int> new_accessors_;  // accessor of integers -> its accessor of floats
   std::string floats_;
 };
 

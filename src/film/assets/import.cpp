@@ -40,7 +40,7 @@ class RegularFiles : public Assimp::DefaultIOSystem {
     if (!text) return DefaultIOSystem::Open(found.c_str(), mode);
     auto* bytes = new std::uint8_t[text->size()];
     std::ranges::copy(*text, bytes);
-    return new Assimp::MemoryIOStream(bytes, text->size(), true);  // it owns the bytes
+    return new Assimp::MemoryIOStream(bytes, text->size(), true);  // the stream owns the bytes
   }
 
  private:

@@ -13,7 +13,7 @@ class Importer;
 
 namespace weft::assets {
 
-/// End of messages about a part of a file with non-finite numbers.
+/// End of a message about a part of a file that has non-finite numbers.
 inline constexpr const char* kNotFinite = "has infinite or undefined numbers; export the file again";
 
 /// Imports a file; `importer` owns the result. `steps`: flags of assimp for post-processing. Throws std::runtime_error

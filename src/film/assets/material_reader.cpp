@@ -141,7 +141,7 @@ bool is_cutout(const aiMaterial& material) {
 /// Pictures that were skipped for the same reason.
 struct LeftOut {
   std::string reason;
-  std::vector<std::string> materials, pictures;  // names; pictures may have empty names
+  std::vector<std::string> materials, pictures;  // names; those of pictures may be empty
 };
 
 /// Text of the first three names, quoted, and of the number of others.
@@ -209,7 +209,7 @@ std::vector<Material> read_materials(const aiScene& scene, const fs::path& file,
       same->materials.push_back(material.name);
       same->pictures.emplace_back(texture_path.C_Str());
     } else if (*type == aiTextureType_DIFFUSE) {
-      // Ignore the colour: files often have a dark or black one in addition to a picture that replaces it.
+      // Ignore the colour: files often have a dark or black colour in addition to a picture that replaces it.
       material.color = Vec3::Ones();
     }
   }

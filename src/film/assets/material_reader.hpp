@@ -11,13 +11,13 @@
 
 namespace weft::assets {
 
-/// Reads base colour and picture of each material. A picture is embedded, or it is a file: it is searched at the stored
-/// path, beside `file`, and in picture folders (such as `textures`) beside `file` or one folder above. Skips unusable
-/// pictures with a warning.
+/// Reads base colour and picture of each material. A picture is embedded in `file`, or a file of its own. The latter is
+/// searched at the stored path, beside `file`, and in picture folders (such as `textures`) beside `file` or one folder
+/// above. Skips unusable pictures with a warning.
 std::vector<character::Material> read_materials(const aiScene& scene, const std::filesystem::path& file,
                                                 std::vector<std::string>& warnings);
 
-/// Index of the texture coordinates that the picture of a material uses; a mesh can have several sets.
+/// Index of the set of texture coordinates that the picture of a material uses.
 unsigned uv_channel(const aiMaterial& material);
 
 /// Applies the texture transform of glTF (KHR_texture_transform) to texture coordinates, v upward.

@@ -240,7 +240,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// Removes third triangles that cut() cannot detach, since other triangles connect them to the two joined ones.
+/// At edges of more than two triangles, removes those that cut() cannot detach, since other triangles connect them to
+/// the two joined triangles.
 void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;

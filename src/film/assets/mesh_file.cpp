@@ -20,7 +20,7 @@
 namespace weft::assets {
 namespace {
 
-/// For each vertex, the first one at exactly the same position.
+/// For each vertex, the first vertex at exactly the same position.
 std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   const auto key = [&](Index i) {
     const Vec3& x = positions[i];
@@ -38,8 +38,9 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   return first;
 }
 
-/// Merges vertices at exactly the same position (0 and −0 are equal), drops unused ones, and orders them by their first
-/// use in faces. `joined` counts merged copies. Returns the new index of each vertex, or −1.
+/// Merges vertices at exactly the same position (0 and −0 are equal), drops vertices that no face uses, and orders the
+/// others by their first use in faces. Adds the number of merged copies to `joined`. Returns the new index of each
+/// vertex; −1: dropped.
 std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   const std::vector<Index> first = first_at_same_place(soup.positions);
   std::vector<Index> renamed(first.size(), -1);
@@ -62,7 +63,7 @@ std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   return renamed;
 }
 
-/// Copies colours and groups of vertices. `renamed`: new index of each vertex, or −1.
+/// Copies colours and groups of vertices. `renamed`: new index of each vertex; −1: dropped.
 void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
   const std::size_t count = result.mesh.positions.size();
   for (std::size_t v = 0; v < renamed.size(); ++v) {
@@ -81,7 +82,7 @@ void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, Loade
   }
 }
 
-/// UVs of the triangles of make_topology(). `soup`: with vertices not yet merged, which has the same list of triangles.
+/// UVs of the triangles of make_topology(). `soup`: before its vertices are merged; its list of triangles is the same.
 std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   std::vector<std::array<Vec2, 3>> corners;
   if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;

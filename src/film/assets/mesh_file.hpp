@@ -16,21 +16,22 @@ namespace weft::assets {
 
 /// A mesh, and counts of the repairs that were made while reading it.
 struct LoadedMesh {
-  mesh::Mesh mesh;  ///< in metres, without uv; made of quads if the file has nothing else
+  mesh::Mesh mesh;  ///< in metres, without uv; made of quads if the file has only quads, all with an area
   /// Texture coordinates of the corners of each triangle, v upward; they can differ between triangles at one vertex.
-  /// NaN for meshes of the file without them; empty if none has any.
+  /// NaN for meshes of the file without texture coordinates; empty if no mesh has them.
   std::vector<std::array<Vec2, 3>> uv;
-  std::vector<Vec3> colors;  ///< per vertex, channels 0 to 1; 0 for meshes without them; empty: none has any
+  /// Per vertex, channels 0 to 1. 0 for meshes of the file without colours; empty if no mesh has them.
+  std::vector<Vec3> colors;
   /// By vertex group or bone of the file: the weight of each vertex, from 0 to 1. A merged vertex keeps the largest
   /// weight and the largest value of each colour channel.
   std::map<std::string, std::vector<double>> groups;
   std::size_t removed_triangles = 0;  ///< triangles without area
   std::size_t lost_vertices = 0;      ///< vertices that only removed triangles use
-  std::size_t joined_vertices = 0;    ///< merged copies with equal positions, made for different UVs or normals
+  std::size_t joined_vertices = 0;    ///< copies of a vertex (for other UVs or normals) that were merged
 };
 
-/// How to interpret the lengths and axes of a mesh file. If the file (glTF, FBX, Collada) or the scene states the up
-/// axis of the file, the mesh is rotated to the axes of the scene; else `default_up` is the up axis.
+/// How to interpret the lengths and axes of a mesh file. The up axis of the file is `up` or, if that is as_file, the
+/// axis that the file states (glTF, FBX, Collada), else `default_up`. The mesh is rotated to the axes of the scene.
 struct MeshAxes {
   double scale = 1;  ///< factor on all lengths
   scene::FileUp up = scene::FileUp::as_file;
@@ -38,11 +39,11 @@ struct MeshAxes {
   scene::FileUp default_up = scene::FileUp::as_file;  ///< as_file: the up axis of the scene
 };
 
-/// Reads all surfaces of a file (OBJ, PLY, STL, glTF and other formats of assimp), or those named `object`, as one
-/// mesh. Applies the transforms of their nodes; an animated file is in its bind pose. Ignores points and lines.
-/// Positions are in metres if the file states its unit (FBX, Collada). Merges equal positions, so that a closed body is
-/// watertight. `where` names the scene entry, such as "scenes/a.toml:12:8: obstacle.chair". Throws
-/// Error(asset_unreadable) with `where`, the file and the reason.
+/// Reads the surfaces of a file (OBJ, PLY, STL, glTF and other formats of assimp) as one mesh: those of the mesh or
+/// node `object`, or all if it is empty. Applies the transforms of nodes. A skinned mesh keeps its bind pose, placed by
+/// the bone with the largest sum of weights. Ignores points and lines. Positions are in metres if the file states its
+/// unit (FBX, Collada). Merges equal positions, so that a closed body is watertight. `where` names the scene entry,
+/// such as "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with `where`, the file and the reason.
 LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, const std::string& where,
                      const std::string& object = {});
 
@@ -53,8 +54,8 @@ struct Welded {
 };
 
 /// Merges border vertices that nearly coincide, as in files that keep panels separate. Two vertices are merged at their
-/// mean if their distance is below `ratio` times the shortest border edge at each of them. If merging would create an
-/// edge of three triangles, or of two that face opposite ways, changes nothing.
+/// mean if their distance is at most `ratio` times the shortest border edge at either of them. If merging would create
+/// an edge of three triangles, or of two that face opposite ways, changes nothing.
 Welded weld_borders(LoadedMesh& loaded, double ratio);
 
 }  // namespace weft::assets

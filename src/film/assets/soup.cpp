@@ -112,10 +112,10 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
   return nodes;
 }
 
-/// Transform from mesh to world. For a mesh without bones, it is that of its node. Otherwise, it is (bone's node to
-/// world) × (bone offset) of the bone with the largest sum of weights, without bones whose transform is nearly
-/// singular. Characters use the same rule (character_reader.cpp), because glTF places skinned meshes by their bones,
-/// whichever node refers to them.
+/// Transform from mesh to world. For a mesh without usable bones, it is the transform of the mesh's node. Otherwise, it
+/// is (bone's node to world) × (bone offset) of the bone with the largest sum of weights. Bones whose transform is
+/// nearly singular are not usable. Characters use the same rule (character_reader.cpp), because glTF places skinned
+/// meshes by their bones, whichever node refers to them.
 Transform placement_of(const aiMesh& part, const Transform& of_node,
                        const std::unordered_map<std::string, Transform>& placed) {
   Transform placing = of_node;
@@ -173,7 +173,8 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Soup soup;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
-  std::unordered_map<std::string, Transform> placed;  // by name; of several nodes, the first without a mesh
+  // Transforms of nodes by name. Of several nodes with one name, the first without a mesh counts, else the first.
+  std::unordered_map<std::string, Transform> placed;
   for (const bool has_mesh : {false, true})
     for (const auto& [node, to_world] : nodes)
       if ((node->mNumMeshes > 0) == has_mesh) placed.emplace(node->mName.C_Str(), to_world);

@@ -27,12 +27,13 @@ struct Soup {
   std::vector<std::string> group_names;
   std::vector<mesh::Triangle> triangles;
   std::vector<mesh::Quad> quads;
-  /// The faces other than quads, before their division into triangles: for each, its number of corners, then these.
+  /// The faces other than quads, before their division into triangles: for each face, the number of its corners, then
+  /// their vertex indices.
   std::vector<Index> polygons;
-  std::vector<int> up;  ///< one entry, the up axis of the file or its format: 0 x, 1 y, 2 z; empty: not stated
+  std::vector<int> up;  ///< one entry: up axis of the file or its format (0 x, 1 y, 2 z); empty: not stated
 };
 
-/// Reads the meshes that `object` names by their own name or that of their node (empty: all), transformed to the world.
+/// Reads the meshes whose own name or whose node's name is `object` (empty: all meshes), transformed to the world.
 /// Ignores points and lines. Throws std::runtime_error with the message of assimp or, if no mesh has the name, with the
 /// existing names. Damaged files can crash assimp or block it for ever: call this only through run_isolated().
 Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
@@ -42,7 +43,7 @@ void append_face(Soup& soup, std::span<const Index> corners);
 
 /// The surface of a soup: quads if the soup has only quads and both halves of each have an area, else triangles.
 /// Triangles without area (a repeated corner, or all corners on a line) are removed and counted, unless they have an
-/// area at any of `later_positions`.
+/// area at one of `later_positions` (positions in later files of a sequence).
 mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions = {});
 

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
 
 /// Refuses two kinds of PLY files: those whose header has no end, which block assimp 5.2 until the time limit, and
-/// those with triangle strips, of which assimp reads only one triangle each.
+/// those with triangle strips, since assimp reads only one triangle of each strip.
 void check_ply_header(const Source& source) {
   constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
   const std::string start = read_start(source.file, kHeaderBytes);

@@ -14,7 +14,7 @@ namespace weft::assets {
 /// Maximum file size [bytes]. Larger files are scans, which are too detailed for collision in every frame.
 inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 
-/// Limit of coordinates [m]. A file with a larger one counts as damaged: no scene is a thousand kilometres wide.
+/// Limit of coordinates [m]. A file with a larger coordinate counts as damaged: no scene is a thousand kilometres wide.
 inline constexpr double kMaxCoordinate = 1e6;
 
 /// A file, and the texts that name it in messages.
@@ -28,7 +28,8 @@ struct Source {
   /// The text that fail() throws; also used for warnings.
   std::string describe(const std::string& what) const;
 
-  /// Throws like fail() if the file is missing, empty, too large, or would block assimp for ever.
+  /// Throws like fail() if the file is missing, no regular file, empty, too large, or a PLY file that assimp misreads
+  /// or that blocks assimp for ever.
   void check() const;
   /// Calls check(), then `read` in a child process, and returns its result. If the child fails or exceeds its limits on
   /// time and memory, throws like fail() with the reason.

@@ -19,7 +19,8 @@ namespace {
 template <class Archive>
 constexpr bool kReading = std::is_same_v<Archive, ByteReader>;
 
-// Serialises an enumeration or boolean as one byte. Throws if the byte exceeds `last`, the largest value of the type.
+// Serialises an enumeration or boolean as one byte. Throws std::runtime_error if the byte exceeds `last`, the largest
+// value of the type.
 template <class Archive, class Value>
 void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
@@ -40,9 +41,9 @@ void serialize_flag(Archive& archive, bool& flag) {
 // must be finite. For comparison: an object that falls for an hour is 6.4e7 m away.
 constexpr double kFarthest = 1e9;
 
-// Throws if a number is not finite or its magnitude exceeds kFarthest. All numbers are checked, also angles, fractions
-// and intensities, with two exceptions: (u, v) and heat need only be finite, and the numbers of the report are not
-// checked.
+// Throws if a number is not finite or its magnitude exceeds kFarthest. Reading checks all floating-point numbers this
+// way, also angles, fractions and intensities, with two exceptions: (u, v) and heat need only be finite, and the
+// numbers of the report are not checked.
 void check_finite(double number) {
   if (!(std::abs(number) <= kFarthest))
     throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
@@ -243,8 +244,8 @@ void serialize(Archive& archive, frame::Light& light) {
   serialize_finite(archive, light.softness);
 }
 
-// The frame and time of the report are not stored here, since the snapshot has them. All members are named, so that a
-// new member causes a compile error. Then serialise the new member and raise kFormatVersion.
+// The frame and time of the report are not stored here: Label has the frame, FrameHead the time. All members are named,
+// so that a new member of FrameReport causes a compile error; serialise it and raise kFormatVersion.
 template <class Archive>
 void serialize(Archive& archive, simulation::FrameReport& report) {
   auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,

@@ -5,8 +5,8 @@
 //   surfaces  the stage (surroundings); list of textures; list of surfaces; for each surface the positions in frame 0
 //             (count u64, then byte planes, see below)
 //   frame     time; list of cameras; list of lights; the report; for each surface a byte, 0 if its positions are those
-//             of frame 0, else 1, followed by the positions (byte planes); then a byte, 0 if it has no values of the
-//             heat map, else 1, followed by these values (byte planes of f32)
+//             of frame 0, else 1, followed by the positions (byte planes); then a byte, 0 if the surface has no values
+//             of the heat map, else 1, followed by these values (byte planes of f32)
 //   state     bytes of Simulation::save
 //
 // The serialize() functions in codec.cpp define the members of each part and their order. An optional value is stored

@@ -25,7 +25,7 @@ enum class Kind : std::uint32_t { surfaces = 1, frame = 2, state = 3 };
 
 struct Label {
   Kind kind = Kind::surfaces;
-  std::int32_t frame = 0;  ///< number; 0 for surfaces
+  std::int32_t frame = 0;  ///< number; 0 for surfaces; < 0: state of a preroll
   std::uint64_t scene_hash = 0;
 };
 
@@ -37,7 +37,7 @@ struct Content {
 /// The bytes of a file: the header and the compressed payload.
 std::string pack(const Label& label, std::string_view payload);
 
-/// Decompresses a payload. First checks what verify() checks and the size of the payload, but neither the label nor the
+/// Decompresses a payload. Checks what verify() checks, and the size of the payload; does not check the label or the
 /// content of the payload. Throws std::runtime_error with the defect.
 Content unpack(std::string_view bytes);
 

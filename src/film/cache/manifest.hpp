@@ -15,7 +15,7 @@ struct Manifest {
   std::string scene;  ///< name of the scene
   std::string title;  ///< may be empty
   std::uint64_t scene_hash = 0;
-  std::uint64_t simulation_hash = 0;  ///< hash of the inputs of the simulation; scenes with equal hashes share frames
+  std::uint64_t simulation_hash = 0;  ///< of the simulation's inputs; caches of one hash share frames; 0: unknown
   std::vector<std::uint64_t> former_hashes;  ///< scene hashes of earlier versions of the scene with the same simulation
   double fps = 25;
   int frame_count = 1;               ///< in the scene; the cache may contain fewer
@@ -30,8 +30,8 @@ struct Manifest {
 
 std::string manifest_text(const Manifest& manifest);
 
-/// Throws std::runtime_error with the defect, or Error(asset_unreadable) that names `file` if another version of Weft
-/// has made it.
+/// Throws std::runtime_error with the defect. If another version of Weft has made the manifest, throws
+/// Error(asset_unreadable) that names `file`.
 Manifest parse_manifest(std::string_view text, const std::string& file = "manifest.json");
 
 }  // namespace weft::cache

@@ -18,12 +18,13 @@ struct SolverState {
   std::string bytes;
 };
 
-/// Whose looks (colours, cameras, lights) of frames the reader accepts: only those of the present scene, or also those
-/// of its earlier versions (Manifest::former_hashes). Frames with earlier looks exist until a run with --resume
-/// replaces them.
+/// Which files the reader accepts: only those with the looks (colours, cameras, lights) of the present scene, or also
+/// those with the looks of earlier versions of the scene (Manifest::former_hashes), which exist until a run with
+/// --resume replaces them.
 enum class Looks { of_scene, any };
 
-/// All functions are thread-safe, and throw Error(asset_unreadable) with the file name and the defect.
+/// All functions are thread-safe. Functions that read files throw Error(asset_unreadable) with the file name and the
+/// defect; folder(), manifest() and has() do not throw.
 class Reader {
  public:
   /// Reads the data that all frames share. A cache without frames is valid.

@@ -38,7 +38,8 @@ class Lock {
   int descriptor_ = -1;
 };
 
-/// All functions throw Error(output_failed); add() also throws Error(asset_unreadable) if it cannot read back frame 0.
+/// If a file cannot be written, functions throw Error(output_failed). If add() cannot read back frame 0, it throws
+/// Error(asset_unreadable).
 class Writer {
  public:
   /// Writes the manifest and the scene. The folder must be empty, or a cache of the same simulation.
@@ -48,7 +49,7 @@ class Writer {
   /// existed when the Writer was created. Throws Error(output_failed) if another program has created the file since.
   void add(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report);
 
-  /// Replaces the stored state by the state of `frame`. All frames up to `frame` must have been added.
+  /// Replaces the stored state by the state of `frame`. All frames up to `frame` must be in the cache.
   void save_state(int frame, std::string_view bytes);
 
   /// Size of all added frames [bytes]; if frame 0 is one of them, with the data that all frames share.

@@ -58,8 +58,8 @@ class AnatomyFinder {
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // Replaces the vector to the left if left and right are unknown. It depends on `up` only, so that two skeletons get
-    // the same vector.
+    // Replaces the vector to the left of the body if hip and shoulder joints are missing. It depends on `up` only, so
+    // that two skeletons get the same vector.
     level_ = up.unitOrthogonal();
   }
 
@@ -143,7 +143,7 @@ class AnatomyFinder {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[joint_index(joint)] - p.places[joint_index(below)]);
-      // Control nodes of a rig may lie above the joint that they move: then their bone points down, and the direction
+      // Some rigs have control nodes above the joint that they move. The bone of such a node points down; the direction
       // of the trunk replaces it.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;

@@ -23,8 +23,8 @@ struct Rig {
 struct Posture {
   std::array<Vec3, kJointCount> places;
   std::array<Quat, kJointCount> rotations;
-  std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes; that of the joint if it has none
-  std::array<Vec3, 2> knuckles;        ///< vector from the index to the little finger, left and right; zero if unknown
+  std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes; position of the joint if it has no child
+  std::array<Vec3, 2> knuckles;        ///< of the left and the right hand: from index to little finger; zero: unknown
 };
 
 /// Directions and lengths of the limbs and the trunk of a rig, in given postures.
@@ -36,20 +36,21 @@ class Skeleton {
   Posture at(const Pose& pose) const;
 
   /// Vector from a joint to the next existing joint, outward along a limb or upward along the trunk. If there is no
-  /// next joint: vector to the mean position of its child nodes; zero if it has none.
+  /// next joint: vector to the mean position of the child nodes of `joint`; zero if it has no child.
   Vec3 bone(const Posture& posture, Joint joint) const;
-  /// Vector from the right hip joint to the left one; zero if one is missing.
+  /// Vector from the right upper-leg joint to the left one; zero if one is missing.
   Vec3 across_hips(const Posture& posture) const;
-  /// Likewise between the upper-arm joints; if one of these is missing, between the shoulder joints.
+  /// Vector from the right upper-arm joint to the left one. If one is missing: from the right shoulder joint to the
+  /// left one; zero if one of these is missing, too.
   Vec3 across_shoulders(const Posture& posture) const;
-  /// Midpoint between the hip joints; the position of the hips if one of them is missing.
+  /// Midpoint between the upper-leg joints; position of Joint::hips if one of them is missing.
   Vec3 middle_of_hips(const Posture& posture) const;
   /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the neck,
   /// else the head, the chest or the spine. If all of these are missing: bone() of the hips.
   Vec3 trunk(const Posture& posture) const;
-  /// Mean length of the complete legs, thigh plus shin; 0 if none is complete.
+  /// Mean length (thigh plus shin) of the legs that have hip, knee and ankle joints; 0 if there is no such leg.
   double leg_length(const Posture& posture) const;
-  /// Mean length of the arms, upper arm plus forearm; 0 if an arm is incomplete.
+  /// Mean length of the arms, upper arm plus forearm; 0 if an upper-arm, elbow or hand joint is missing.
   double arm_length(const Posture& posture) const;
 
  private:
@@ -72,8 +73,8 @@ using Flat = std::array<double, 2>;
 /// - Feet and toes: z up when they are flat on the floor, x toward the toes.
 /// Only positions of joints determine the axes in the world; the rest pose of a file and the pose with zero angles have
 /// no effect. Each axis is a mean over the postures that determine it: upright postures for the trunk, all postures for
-/// a hinge (weighted by its bend), postures with a flat foot for the foot. If no posture determines an axis, it is
-/// guessed from neighbouring joints. `flat`: one entry per posture. `up`: unit vector.
+/// a hinge (weighted by its bend), postures with a flat foot for the foot. If postures determine an axis too weakly, a
+/// guess from neighbouring joints complements it. `flat`: one entry per posture. `up`: unit vector.
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
                                            std::span<const Flat> flat, const Vec3& up);
 

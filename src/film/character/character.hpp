@@ -1,5 +1,5 @@
-// A body: a skeleton of bones, the skin (mesh) that it moves, and motion clips. Characters from files and the built-in
-// mannequin share these types.
+// A body: a skeleton of bones, the skin (a mesh that the skeleton moves), and motion clips. Characters from files and
+// the built-in mannequin share these types.
 #pragma once
 
 #include <array>
@@ -70,7 +70,7 @@ struct Clip {
 
 /// A surface material: its colour and its picture (texture).
 struct Material {
-  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< beyond its edge; once: transparent
+  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< picture beyond its edge; once: transparent
   std::string name;
   Vec3 color{0.8, 0.8, 0.8};         ///< linear RGB; multiplied with the picture
   std::string picture;               ///< content of a PNG, JPEG or TGA file; empty: none
@@ -85,7 +85,7 @@ struct Coloring {
   std::vector<Material> materials;
   std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
-  bool covers_look = false;                 ///< whether the scene's colour shows where pictures are transparent
+  bool covers_look = false;                 ///< whether the colour from the scene shows where pictures are transparent
 };
 
 /// Lengths are in metres; the up axis is that of the scene.

@@ -83,7 +83,7 @@ std::vector<std::vector<Segment>> segments_of(const Character& character, const 
   return segments;
 }
 
-/// Which pairs of bones lie on one chain: one bone is below the other.
+/// Stores which pairs of bones lie on one chain: a bone and a bone below it.
 class BoneChains {
  public:
   explicit BoneChains(const Character& character) : count_(character.bones.size()), on_one_chain_(count_ * count_, 0) {

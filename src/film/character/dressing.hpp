@@ -13,14 +13,15 @@ namespace weft::character {
 /// vector.
 Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up);
 
-/// For each vertex, the point inside the body from which it grows: the mean of the nearest points on the bones that
-/// influence it, weighted by the influences. If a bone branches, its branches are weighted by the inverse fourth power
-/// of their distance. A vertex that two limbs influence equally, as between the legs, grows from the mean position of
-/// the joints of its bones.
+/// For each vertex, the point inside the body from which the vertex grows: the mean of the nearest points on the bones
+/// that influence the vertex, weighted by the influences. A bone that branches has one nearest point per branch,
+/// weighted by the inverse fourth power of the distance from the vertex. A vertex that two limbs influence equally, as
+/// between the legs, grows from the mean position of the joints of its bones.
 std::vector<Vec3> growth_start_positions(const Character& character, const Pose& pose);
 
 /// Distance of the skin of a growing body from its bones, as a fraction of the final distance. `t`: time since the
-/// start of growth, which takes `duration` [s]. Rises smoothly from 0.1, which leaves clearance in a sleeve, to 1.
+/// start of growth; `duration`: of growth [s]. The fraction rises smoothly from 0.1, at which an arm fits into a sleeve
+/// with clearance, to 1.
 double grown(double t, double duration);
 
 }  // namespace weft::character

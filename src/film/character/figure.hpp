@@ -6,8 +6,8 @@
 
 namespace weft::character {
 
-/// Makes the colours for the mesh of a mannequin at rest, z up. Pictures are projected along an axis, so that their
-/// outlines are equally sharp on coarse and fine triangles. The mesh does not change.
+/// Makes the colours for the mesh of a mannequin at rest, z up, as pictures that are projected along the x or y axis.
+/// Unlike colours of vertices, pictures have sharp outlines on coarse triangles, too.
 Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build);
 
 }  // namespace weft::character

@@ -18,7 +18,7 @@ constexpr double kMaxFlatAnkleHeight = 0.03;
 constexpr double kSpeedWindow = 1.0 / 30;
 /// Shorter contacts are ignored [s].
 constexpr double kMinContactTime = 0.08;
-/// Movement of the ball that ends a contact and begins the next one, as in shuffling [leg lengths].
+/// If the ball moves farther than this during a contact, as in shuffling, a new contact begins [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
 /// A histogram counts the heights of slow feet. The floor is its lowest peak that is at least this fraction of its
 /// highest peak. Initial poses of recordings and outliers lie below the floor, stairs and chairs above it.

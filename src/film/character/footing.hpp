@@ -22,8 +22,9 @@ struct Footsteps {
 };
 
 /// Finds the contacts of a motion from the speed and the height of the toe joints, or of the ankles if feet have no
-/// toes. `times`: of the postures, increasing [s]. `up`: unit vector. Without a complete leg or without steps, there
-/// are no contacts, and ankle_height is the height of the lowest ankle (infinite without feet).
+/// toes. `times`: of the postures, increasing [s]. `up`: unit vector. If no leg has hip, knee and ankle joints, or if
+/// no foot is ever in contact, `contacts` are empty, and ankle_height is the height of the lowest ankle (infinite
+/// without feet).
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
@@ -37,16 +38,17 @@ struct Leg {
 /// The left and the right leg.
 using Legs = std::array<Leg, 2>;
 
-/// Corrections at one key that keep the feet in contact in place.
+/// Corrections at one key. They keep feet that are in contact in place.
 struct Stance {
-  double rise = 0;                                          ///< of the hips [m]
+  double rise = 0;                                          ///< of the hips [m]; < 0: down
   std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
   std::array<bool, 2> in_contact{};
 };
 
 /// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Within 0.15 s before
 /// and after a contact, the foot blends into the motion; no foot goes below the floor. The hips move down if a leg is
-/// too short to reach its shifted ankle, and up if a knee would bend too far. `floor`: height of the sole at rest [m].
+/// too short to reach its shifted ankle, and up if a knee would bend too far. `floor`: height of the floor, on which
+/// the body stands at rest [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 

@@ -9,7 +9,8 @@
 namespace weft::character {
 namespace {
 
-/// On all fours: maximum of the mean |sine| of the angle between trunk and horizontal; 0.5 is 30°.
+/// A motion is on all fours only if the mean |sine| of the angle between trunk and horizontal is at most this; 0.5 is
+/// 30°.
 constexpr double kMaxTrunkSlope = 0.5;
 
 /// A hand is on the floor if it is less than this above the lowest foot [leg lengths].

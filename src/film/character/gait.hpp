@@ -8,15 +8,15 @@ namespace weft::character {
 /// A walk that begins at the origin, goes along -y, and begins and ends with standing.
 struct Walk {
   double speed = 1.2;      ///< steady walking speed, 0.6 to 1.6 [m/s]
-  double distance = 6;     ///< > 0 [m]; a walk has at least two steps
-  bool turn_back = false;  ///< whether it turns around on a small arc at the end and walks back
-  double stand = 0.5;      ///< standing time before and after [s]
-  double arms_out = 13;    ///< angle of the upper arms from the vertical [degrees]; clearance for sleeves and skirts
+  double distance = 6;     ///< one way, > 0 [m]; a walk has at least two steps
+  bool turn_back = false;  ///< whether the body then turns around on a small arc and walks back
+  double stand = 0.5;      ///< standing time before the first and after the last step [s]
+  double arms_out = 13;    ///< angle of the upper arms from the vertical [degrees]; > 0: clearance for sleeves, skirts
 };
 
-/// Makes a walk. Feet keep their footholds (see Feet), the body balances above them (see balance_body), and all other
-/// angles follow the curves of namespace walking (gait_curves.hpp). `mannequin`: made by make_mannequin, of any build.
-/// The clip has about 60 keys per second, such that each step has a whole number of them.
+/// Makes a walk. Feet stay on their footholds (Feet, gait_feet.hpp), the body balances above the feet (balance_body,
+/// gait_track.hpp), and all other angles follow the curves of namespace walking (gait_curves.hpp). `mannequin`: made by
+/// make_mannequin, of any build. The clip has about 60 keys per second, such that each step has an even number of keys.
 Clip make_walk(const Character& mannequin, const Walk& walk);
 
 }  // namespace weft::character

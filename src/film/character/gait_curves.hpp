@@ -21,13 +21,13 @@ struct HarmonicCurve {
 /// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Each curve of
 /// one side is fitted to the data of both sides, those of the right shifted by half a stride. Yaw and roll of trunk and
 /// head have odd harmonics only, pitch of the pelvis has even ones only. Pelvis yaw omits a fifth harmonic of 0.6°,
-/// which shakes cloth on the hips. All angles are in degrees. Root mean square residuals: foot pitch 2.5°, arm 3.4°,
-/// elbow 2.9°, all other angles below 1.7°.
+/// which would shake cloth on the hips. All angles are in degrees. Root mean square residuals: foot pitch 2.5°, arm
+/// 3.4°, elbow 2.9°, all other angles below 1.7°.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording: speed [m/s], stride time [s]
 constexpr double kLegLength = 0.788;               ///< hip to ankle [m]
-constexpr double kFlatPitch = -10.8;               ///< value of foot_pitch for a flat foot
+constexpr double kFlatPitch = -10.8;               ///< foot_pitch of a flat foot [degrees]
 
 // Positive yaw turns to the left, positive roll raises the left side, and positive pitch tilts forward.
 constexpr HarmonicCurve pelvis_yaw{0, {-0.52, 0, 0, 0, 0, 0}, {-2.52, 0, -0.16, 0, 0, 0}};
@@ -41,7 +41,7 @@ constexpr HarmonicCurve head_yaw{0, {1.09, 0, 0.14, 0, 0.04, 0}, {-0.84, 0, -0.2
 // toes.
 constexpr HarmonicCurve foot_pitch{
     -22.00, {12.48, 20.97, -0.12, -0.43, 3.08, 0.53}, {25.19, -5.71, -7.76, 2.40, 0.46, -0.92}};
-// `arm_forward`, `arm_out`: angle of the upper arm from the vertical, forward and outward. `elbow`: its bend.
+// `arm_forward`, `arm_out`: angle of the upper arm from the vertical, forward and outward. `elbow`: bend of the elbow.
 constexpr HarmonicCurve arm_forward{
     -5.20, {-7.63, 0.35, -0.26, 0.18, 0.06, 0.09}, {3.37, -0.02, -0.39, -0.03, -0.26, -0.05}};
 constexpr HarmonicCurve arm_out{1.47, {-3.60, 0, 0.02, 0.12, 0.01, -0.02}, {0.91, -0.09, 0.10, 0.05, 0.04, 0.04}};

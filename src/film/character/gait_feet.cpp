@@ -10,10 +10,10 @@
 namespace weft::character {
 namespace {
 
-constexpr double kStandingKnee = 6;         ///< [degrees]; a straighter leg looks stiff and has no reach left
-constexpr double kPitchRatio = 0.79;        ///< factor on the recorded foot pitch, too large for a mannequin
-constexpr double kReleaseFraction = 0.17;   ///< from the end of support by the trailing leg to the strike [strides]
-constexpr double kTakeoverFraction = 0.13;  ///< from the strike to the start of support by the leading leg [strides]
+constexpr double kStandingKnee = 6;         ///< knee bend of a standing leg [degrees]; a straighter leg looks stiff
+constexpr double kPitchRatio = 0.79;        ///< factor on the recorded foot pitch, which is too large for a mannequin
+constexpr double kReleaseFraction = 0.17;   ///< from the end of support by one leg to the strike of the other [strides]
+constexpr double kTakeoverFraction = 0.13;  ///< from the strike of a leg to the start of its support [strides]
 constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
 constexpr double kHeelRiseLength = 0.002;   ///< length over which the start of the rise of a heel is smoothed [m]
 constexpr double kSwingKneeShift = 13;  ///< knee bend added in swing, since kLateKneeRatio reduces it before [degrees]
@@ -124,7 +124,7 @@ double Feet::leg_extent(double knee) const {
   return std::sqrt(a * a + b * b + 2 * a * b * std::cos(knee * kDegree));
 }
 
-/// Recorded foot pitch after a strike [rad]; it fades to exactly 0.
+/// Recorded foot pitch after a strike [rad]; it fades to exactly 0 within 0.12 strides.
 double Feet::strike_pitch(const Plant& plant, int key) const {
   const double since = plan_.strides_since_strike(plant, key);
   if (since > 0.12) return 0;
@@ -239,8 +239,8 @@ double Feet::height_above(int side, std::size_t number, int key) const {
   return std::sqrt(d * d - leg.head<2>().squaredNorm()) - leg.z();
 }
 
-/// Computes the heights of the pelvis. While neither leg determines the height, it is interpolated, with a correction
-/// such that at the strike the height is that which the knee of the leading leg requires.
+/// Computes the heights of the pelvis. While neither leg determines the height, it is interpolated. A correction gives
+/// it the value at the strike that the knee of the leading leg requires.
 void Feet::find_heights() {
   struct Support {
     int side;

@@ -23,8 +23,8 @@ using HipOffsets = std::vector<std::array<Vec3, 2>>;
 /// Computes the paths of both feet and the height of the pelvis, such that knees bend as in human walking.
 ///
 /// The stance leg determines the height of the pelvis from shortly after its strike until shortly before the strike of
-/// the other foot: its knee follows the curve walking::knee. Between these intervals, the height is interpolated. The
-/// trailing leg then raises its heel until its knee, too, follows this curve.
+/// the other foot: its knee follows the curve walking::knee. Between these intervals, the height is interpolated. Late
+/// in stance, the foot raises its heel until the knee follows this curve in these gaps, too.
 ///
 /// In swing, knee bend, leg direction and foot pitch are interpolated from toe-off to the strike. At both ends, their
 /// values, velocities and accelerations match those in stance, except for the velocity and acceleration of the knee at

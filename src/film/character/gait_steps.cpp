@@ -181,14 +181,14 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
   const int fitting = static_cast<int>(std::round(walk.distance / pace.step_length + shorter));
   const int steps = std::max(2, fitting);
   pace.step_length = walk.distance / (steps - shorter);
-  // If the distance is too short for two steps, they get shorter, not quicker.
+  // If the distance is too short for two such steps, the two steps get shorter and keep their duration.
   if (fitting >= 2) pace.step_time = pace.step_length / walk.speed;
   Planner planner(body, pace, walk.stand);
   int side = 1;
   if (walk.turn_back) {
     // The steps before the turn take half of its sideways offset, the steps after it the other half.
     const Vec2 arc = turn_displacement(body);
-    // The first step of the turn still goes forward.
+    // The first step of the turn covers the rest of the distance.
     const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;
     pace.step_length -= ahead / (steps - shorter);
     const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();

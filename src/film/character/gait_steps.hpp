@@ -75,7 +75,7 @@ struct StepPlan {
   int period() const { return 2 * step_keys; }
   /// Number of the foothold where this foot stands at this key, or stood last.
   std::size_t plant_at(int side, int key) const;
-  /// Strides since the heel strike, and strides until toe-off; large if the foothold has none.
+  /// Strides since the heel strike, and strides until toe-off; large if the foothold has no strike or no toe-off.
   double strides_since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
   double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
 };

@@ -163,7 +163,7 @@ std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
 }
 
 /// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes nodes share,
-/// longest first. Omits a prefix if a longer one is shared by as many nodes.
+/// longest first. Omits a prefix if as many nodes share a longer one that begins with it.
 std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : names)
@@ -192,8 +192,8 @@ struct Affixes {
   }
 };
 
-/// Candidates in this order: prefixes with a separator, prefixes without one, then each suffix, alone and with each
-/// prefix.
+/// Candidates for the affixes of a rig, in this order: prefixes with a separator, prefixes without one, then each
+/// suffix, alone and with each prefix.
 std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
   std::vector<std::string> names, reversed;
   for (const Node& node : nodes) {

@@ -19,11 +19,11 @@ constexpr float kMinWeightDifference = 0.15F;
 /// Lines from bone to skin per parallel task, which takes some hundred microseconds.
 constexpr std::size_t kLinesPerTask = 512;
 
-/// Number of grid cells along the longest side of the body: 3 cm for a person.
+/// Number of grid cells along the longest side of the body; the cells of a person have 3 cm.
 constexpr double kCellsPerSide = 60;
 
-/// Maximum number of rounds of move_skin(). If both sides face each other, one is enough; otherwise each round halves
-/// the missing clearance.
+/// Maximum number of rounds of move_skin(). If the surfaces of two limbs face each other, one round is enough;
+/// otherwise each round halves the missing clearance.
 constexpr int kMaxRounds = 8;
 
 /// Missing clearance that is tolerated at the end, as a fraction of the clearance.
@@ -48,12 +48,12 @@ constexpr double kMaxMoveWithoutCloth = 0.004;
 /// more deeply still overlap afterwards; larger moves would be visible.
 constexpr double kMaxMoveNearCloth = 0.03;
 
-/// The nearness of cloth of one limb also applies to skin of another limb that enters it: fully up to half of this
-/// depth [m], then falling to 0 at this depth.
+/// The nearness of cloth to one limb also applies to skin of another limb inside it: fully up to half of this depth
+/// [m], then falling to 0 at this depth.
 constexpr double kMaxNearClothDepth = 0.05;
 
 /// Skin follows its neighbours fully over edges up to this length [m], and less over longer ones, so that dents in
-/// coarse bodies are as narrow as in fine ones.
+/// coarse meshes are as narrow as in fine ones.
 constexpr double kFullFollowEdge = 0.02;
 
 /// The number of the limb of each joint (see kLimbNames), in the order of Joint. The trunk includes neck, head and
@@ -236,7 +236,7 @@ Moved LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
   std::vector<double> remaining(touched_.size(), 1);
-  // Largest move of each vertex that its own missing clearance asks for [m]. Smoothing may move it farther.
+  // Largest move of each vertex due to its own missing clearance [m]. Smoothing may move the vertex farther.
   std::vector<double> max_given(touched_.size(), 0);
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);

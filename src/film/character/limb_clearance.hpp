@@ -30,9 +30,10 @@ struct Moved {
 
 /// Moves skin back along the lines from its bones to the skin, to make clearance for cloth. Limbs are upper and lower
 /// arms, upper and lower legs, and the trunk with the head. If cloth is near at least one of two limbs, the skin of
-/// each moves back by at most half of the missing clearance; it moves farther only to follow its neighbours. If skin is
-/// closer to another limb at rest, as at their common joint, it keeps its clearance at rest. Limbs that cross at rest
-/// do not change. Skin near cloth is also lifted out of the ground, except that of feet.
+/// each moves back by at most half of the missing clearance; it moves farther only to follow its neighbours. Skin that
+/// is closer to another limb at rest, as at a common joint, keeps its clearance at rest. Skin that is inside another
+/// limb at rest moves only to follow its neighbours. Skin near cloth is also lifted out of the ground, except that of
+/// feet.
 class LimbClearance {
  public:
   /// Weight of each limb at a vertex.
@@ -50,7 +51,7 @@ class LimbClearance {
   /// Missing clearance of one vertex in one round of move_skin().
   struct MissingClearance {
     double distance = 0;  // missing clearance [m]
-    float near = 0;       // nearness of cloth, 0 to 1: the larger one of its own and that of the other limb
+    float near = 0;       // nearness of cloth, 0 to 1: the larger value of the vertex and of the other limb
     Index triangle = -1;  // of the other limb; -1: none
   };
 

@@ -51,7 +51,7 @@ Loft::Loft(const LoftFrame& frame, const std::vector<Section>& sections, double 
     const std::vector<double> slope = at_.size() > 1 ? spline_slopes(at_, value) : std::vector<double>{0.0};
     for (std::size_t i = 0; i < slope.size(); ++i) slopes_[i][k] = slope[i];
   }
-  // Splines may overshoot between knots: samples them finely and adds a margin of 1 %.
+  // Splines may overshoot between knots, so the bounds enclose fine samples, with a margin of 1 %.
   constexpr int samples = 64;
   for (int i = 0; i <= samples; ++i) {
     const Sizes s = sizes_at(at_.front() + (at_.back() - at_.front()) * i / samples);

@@ -21,7 +21,8 @@ struct Section {
   double exponent = 2;  ///< 2: an ellipse; larger: closer to a rectangle
 };
 
-/// Placement of a loft: its origin, its axis, and the directions of u and v. These three directions may be left-handed.
+/// Placement of a loft: its origin, its axis, and the directions of u and v. The three directions may form a
+/// left-handed system.
 struct LoftFrame {
   Vec3 origin = Vec3::Zero();
   Vec3 along = Vec3::UnitZ(), u = Vec3::UnitX(), v = -Vec3::UnitY();
@@ -61,7 +62,7 @@ double smooth_min(double a, double b, double width);
 /// remains.
 class BlendedBody {
  public:
-  /// A scalar field [m], negative where a cut part is kept.
+  /// A scalar field [m] that cuts a part; negative where the part remains.
   using Cut = std::function<double(const Vec3&)>;
 
   /// Adds a part. A paired part exists twice, mirrored at x = 0. If `cut` is given, the part exists only where `cut` is

@@ -36,7 +36,8 @@ void add_torso(BlendedBody& body, const Scale& s) {
   body.add(Loft({}, scaled(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
 }
 
-/// An ellipsoid. `middle`: its centre, to the left, forward and up. Its half axes scale with the girth.
+/// An ellipsoid. `middle`: its centre, as components to the left, forward and up. Unlike those of ellipsoid(), its half
+/// axes scale with the girth.
 Loft ball(const Scale& s, const Vec3& middle, double side, double depth, double half_height) {
   const LoftFrame frame{s.length * Vec3(middle.x(), -middle.y(), middle.z())};
   const double cap = half_height * s.girth;

@@ -56,7 +56,8 @@ class WeightBlender {
     const Vec3 out(-along.z(), 0, along.x());  // away from the body
     const Vec3 from_shoulder = (p_ - at(Joint::left_upper_arm)) / cm_;
     const double s = from_shoulder.dot(along);
-    // Skin of the flank lies as far along the arm as skin of the arm itself, but far inside of it.
+    // Skin of the flank is as far along the arm's axis as skin of the arm, but closer to the middle of the body; there,
+    // `depth` is smaller.
     const double depth = s - 1.6 * positive_part(-from_shoulder.dot(out) - 2, 2);
     const double clavicle = smooth_ramp(x_, 2, 13) * smooth_ramp(up_, 126, 141);
     const double arm = smooth_ramp(depth, -7.5, 7.5);

@@ -8,8 +8,8 @@
 
 namespace weft::character {
 
-/// For each of joint_names() except the trunk below the neck, the node with that role; -1 if there is none. A chain is
-/// the longest path of nodes from a node outward.
+/// For each of joint_names(), the node with that role; -1 if there is none. Hips, spine and chest are always -1. A
+/// chain is the longest path of nodes from a node outward.
 /// - Legs and arms are the two longest pairs of chains that leave a common node and have nearly equal lengths. The legs
 /// are the pair whose common node is an ancestor of the common node of the arms; if neither is an ancestor of the
 /// other, the longer pair.

@@ -36,11 +36,12 @@ VertexMask vertices_below(const Character& character, Index node);
 
 VertexMask vertices_of_material(const Character& character, Index material);
 
-/// Appends vertices without faces that have the positions `places` [m] in the pose `pose`. Their bone weights are means
-/// over the nearby skin of `part`, within a radius that grows with the distance from this skin.
+/// Appends vertices, which belong to no face, at the positions `places` [m] in the pose `pose`. Their bone weights are
+/// means over the nearby skin of `part`, within a radius that grows with the distance from this skin.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
-/// Whether at least three chains of nodes below a hand influence skin: then thumb and fingers move separately.
+/// Whether at least three chains of nodes below one of the hands influence skin, so that its thumb and fingers move
+/// separately.
 bool has_fingers(const Character& character, std::span<const Index> nodes);
 
 }  // namespace weft::character

@@ -10,7 +10,7 @@ namespace weft::character {
 
 /// Timing of a clip in the scene.
 struct Timing {
-  double motion_start = 0;  ///< scene time at which the clip begins to move [s]: the end of the character's `dressing`
+  double motion_start = 0;  ///< scene time at which the clip begins to move [s]: end of scene::Character::dressing
   double blend = 0;         ///< time after `motion_start` in which the clip accelerates to `speed` [s]
   double start = 0;         ///< time of the clip at which it begins to play [s]
   double speed = 1;         ///< seconds of clip time per second of scene time
@@ -22,9 +22,8 @@ double clip_time(const Timing& timing, double t);
 struct Playing {
   Timing timing;
   bool loop = false;  ///< repeats the clip; each repetition (round) continues the horizontal travel of the one before
-  double crossfade = 0;  ///< clip time at the end of a round in which the round is blended into the next one [s];
-                         ///< limited to half of the clip
-  std::optional<Pose> stance = {};  ///< initial pose of the body, in place of the clip's pose at `start`
+  double crossfade = 0;  ///< overlap in which a round blends into the next [s of clip time]; at most half of the clip
+  std::optional<Pose> stance = {};  ///< pose until `motion_start`, then blended into the clip; absent: that at `start`
 };
 
 /// The poses of a body that plays a clip in a scene.

@@ -39,13 +39,14 @@ constexpr double kMaxFloorError = 0.05;
 /// Maximum number of rounds that move hands to the parts that they touch. One is not enough: a hand may touch the other
 /// hand or elbow, which move too.
 constexpr int kTouchingRounds = 3;
-/// A hand whose displacement is smaller does not move [m].
+/// If the displacements of both hands are smaller, the hands do not move [m].
 constexpr double kMinPull = 1e-4;
 
 template <class Value>
 using PerJoint = std::array<Value, kJointCount>;
 
-/// Rotation about `up` that gives one posture the heading of another. `from`, `to`: their vectors to the left.
+/// Rotation about `up` that gives one posture the heading of another. `from`, `to`: the vectors to the left of the
+/// first and the second posture.
 Quat heading_rotation(Vec3 from, Vec3 to, const Vec3& up) {
   from -= from.dot(up) * up;
   to -= to.dot(up) * up;
@@ -67,8 +68,8 @@ double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3&
   return height;
 }
 
-/// Whether two skeletons have the same joints and, up to one ratio, the same joint positions in the axes of their
-/// parent nodes. Poses do not change these positions.
+/// Whether two skeletons have the same joints and, up to one common factor, the same joint positions in the axes of
+/// their parent nodes. Poses do not change these positions.
 bool same_skeleton(const Rig& a, const Rig& b) {
   const auto place = [](const Rig& rig, std::size_t joint) -> Vec3 {
     return rig.character.nodes[rig.joints[joint]].local.translation();
@@ -250,7 +251,7 @@ class Retargeter {
     }
   }
 
-  /// Height of the soles at rest: the lowest vertex, or the lowest joint of a body without skin.
+  /// Height of the soles at rest: the lowest of all vertices and foot joints [m].
   double floor() const {
     double floor = lowest_foot(ours_, rest_, up_);
     std::vector<Vec3> skin_at_rest(body_.character.mesh.positions.size());

@@ -21,8 +21,8 @@ struct Retargeted {
 /// that the rest pose of the motion has no effect. The rest pose of the body must stand upright with its feet flat on
 /// the floor. At time 0, the body has its heading at rest. The travel of the hips is scaled by the ratio of the leg
 /// lengths and starts at the position of the body; feet keep the contacts of the motion (footing.hpp).
-/// - If the skeletons are the same (joint positions equal up to one ratio), all rotations are copied, including the
-/// heading. The lowest foot of the motion gets the height of the lowest foot of the body at rest.
+/// - If the skeletons are the same (joint positions equal up to one common factor), all rotations are copied, including
+/// the heading. The lowest foot of the motion gets the height of the lowest foot of the body at rest.
 /// `up`: unit vector.
 Retargeted retarget(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up);
 

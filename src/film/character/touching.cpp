@@ -7,7 +7,7 @@
 namespace weft::character {
 namespace {
 
-// Distances of the wrist from its targets [arm lengths of 0.55 m in an adult]. Up to these distances contact applies
+// Distances of the wrist from its targets [arm lengths; 0.55 m in an adult]. Up to these distances contact applies
 // fully; up to twice the distances it fades. Measured on adults: 2.5 to 6 cm from the midpoint of the wrists if the
 // hands are joined, 8 to 13 cm from an elbow that the hand holds, 17 to 22 cm from the midpoint of the hip joints if
 // the hand is on a hip.

@@ -22,8 +22,9 @@ struct Proportions {
 /// fully up to a distance of 7 to 22 cm (touching.cpp), then fades, and vanishes at twice that distance. Since it is a
 /// continuous function of all positions, contact intervals need not be detected. The hips are a target only if
 /// the hand rests on them and the arm is bent, not hanging. `theirs`: joints of the motion, rotated to the heading of
-/// the body. `ours`: joints of the body. `both`: joints that both skeletons have; a hand moves only if its hand, elbow
-/// and shoulder joints are among them. `rests`: weight, 0 to 1, of each hand resting on the hips.
+/// the body. `ours`: joints of the body. `both`: joints that both skeletons have; a hand moves only if the hand,
+/// lower-arm and upper-arm joints of its side are among them. `rests`: weight, 0 to 1, of each hand resting on the
+/// hips.
 std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
                                    const Proportions& proportions, const std::array<double, 2>& rests);
 

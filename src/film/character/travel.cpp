@@ -64,7 +64,7 @@ class Path {
   }
 
   /// Displacements per key along the path that keeps feet in place, at the mean speed `speed` [m/s]. Writes the speed
-  /// that the feet imply to `feet` [m/s].
+  /// that the feet imply to `feet` [m/s]; 0 if it is too slow for a walk.
   std::vector<Vec3> displacements_at_speed(double speed, double& feet) const {
     std::vector<Vec3> velocities = implied_velocities();
     Vec3 mean = Vec3::Zero();

@@ -125,7 +125,7 @@ character::Clip travel(const Cast& cast, const scene::SkeletonMotion& acting, co
   return std::move(traveled.clip);
 }
 
-/// Moves a body so that its soles are at the height of its file's origin; a retargeted motion then walks on the floor.
+/// Moves the soles of a body to the height of its file's origin, so that a retargeted motion walks on the floor.
 void put_on_floor(const Cast& cast, Body& body) {
   const Vec3 up = cast.up();
   std::vector<Vec3> x(body.character.mesh.positions.size());
@@ -409,7 +409,7 @@ Actor make_actor_of(const Cast& cast, const Source& source, std::span<const Foll
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowerPoints& pin : following) add_follower_points(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
-  std::vector<Vec3> bones;  // per vertex of the body (not of pins): the point from which it grows
+  std::vector<Vec3> bones;  // per vertex of the body (not per follower point): the point from which it grows
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = static_grounds(cast);

@@ -1,4 +1,4 @@
-// Makes the key frames of the vertices of a character of the scene.
+// Makes the key frames of a character of the scene: the positions of its vertices at each key.
 #pragma once
 
 #include <memory>
@@ -46,10 +46,10 @@ struct ClothAtStart {
 
 /// A body that moves by key frames of its vertices, computed before the simulation starts.
 struct Actor {
-  mesh::Mesh mesh;           ///< in the world at time 0
-  KeyFrames keys;            ///< of the vertices; for a body with bones, then of the points of each FollowerPoints
-  std::vector<Part> parts;   ///< see parts_of()
-  std::vector<Index> limbs;  ///< per vertex: its shell (shells_of_limbs()); for a sequence: its component
+  mesh::Mesh mesh;           ///< in the world at time 0 [m]
+  KeyFrames keys;            ///< of the vertices, followed (if the body has bones) by the points of all FollowerPoints
+  std::vector<Part> parts;   ///< see parts_of() (body_parts.hpp)
+  std::vector<Index> limbs;  ///< per vertex, by shells_of_limbs(); of a sequence of meshes: connected components
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< changes made to the body, for the summary
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if the file has none
@@ -57,8 +57,9 @@ struct Actor {
 
 /// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
 /// They end at the end of the scene or, if the character only grows, when it has grown. A character that does neither
-/// has one key. If a body with bones plays a clip, its skin leaves space for `cloths` near it (character::Room). Throws
-/// Error(asset_unreadable, scene_invalid) that names the scene line, the file, and the mesh, bone or clip.
+/// has one key. If a body with bones plays a clip, its skin leaves space for `cloths` near it
+/// (character::LimbClearance). Throws Error(asset_unreadable, scene_invalid) that names the scene line, the file, and
+/// the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowerPoints> following = {}, std::span<const ClothAtStart> cloths = {});
 
@@ -73,7 +74,7 @@ struct StandingBody {
 /// Throws as make_actor() does. For a sequence of meshes, throws Error(scene_invalid) that begins with `where`.
 StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character, const std::string& where);
 
-/// Size of the key frames of a character, which `weft check --plan` prints.
+/// Size of the key frames of a character, for `weft check --plan`.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;
   /// Names of the parts that do not collide, with their numbers of vertices.

@@ -22,7 +22,7 @@ using model::WeightedParticle;
 
 // Minimum fraction of a particle that counts: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
-// Minimum fraction at which a pin without a strength holds a particle; it then holds it fully.
+// Minimum fraction at which a pin without a strength holds a particle. Such a pin holds its particles fully.
 constexpr double kMinHeldFraction = 0.5;
 
 /// Grey value of a picture at (u, v) times its opacity, in [0, 1]; v points up. Interpolates linearly between the

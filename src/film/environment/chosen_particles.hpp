@@ -1,4 +1,5 @@
-// Finds the particles of a cloth that belong to its pins, weights and attachments, with a fraction for each particle.
+// Finds the particles of a cloth that belong to its pins, weights and attachments, and the fraction, 0 to 1, of each
+// particle.
 #pragma once
 
 #include <string>

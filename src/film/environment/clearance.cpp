@@ -13,8 +13,8 @@
 namespace weft::environment {
 namespace {
 
-/// Number of layers of cloth that must fit between two limbs, as where an arm presses on the folds of a shirt. With 4
-/// layers, cloth was pinched in 13 of 51 frames of a film with such a shirt.
+/// Number of layers of cloth that must fit between two limbs, for example if an arm presses on the folds of a shirt.
+/// With 4 layers, cloth is pinched in 13 of 51 frames of a film with such a shirt.
 constexpr double kLayersBetweenLimbs = 8;
 
 /// Distance up to which skin counts as near cloth [m]. character::LimbClearance moves two limbs apart only if cloth is

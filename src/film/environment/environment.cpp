@@ -127,7 +127,8 @@ std::optional<std::size_t> number_of(const std::string& name, const Objects& obj
   return static_cast<std::size_t>(found - objects.begin());
 }
 
-/// Mean start position of the particles of the region of a pin, including those that another pin holds.
+/// Mean start position of the particles of the region of a pin, including those that another pin holds, without faded
+/// particles outside the region.
 Vec3 middle_of(std::span<const model::WeightedParticle> particles, std::span<const Vec3> start) {
   Vec3 middle = Vec3::Zero();
   std::size_t count = 0;

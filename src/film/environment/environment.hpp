@@ -20,7 +20,7 @@ struct BodyDetails {
   scene::Look look;
   std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if the file has none
   std::vector<Part> parts;                              ///< of characters
-  std::vector<std::uint8_t> passed_through;  ///< per triangle of the mesh: 1 if it does not collide; empty: all collide
+  std::vector<std::uint8_t> passed_through;  ///< per triangle: 1 if its part does not collide; empty: no such part
 };
 
 /// The mesh of an obstacle in its own coordinates, and the UVs of its file. Throws as Environment() does.
@@ -34,9 +34,9 @@ class Environment {
   /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) with file and scene line.
   explicit Environment(const scene::Scene& scene);
 
-  model::Model model;                         ///< bodies: in the order of scene.obstacles, then of scene.characters
-  std::vector<ClothDetails> cloths;           ///< one per cloth of the model
-  std::vector<BodyDetails> bodies;            ///< one per body of the model
+  model::Model model;                ///< bodies: those of scene.obstacles, followed by those of scene.characters
+  std::vector<ClothDetails> cloths;  ///< one per cloth of the model
+  std::vector<BodyDetails> bodies;   ///< one per body of the model
   std::vector<model::Parent> camera_parents;  ///< one per camera; empty if no camera follows anything
 
  private:

@@ -25,7 +25,7 @@ struct PinFollower {
 };
 
 struct Followers {
-  std::vector<FollowerPoints> points;  ///< those of the pins, then four for each obstacle or camera (parents.hpp)
+  std::vector<FollowerPoints> points;  ///< one per pin, then one per obstacle or camera, of four points (parents.hpp)
   std::vector<PinFollower> pins;
   std::vector<PartFollower> rigid;
 };

@@ -91,7 +91,7 @@ bool is_pierced_by_arm(const model::Cloth& cloth, const garment::Wearer& wearer)
   for (const auto& arm : {wearer.left_arm, wearer.right_arm})
     for (std::size_t k = 0; arm && k + 1 < arm->size(); ++k) {
       const Vec3 from = wearer.to_world * (*arm)[k], to = wearer.to_world * (*arm)[k + 1];
-      if (crosses(from, to) || crosses(to, from)) return true;  // a search finds only triangles whose front it meets
+      if (crosses(from, to) || crosses(to, from)) return true;  // a search finds only crossings from the front
     }
   return false;
 }

@@ -1,4 +1,4 @@
-// Makes a cloth of a scene as it starts.
+// Makes a cloth of a scene, as it is at the start of the run.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace weft::environment {
 
 /// Data of a cloth that are not in the simulated model.
 struct ClothDetails {
-  std::vector<Vec2> fractions;  ///< per particle: position along weft and warp, as fractions of the rest size
+  std::vector<Vec2> fractions;  ///< per particle: position in the rest shape, 0 to 1, see make_cloth()
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
   std::vector<std::string> panels;                  ///< of a pattern: names
   std::vector<std::int32_t> panel_of;               ///< of a pattern: panel number of each triangle
@@ -40,11 +40,14 @@ struct MadeCloth {
 /// Particle counts, spacings and gradings of a rectangular cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
-/// Throws Error(scene_invalid) if cloth can touch obstacles and the cells of a rectangular cloth are too uneven for
-/// this contact. Called by make_cloth(), which makes the same check for the triangles of all other cloths.
+/// Throws Error(scene_invalid) if the cells of a rectangular cloth are too uneven for contact with obstacles. Does
+/// nothing for other cloths, and if no cloth can touch obstacles. make_cloth() calls it, and checks the triangles of
+/// other cloths likewise.
 void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 
-/// Makes a cloth as it starts. Throws Error(asset_unreadable, scene_invalid) with the scene line.
+/// Makes a cloth as it is at the start. ClothDetails::fractions are along weft and warp for rectangular cloths, in the
+/// (x, y) bounding box for mesh files, across and up in the bounding box for patterns, and along a rope, with 0.5 as
+/// the second value. Throws Error(asset_unreadable, scene_invalid) with the scene line.
 MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
 
 }  // namespace weft::environment

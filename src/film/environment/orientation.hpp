@@ -13,8 +13,9 @@ namespace weft::environment {
 /// x: z becomes y, x stays.
 mesh::Mesh rotate_to_up_axis(mesh::Mesh mesh, scene::UpAxis up);
 
-/// The axes of a mesh file. If a character uses the same file, its up axis applies, unless `up` states one. If nothing
-/// states the up axis, it is y for the file of a character, and the up axis of the scene for other files.
+/// The axes of a mesh file. If a character uses the same file, the up axis that the scene gives this character applies,
+/// unless `up` states one. If nothing states the up axis, it is y for the file of a character, and the up axis of the
+/// scene for other files.
 assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up);
 
 }  // namespace weft::environment

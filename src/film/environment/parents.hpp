@@ -15,7 +15,7 @@ namespace weft::environment {
 inline constexpr double kFrameAxis = 1e-3;
 
 /// The rigid motion closest to that of a frame whose origin is the vertex `first` and whose points are the next three
-/// vertices. It has keys at the times of `keys`.
+/// vertices. The track has keys at the times of `keys`.
 std::shared_ptr<const motion::Track> track_of_frame(const motion::KeyFrames& keys, std::size_t first,
                                                     motion::Interpolation interpolation);
 

@@ -21,11 +21,11 @@ struct Corners {
   Vec3 middle() const { return (x[0] + x[1] + x[2]) / 3; }
 };
 
-/// Converts lengths on a surface to numbers of pictures. Around a closed shape, this number is an integer.
+/// Converts lengths on a surface to numbers of repetitions of the picture.
 struct Tiling {
-  std::optional<Vec2> tile;  // size of one picture [m]; absent: the picture is not repeated
+  std::optional<Vec2> tile;  // size of one repetition [m]; absent: the picture is not repeated
 
-  /// Number of pictures along a length [m] in the direction of `axis` (0: width, 1: height); 1 without a tile.
+  /// Number of repetitions along a length [m] in the direction of `axis` (0: width, 1: height); 1 without a tile.
   double count(double length, int axis) const { return tile ? length / (*tile)[axis] : 1; }
   double whole_count(double length, int axis) const { return std::max(1.0, std::round(count(length, axis))); }
 };

@@ -1,4 +1,4 @@
-// Makes a rope of a scene as it starts.
+// Makes a rope of a scene, as it is at the start of the run.
 #pragma once
 
 #include "film/environment/made_cloth.hpp"

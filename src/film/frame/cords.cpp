@@ -12,11 +12,12 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kStrands = 3;
 constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the grooves between strands [radii of the rope]
-// A ring is a cross-section of the tube: a polygon with this number of sides, for ropes with and without strands.
+// A ring is a cross-section of the tube: a polygon. Its number of sides for ropes with strands, and without strands.
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
 constexpr int kRingsPerStrandTurn = 8;
 constexpr int kMaxRingsPerPiece = 12;
-// Maximum number of rings for strands. Strands that need more are too fine to be visible: a round cord is drawn.
+// Maximum number of rings of a rope with strands. If the strands need more, they are too fine to be visible: the rope
+// is drawn without strands.
 constexpr std::size_t kMaxRings = 8000;
 
 bool is_closed(const Surface& chain) {

@@ -15,8 +15,8 @@ inline bool is_chain(const Surface& surface) {
   return surface.kind == ObjectKind::rope && surface.appearance.thickness > 0;
 }
 
-/// Sweeps tubes along Catmull-Rom splines through the particles of chains. A tube has the same triangles in all frames.
-/// Not thread-safe.
+/// Sweeps tubes along Catmull-Rom splines through the particles of chains (see is_chain()). A tube has the same
+/// triangles in all frames. Not thread-safe.
 class Cords {
  public:
   /// Returns the snapshot with tubes in place of chains, or `snapshot` itself if it has no chains.

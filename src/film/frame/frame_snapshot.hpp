@@ -31,7 +31,7 @@ struct Texture {
 
 /// A picture on a surface, and how it is mapped and blended.
 struct Paint {
-  /// How the picture continues beyond its edge. once: it does not, and counts as transparent there.
+  /// How the picture continues beyond its edge. once: not at all; the area beyond is transparent.
   enum class Wrap { repeat, clamp, mirror, once };
   /// ignored: the whole picture is opaque. over_color: transparent parts show the colour of the surface. cutout:
   /// transparent parts are holes in the surface.
@@ -127,21 +127,21 @@ struct Camera {
   double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: that of the target
 
   /// placed: has the values above. Cameras of the other kinds are computed from all frames of a run, so that the
-  /// subjects are in view. whole: stands still or orbits. follow: moves along with the subjects at a constant distance.
-  /// close: moves along with them at the smallest distance that shows them. track: stands at `position` and turns
-  /// toward them.
+  /// subjects are in view. whole: stands still or, if `azimuth` differs between frames, orbits. follow: moves along
+  /// with the subjects at a constant distance. close: moves along with the subjects at a small distance that changes
+  /// smoothly and always shows them. track: stands at `position` and turns toward the subjects.
   enum class Kind { placed, whole, follow, close, track };
   Kind kind = Kind::placed;
-  /// Names of the surfaces to keep in view. If empty and `kind` is whole: all visible surfaces except infinite floors.
-  /// If empty and `kind` is another one: all characters; without characters, all cloths; without both, as for `whole`.
+  /// Names of the surfaces to keep in view. If empty: for `whole`, all visible surfaces except infinite floors; for the
+  /// other kinds, all characters; without characters, all cloths; without both, as for `whole`.
   std::vector<std::string> subjects = {};
   double azimuth = 33;     ///< direction from the subjects to the camera: angle from the front to the right [degrees]
   double elevation = 17;   ///< direction from the subjects to the camera: angle above the horizontal [degrees]
-  double margin = 0.14;    ///< free space around the subjects [halves of the picture's width or height]
+  double margin = 0.14;    ///< free space around the subjects, as a fraction of half the picture's width or height
   double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
 };
 
-/// Maximum number of lights of a picture, because each light costs rays at every pixel. Further ones are ignored.
+/// Maximum number of lights of a picture, because each light costs rays at every pixel. Further lights are ignored.
 inline constexpr int kMaxLights = 4;
 
 /// A light at one time. Sun: parallel light along `direction`. Spot: from `position` toward `target`.
@@ -154,8 +154,8 @@ struct Light {
   Vec3 target{0, 0, 0};            ///< [m] (spot)
   double cone_angle = 45;          ///< full opening [degrees] (spot)
   Vec3 color{1, 1, 1};             ///< sRGB
-  double intensity = 1;            ///< at 1, a white matte surface that faces the light appears white
-  double softness = 2;             ///< angular width of the source, seen from the scene [degrees]; blurs shadows
+  double intensity = 1;  ///< at 1, a white matte surface that faces the light (spot: at its target) appears white
+  double softness = 2;   ///< angular width of the source, seen from the scene [degrees]; blurs shadows
 };
 
 /// Settings of all pictures of a run: environment, exposure and display of heat.
@@ -173,7 +173,7 @@ struct Stage {
   double exposure = 0;     ///< exposure compensation; positive: brighter [stops]
   double motion_blur = 0;  ///< shutter angle [degrees, 360 per frame]; 0: everything is sharp
   Heat heat = Heat::none;
-  double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: the largest of the frame
+  double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: maximum of the frame
 };
 
 /// One frame, never changed after it is made.

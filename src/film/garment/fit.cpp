@@ -18,10 +18,10 @@ constexpr double kHipHeightRatio = 0.52;
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
 // Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
-// Maximum change of the girth per height at the waist: 2π, which is skin at 45 degrees.
+// Maximum change of the girth per height at the waist: 2π, as of a cone whose surface is inclined by 45 degrees.
 constexpr double kMaxGirthSlope = 2 * std::numbers::pi;
-// Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at 1.05 the garment
-// slides down, at 1.16 it stays).
+// Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at a ratio of 1.05
+// the garment slides down, at 1.16 it stays).
 constexpr double kMinHipToWaistRatio = 1.1;
 
 }  // namespace
@@ -33,8 +33,8 @@ Measures measure(const Wearer& wearer) {
   if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
   const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
   const auto girth = [&](double s) { return torso.girth(s, 0); };
-  // A waistband needs nearly upright skin. If the girth changes faster, the section is at the top or bottom of a body
-  // part, such as the ball between chest and hips of a puppet.
+  // A waistband needs nearly vertical skin. Where the girth changes faster with height, a body part ends, such as the
+  // ball between chest and hips of a puppet.
   const auto is_upright = [&](double s) {
     return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
            kMaxGirthSlope * kSpacing;

@@ -111,7 +111,7 @@ class Sewing {
     for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_point_[panel] + (begin + k) % around);
     return points;
   }
-  // Start position of a point of a flat panel before seams join it to others [m].
+  // Start position of a point of a flat panel before seams join it to other panels [m].
   Vec2 start_position(std::size_t panel, const Vec2& p) const {
     const Panel& of = pattern_.panels[panel];
     const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
@@ -121,9 +121,9 @@ class Sewing {
     return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Joins the points of both edges of each seam. For flat panels, the ends whose start positions are nearer are joined.
-  // For bent panels, and for closed edges such as a whole outline, the ends are joined so that both fronts face
-  // outward.
+  // Joins the points of both edges of each seam. For flat panels, uses the direction in which the ends of both edges
+  // start closer together. For bent panels, and for closed edges such as a whole outline, uses the direction in which
+  // the fronts of both panels face outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
@@ -233,7 +233,7 @@ class Sewing {
           joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // The front of a panel that is drawn from the inside is its other side: exchange left and right.
+        // The drawing of a panel from the inside shows the back of the cloth: exchange left and right.
         if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
@@ -333,7 +333,7 @@ class Sewing {
       if (seam.is_closure()) continue;
       const SewnSeam& sewn = garment_.seams[s++];
       if (seam.allowance == 0 || sewn.vertices.size() < 2) continue;
-      // The length of an eased-in seam is the mean of its two edges.
+      // The length of an eased-in seam is the mean length of its two edges.
       const double mean = 0.5 * (sewn.length_a + sewn.length_b);
       mesh::Band band{.vertices = sewn.vertices, .lengths = {}, .allowance = seam.allowance};
       band.lengths.assign(band.vertices.size() - 1, mean / static_cast<double>(band.vertices.size() - 1));
@@ -351,8 +351,8 @@ class Sewing {
     }
   }
 
-  // Adds the ties of closures. The ends of two edges whose start positions are nearer are tied together; if an edge is
-  // closed, the sides from which the panels are drawn determine the direction.
+  // Adds the ties of closures. Uses the direction in which the ends of both edges start closer together; if an edge is
+  // closed, the direction in which the fronts of both panels face outward.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
@@ -377,7 +377,7 @@ class Sewing {
         const std::vector<double> lengths = band_along(edge).lengths;
         return std::accumulate(lengths.begin(), lengths.end(), 0.0);
       };
-      // As for other seams, the length is the mean of both edges.
+      // As for other seams, the length is the mean length of both edges.
       const double length = 0.5 * (length_of(seam.a) + length_of(seam.b));
       // If both edges are closed, each begins and ends with the same particle, which gets one tie.
       const bool ring = last > 0 && a.front() == a.back() && b.front() == b.back();

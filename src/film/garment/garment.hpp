@@ -18,23 +18,24 @@ struct SewnSeam {
 };
 
 /// A pattern as one mesh. Panels that a seam joins share the vertices of the seam. Sheet::rest holds the start shape: a
-/// smooth surface without intersections, whose lengths differ from those of the panels. Its coordinates are those of
-/// the world if panels start around a wearer; else x points to the left, y from front to back, z up. Sheet::material
-/// holds the flat panels, which are the rest shape after sewing. The front of the cloth faces away from the wearer.
+/// smooth surface whose lengths differ from those of the panels. If panels start around a wearer, the start shape is in
+/// world coordinates; otherwise x points to the wearer's left, y from front to back, z up. Sheet::material holds the
+/// flat panels, which are the rest shape after sewing. The front of the cloth faces away from the wearer.
 struct Garment {
   mesh::Sheet sheet;
   std::vector<Vec2> uv;         ///< per vertex: texture coordinates of the weave [m]; panels overlap in this plane
   std::vector<Index> panel_of;  ///< index of the panel, per triangle
-  std::vector<SewnSeam> seams;  ///< the seams of the pattern that are no closures, in its order
+  std::vector<SewnSeam> seams;  ///< in the order of the pattern, without closures
   std::map<std::string, std::vector<Index>> edges;  ///< by "panel.edge": vertices of this edge, from its start
 };
 
 /// Makes the mesh. `spacing`: edge length of the mesh [m]. `where` names the scene entry for messages. `wearer`:
-/// required if panels start around parts of the body. Throws Error(scene_invalid) if panels are too small for the
-/// spacing, if the seams do not make a surface, or if panels fold over when their seams are closed.
+/// required if panels start around parts of the body. Throws Error(scene_invalid) if a required wearer is missing, if
+/// the panels are too large or too small for the spacing, if the seams do not make an orientable manifold surface, or
+/// if flat panels fold over when their seams are closed.
 Garment sew(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer = nullptr);
 
-/// Meshes one flat panel. `segments`: number of mesh edges along each of its edges; `spacing`: edge length [m].
+/// Meshes one flat panel. `segments`: number of mesh edges along each panel edge; `spacing`: edge length [m].
 FlatMesh mesh_of(const Panel& panel, const std::vector<int>& segments, double spacing);
 
 }  // namespace weft::garment

@@ -228,8 +228,8 @@ class PathReader {
   std::string_view data_;
   std::size_t at_ = 0;
   ParsedPaths result_;
-  Outline outline_;         // the current one
-  std::size_t curves_ = 0;  // of all outlines
+  Outline outline_;         // current outline
+  std::size_t curves_ = 0;  // number of curves of all outlines
   bool started_ = false, closed_ = false;
   char last_ = 'M';
   Vec2 pen_ = Vec2::Zero(), first_ = Vec2::Zero(), handle_ = Vec2::Zero();
@@ -263,8 +263,9 @@ ParsedPath parse_path(std::string_view data) {
 }
 
 bool has_corner(const Curve& before, const Curve& after) {
-  constexpr double kEndOffset =
-      1e-3;  // tangents are taken at this parameter from the ends, where control points may coincide
+  // Distance in the parameter over which tangents are measured. Control points may coincide at the ends, where the
+  // derivative is then 0.
+  constexpr double kEndOffset = 1e-3;
   const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
   return std::abs(angle_between(in, out)) > kMinCornerAngle;
 }

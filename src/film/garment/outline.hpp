@@ -47,7 +47,7 @@ ParsedPaths parse_paths(std::string_view data);
 /// As parse_paths(), but reports a mistake if the data have several outlines.
 ParsedPath parse_path(std::string_view data);
 
-/// Whether two consecutive curves meet at a corner.
+/// Whether two consecutive curves meet at an angle above kMinCornerAngle (outline.cpp).
 bool has_corner(const Curve& before, const Curve& after);
 
 /// For each curve, the number of its edge. Edges extend from corner to corner; edge 0 starts at the first corner.
@@ -56,10 +56,11 @@ std::vector<std::size_t> edges_between_corners(const Outline& outline);
 /// Number of points of each curve in sample_points().
 inline constexpr int kPointsPerCurve = 16;
 
-/// kPointsPerCurve points on each curve of a chain, at equal steps of its parameter, without the end of the chain.
+/// kPointsPerCurve points on each curve of a chain, at equal steps of the curve parameter, from the start of each
+/// curve. The end of the chain is not included.
 std::vector<Vec2> sample_points(const std::vector<Curve>& chain);
 
-/// Arc length along a chain of curves; finds points at equal distances along it.
+/// Arc length along a chain of curves; finds the point at a given fraction of the length.
 class Arclength {
  public:
   explicit Arclength(const std::vector<Curve>& chain);

@@ -151,7 +151,8 @@ std::string name_across_fold(const std::string& name) {
 }
 
 /// Completes a panel of which the outline is one half: removes the edge named `fold` and appends the mirror image of
-/// the rest. The edges that end at the fold continue beyond it. Returns a description of a mistake, or an empty string.
+/// the rest. The edges that end at the fold keep their names beyond it. Returns a description of a mistake, or an empty
+/// string.
 std::string unfold(const std::string& fold, Outline& outline, std::vector<std::string>& names) {
   const std::size_t n = outline.size();
   std::size_t first = 0;
@@ -184,7 +185,8 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
   return {};
 }
 
-/// Copies keys that a mirror image lacks from its original, with left and right exchanged. `entry`: its key path.
+/// Completes a mirror image: copies the keys that it lacks from its original `from`, with left and right exchanged.
+/// `entry`: key path of the mirror image.
 void copy_from_original(const Panel& from, const std::string& entry, const Findings& findings, Panel& panel) {
   const auto is_given = [&](const char* key) { return findings.has(fmt::format("{}.{}", entry, key)); };
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
@@ -211,7 +213,7 @@ std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& pa
   if (panel.path.empty()) try {
       return load_svg_panel(panel.file, panel.id);
     } catch (const Error& error) {
-      // Report the message only once, since all panels of an unreadable drawing give the same one.
+      // Report the message only once, since all panels of an unreadable drawing give the same message.
       if (std::ranges::find(in_drawings, error.what()) == in_drawings.end()) in_drawings.emplace_back(error.what());
       return std::nullopt;
     }
@@ -297,7 +299,7 @@ class EdgeNames {
     }
   }
   void check(const std::string& name, const std::string& key) {
-    // Report no unknown edge if a panel has an invalid outline, which is already reported: such a panel has no edges.
+    // A panel with an invalid outline has no edges, and its mistake is already reported: then report no unknown edge.
     if (has_invalid_panel_ || findings_.has_mistake(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));

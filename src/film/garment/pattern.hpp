@@ -23,11 +23,11 @@ struct PanelEdge {
   std::vector<Curve> curves;  ///< counter-clockwise around the panel [m]
 };
 
-/// A flat piece of cloth. If it has a side, it is drawn as seen from in front of the wearer, else as seen from outside.
-/// "Part" means a part of the wearer's body, such as an arm.
+/// A flat piece of cloth. If it has a side, it is drawn as seen from in front of the wearer, else as seen from outside
+/// the garment. "Part" means a part of the wearer's body, such as an arm.
 struct Panel {
   std::string name;
-  std::optional<Side> side;    ///< absent: `angle` gives it; without both, the front, on arms the outside
+  std::optional<Side> side;    ///< side of the wearer that the panel covers; absent: see `angle`
   std::string path;            ///< SVG path data of the outline in metres, y upward; empty: see `file`
   std::filesystem::path file;  ///< SVG drawing with the outline; empty: see `path`
   std::string id;              ///< id, label or number of the element in the drawing
@@ -38,13 +38,17 @@ struct Panel {
   /// Part around which the panel starts bent. If any panel of the pattern has a part or an `angle`, `none` means the
   /// torso. Otherwise all panels start flat, in front of and behind the wearer.
   Around around = Around::none;
-  std::optional<double> angle;  ///< of the panel's origin around its part [degrees]: 0 the front, 90 the left
-  int layer = 0;                ///< number of layers of panels between this panel and the skin of its part
-  std::optional<Vec2>
-      position;         ///< start position of the panel's origin: across, up [m]; absent: 0, or if bent, by its seams
+  /// Angle of the panel's origin around its part [degrees]: 0 the front, 90 the left. Absent: that of `side`; without
+  /// `side`, the outside for arms, else the front.
+  std::optional<double> angle;
+  int layer = 0;  ///< number of layers of panels between this panel and the skin of its part
+  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel 0, for a bent panel the position at
+  /// which its seams are shortest.
+  std::optional<Vec2> position;
   double rotation = 0;  ///< rotation of the drawing at the start, counter-clockwise [degrees]
   Vec2 scale{1, 1};     ///< factors on the lengths of the start shape, across and up the drawing
-  /// Whether the panel is folded over like a lapel: its outer side continues the inner side of the panel beside it.
+  /// Whether the panel is folded over like a lapel: its outer side continues the inner side of the panel to which it is
+  /// sewn.
   bool turned = false;
 
   mesh::Reinforcement reinforcement;  ///< such as an ironed-on lining (fusing), or a heavier fabric
@@ -57,13 +61,13 @@ struct Panel {
 
 /// Sews two edges together. Both get mesh points at the same fractions of their lengths, so that the surplus length of
 /// the longer edge is spread evenly (eased in). A seam with `buttons`, `open`, `closed` or `tearing_load` is a closure:
-/// its edges stay separate, and ties hold their points together while it is closed.
+/// its edges stay separate, and ties (mesh::Tie) hold their points together while the closure is closed.
 struct Seam {
   std::string a, b;                    ///< the edges, as "panel.edge"
-  int buttons = 0;                     ///< number of ties; 0: one at each pair of points, as in a zip
-  std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]
+  int buttons = 0;                     ///< number of ties; 0: one tie for each pair of points, as in a zip
+  std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]; absent: never
   double strength = 2;                 ///< maximum force of each tie [N]; unused if there is a `tearing_load`
-  std::optional<double> tearing_load;  ///< force per length at which ties of the seam break for ever [N/m]
+  std::optional<double> tearing_load;  ///< force per length at which ties break for ever [N/m]; absent: never
   double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
 
   bool is_closure() const { return buttons > 0 || open || closed || tearing_load; }
@@ -79,7 +83,7 @@ struct Elastic {
 /// A hem: an edge that is turned up, and thus heavier and stiffer than the cloth.
 struct Hem {
   std::string edge;
-  double mass = 0.01;  ///< in addition to that of the cloth [kg/m]
+  double mass = 0.01;  ///< mass per length, in addition to that of the cloth [kg/m]
   double bend = 2e-6;  ///< stiffness against bending of the edge in any direction [N·m²]
 };
 
@@ -90,7 +94,7 @@ struct Measures {
 
 struct Pattern {
   std::filesystem::path file;
-  Measures measures;  ///< of the body for which the pattern is drawn; may lack some or all
+  Measures measures;  ///< of the body for which the pattern is drawn; each may be absent
   /// Start distance of flat front and back panels from the wearer's coronal plane, which separates front from back [m].
   /// The distance decreases to 0 toward the seams that join front and back.
   double depth = 0.16;
@@ -105,8 +109,8 @@ struct Pattern {
   /// Multiplies outlines and start positions by `factors` (across and up the drawings), and `depth` by the factor
   /// across. All other members keep their values.
   void scale_by(const Vec2& factors);
-  /// Indices of the panel and of its edge for a name "panel.edge" of a checked pattern; throws Error(internal) for
-  /// others.
+  /// Indices of the panel and of its edge for a name "panel.edge" of a checked pattern. Throws Error(internal) if the
+  /// pattern has no such edge.
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
 };
 
@@ -116,7 +120,8 @@ const scene::Table& pattern_rules();
 /// A pattern and the mistakes in its files.
 struct ReadPattern {
   Pattern pattern;  ///< valid only if there are no mistakes
-  /// One line each, which starts with file:line:column; first those of the pattern file, then those of its drawings.
+  /// One line per mistake, starting with file:line:column. Mistakes of the pattern file come before those of its
+  /// drawings.
   std::vector<std::string> mistakes;
   bool only_in_drawings = false;  ///< there are mistakes, all of them in drawings
 };

@@ -31,9 +31,9 @@ constexpr double kPredecessorOrigin = 1.12;
 // Measures of the bodies for which patterns of GarmentCode and of its predecessor are drawn [m].
 constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .height = 1.72};
 constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .height = 1.66};
-// Heights in files count from the floor, in files of the predecessor from kPredecessorOrigin. A file counts as one of
-// the predecessor if it has the predecessor's format of curves, or if its lowest point is below this height [m]. The
-// limit is negative, since flat trousers may end below the floor.
+// Heights in files of GarmentCode count from the floor, those in files of the predecessor from kPredecessorOrigin. A
+// file counts as one of the predecessor if it has the predecessor's format of curves, or if its lowest point is below
+// this height [m]. The limit is negative, since flat trousers may end below the floor.
 constexpr double kMinLowestPanel = -0.2;
 // Minimum height above the floor at which the lowest point of a pattern starts [m].
 constexpr double kMinStartHeight = 0.02;
@@ -411,7 +411,8 @@ class Reader {
           for (const Vec2& x : ends_as_worn(q, stitch.edge[1 - k])) other.push_back(*under.position + x);
         }
       if (own.empty()) continue;
-      // The rigid motion in the plane that maps its edges to those of the other panels, by least squares (Kabsch).
+      // The rigid motion in the plane that maps the edges of the turned panel to those of the panels below it, by least
+      // squares (Kabsch).
       const auto count = static_cast<double>(own.size());
       const Vec2 from = std::accumulate(own.begin(), own.end(), Vec2(0, 0)) / count;
       const Vec2 to = std::accumulate(other.begin(), other.end(), Vec2(0, 0)) / count;

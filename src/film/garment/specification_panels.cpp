@@ -55,7 +55,8 @@ void derive_geometry(SpecPanel& panel) {
 }
 
 std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches) {
-  std::vector<int> turns(panels.size(), -1);  // side, 0 or 1, relative to the first panel of each connected set
+  std::vector<int> turns(panels.size(),
+                         -1);  // side relative to the first panel of each connected set: 0 same, 1 other, −1 unknown
   for (std::size_t first = 0; first < panels.size(); ++first) {
     if (turns[first] >= 0) continue;
     std::vector<std::size_t> together{first};

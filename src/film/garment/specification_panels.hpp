@@ -24,7 +24,7 @@ struct SpecEdge {
 /// A stitch from one edge to another.
 struct SpecStitch {
   std::array<std::size_t, 2> panel, edge;
-  bool right_wrong = false;  // the right side of one panel continues the wrong side of the other
+  bool right_wrong = false;  // the outer (right) side of one panel continues the inner (wrong) side of the other
 };
 
 struct SpecPanel {
@@ -42,7 +42,7 @@ struct SpecPanel {
   int limbs_to_trunk = -1;  // number of limb panels between this one and the trunk; -1: unknown
   double area = 0;          // [m²]
   bool turned = false;      // folded over like a lapel; see Panel::turned
-  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // linear map from drawing to panel as worn, and centring
+  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // map from the drawing to the panel as worn
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
   bool is_limb() const { return around >= Around::left_arm; }

@@ -11,7 +11,7 @@
 namespace weft::garment {
 namespace {
 
-// Weight of the term that holds each vertex at its position in the panel alone, relative to the weight of an edge. It
+// Weight of the term that holds each vertex at the start position of its panel, relative to the weight of an edge. It
 // is small: only the positions of panels without a seam to others depend on it noticeably.
 constexpr double kAnchorWeight = 1e-4;
 // Number of smoothing rounds of inflate().

@@ -25,8 +25,8 @@ std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t ve
 /// Separates front and back panels in depth, which gives a pillow with round edges. Front panels move to −f(d) and back
 /// panels to +f(d), where d is the distance in the plane to the nearest seam between front and back: f(d) = √(d (2
 /// depth − d)) for d < depth, else f = depth. Then a few smoothing rounds move each vertex toward its neighbours,
-/// except vertices on these seams and on the rims of openings. Front and back meet only in the seams, since each has
-/// one depth for each point of the plane. Returns (across, depth, up) [m].
+/// except vertices on these seams and on the rims of openings. Front and back cannot intersect, since depths are ≤ 0 in
+/// front and ≥ 0 at the back. Returns (across, depth, up) [m].
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
 
 }  // namespace weft::garment

@@ -233,7 +233,7 @@ Affine parse_transform(const Drawing& drawing, const pugi::xml_node& node) {
   }
 }
 
-// The map from the content of a nested svg element to the content around it.
+// The map from coordinates inside a nested svg element to those around it.
 Affine place_nested(const Drawing& drawing, const pugi::xml_node& node) {
   const auto x = parse_numbers(node.attribute("x").value()), y = parse_numbers(node.attribute("y").value());
   const auto width = parse_length(node.attribute("width").value()),

@@ -20,13 +20,14 @@ struct DrawnPanel {
 /// Loads the outline of a panel from an SVG file. `id` is the id or Inkscape label of a path, polygon, rect or group,
 /// or a number such as "path:2" for the second path.
 /// - Units: the file's width, height and viewBox define the unit; without a viewBox it is the CSS pixel (96 to the
-///   inch). The transforms of the element and of its ancestors apply, as do the positions of nested svg elements.
+///   inch; in files of Inkscape before 0.92: 90 to the inch). The transforms of the element and of its ancestors apply,
+///   as do the positions of nested svg elements.
 /// - Path with two outlines, a seam line and its seam allowance around it: the seam line is loaded.
 /// - Group: its only closed outline is loaded (seam allowances and marks of FreeSewing do not count), and its texts.
-///   The text "edge: hem" names the edge, from corner to corner, whose curves are nearest to the start of the text. If
-///   several texts name one edge, each curve of the edge gets the nearest name. An edge without a text is named by its
-///   number, counted from 1 at the first corner. A text "origin" marks the origin of the panel; by default it is that
-///   of the group. Other texts are ignored.
+///   The text "edge: hem" gives the name "hem" to an edge: of the edges from corner to corner, the one nearest to the
+///   start of the text. If several texts name one edge, each curve of the edge gets the nearest name. If only some
+///   edges have a text, the others are named by their numbers, counted from 1 at the first corner. A text "origin"
+///   marks the origin of the panel; without it, the panel has the origin of the group. Other texts are ignored.
 /// Throws Error(asset_unreadable) with "file:line:column: element: what is wrong".
 DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& id);
 

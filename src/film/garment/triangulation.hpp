@@ -11,7 +11,7 @@
 
 namespace weft::garment {
 
-/// A triangulated flat region. Its first points are those of its outline, in their order.
+/// A triangulated flat region. `points` begins with the points of the outline, in their order.
 struct FlatMesh {
   std::vector<Vec2> points;
   std::vector<mesh::Triangle> triangles;  ///< counter-clockwise
@@ -23,16 +23,17 @@ struct FlatMesh {
 /// polygon at any time. Deterministic.
 FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside);
 
-/// Meshes a polygon whose edges are about `spacing` long. Most of it becomes a lattice of squares of that size, along
-/// the unit vector `warp` and across it; a Delaunay triangulation fills the strip between lattice and outline. All
-/// squares are cut along the same diagonal, so that six edges meet at each inner lattice point and folds are smooth
-/// (measured: diagonals that alternate from row to row corrugate every sharp fold).
+/// Meshes a polygon whose edges are about `spacing` long. Most of the polygon becomes a lattice of squares with sides
+/// `spacing`, along the unit vector `warp` and across it; a Delaunay triangulation fills the strip between lattice and
+/// outline. All squares are cut along the same diagonal, so that six edges meet at each inner lattice point and folds
+/// are smooth (measured: diagonals that alternate from row to row corrugate every sharp fold).
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing);
 
 /// Area of a polygon [m²]; positive if it is counter-clockwise.
 double polygon_area(std::span<const Vec2> outline);
 
-/// Indices of the start points of two sides of a closed polygon that cross or touch without being neighbours.
+/// Finds two sides of a closed polygon that cross or touch and are not adjacent. Returns the indices of their start
+/// points, or nothing if there are no such sides.
 std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const Vec2> outline);
 
 }  // namespace weft::garment

@@ -11,8 +11,8 @@
 namespace weft::garment {
 namespace {
 
-// Sections in this fraction of the upper arm, from the shoulder, cut it obliquely; the nearest one farther out replaces
-// them.
+// In this fraction of the upper arm, next to the shoulder, sections would cut the skin obliquely; the nearest section
+// beyond replaces them.
 constexpr double kShoulderFraction = 0.25;
 // Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
 constexpr double kWristExtension = 0.3;

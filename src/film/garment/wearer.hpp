@@ -32,11 +32,11 @@ struct Wearer {
 };
 
 /// Part of the body around which a panel starts bent. The tubes of the parts:
-/// - torso, neck: upright, around the body without the arms;
-/// - body: upright, around the body with the arms, nowhere narrower than higher up;
-/// - head: the widest section of the head at all heights, closed by a dome above;
+/// - torso, neck: with a vertical axis, around the body without the arms;
+/// - body: with a vertical axis, around the body with the arms; each section contains the section above it;
+/// - head: with a vertical axis; at each height the widest section of the head, which narrows to a dome above it;
 /// - arm: around the arm alone;
-/// - leg: around the leg and, above it up to the neck, around this half of the trunk.
+/// - leg: around the leg and, from the hip to the neck, around the same half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
 inline const std::vector<std::string> kAroundNames = {"",         "torso",     "body",     "neck",     "head",
                                                       "left_arm", "right_arm", "left_leg", "right_leg"};
@@ -45,7 +45,7 @@ inline const std::vector<std::string> kAroundNames = {"",         "torso",     "
 Around mirrored(Around part);
 
 /// A tube around a part of the body, made of convex sections of the skin across an axis. A point of the tube has two
-/// coordinates [m]: s along the axis, and a length along the section. s increases toward the trunk. For upright parts,
+/// coordinates [m]: s along the axis, and a length along the section. s increases toward the trunk. For vertical axes,
 /// s is the height above the floor; for legs, the length along the axis from the floor; for arms, 0 at the shoulder and
 /// negative below. The length increases counter-clockwise, seen from the trunk or from above.
 class Tube {
@@ -53,14 +53,15 @@ class Tube {
   /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part.
   Tube(const Wearer& wearer, Around part);
 
-  /// Girth of the section at s after it is moved outward by a distance [m]. Beyond the ends of the tube, the end
-  /// sections continue. In the dome of the head, returns the girth of the section before narrowing.
+  /// Girth [m] of the section at s, moved outward by `outward` [m]. Beyond the ends of the tube, the end sections
+  /// continue. In the dome of the head, this is the girth before narrowing.
   double girth(double s, double outward) const;
-  /// The point at `length` along the section at s, moved outward by `outward` [m]. The length starts at the direction
-  /// `angle` [rad]: 0 is the front, π/2 the wearer's left.
+  /// The point at `length` along the section at s, moved outward by `outward` [m]. `length` [m] counts from the
+  /// direction `angle` [rad]: 0 is the front, π/2 the wearer's left.
   Vec3 at(double s, double angle, double length, double outward) const;
   /// Direction of increasing s.
   Vec3 along(double s) const;
+  /// s of the lower and of the upper end.
   double low() const { return first_; }
   double high() const { return first_ + kSpacing * static_cast<double>(sections_.size() - 1); }
 

@@ -49,7 +49,8 @@ class PanelPlacer {
       if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
   }
 
-  /// Sets all positions: those given, then the others from seams. Returns a panel that gets none, or null.
+  /// Sets the positions of all panels: first those that the pattern states, then the others from seams. Returns a panel
+  /// without either, or null.
   const Panel* find_positions() {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     update_eases();
@@ -146,7 +147,7 @@ class PanelPlacer {
   }
 
   // Computes the ease of each ring: the distance by which its panels move outward so that the ring closes. For narrow
-  // sleeves it is negative: without this, closing their seams would pull them through the arm.
+  // sleeves it is negative: if they started farther out, closing their seams would pull them through the arm.
   void update_eases() {
     eases_.clear();
     for (const auto& [part, of_level] : widths()) {
@@ -160,7 +161,7 @@ class PanelPlacer {
       for (const auto& [level, width] : of_level) {
         const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
         const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
-        // The cap of a sleeve narrows and does not close around the arm: use the ease of the level below.
+        // The cap of a sleeve narrows and does not close around the arm: use the ease of the height step below.
         const double kept = arm && width < widest - kCapNarrowing ? raw.back() : ease;
         // In a gap between panels, use the ease of the nearer panel.
         if (const auto index = static_cast<std::size_t>(level - of_level.begin()->first); index > raw.size()) {
@@ -205,7 +206,7 @@ class PanelPlacer {
       }
     if (pairs.empty()) return std::nullopt;
     const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
-    // Start at the end of the tube that is nearest to the trunk.
+    // Start at the end of the tube with the largest s.
     Vec2 position(0, tube.high());
     for (int round = 0; round < kSeamRounds; ++round) {
       double sum = 0;
@@ -224,7 +225,8 @@ class PanelPlacer {
   std::span<const FlatMesh> meshes_;
   std::vector<std::optional<Vec2>> positions_;
   std::map<Around, Tube> tubes_;
-  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and ease at each kStep [m]
+  std::map<Around, std::pair<double, std::vector<double>>>
+      eases_;  // by part: first height, and the ease at each height step [m]
 };
 
 /// Nearest-neighbour search among the vertices of the skin, sorted into cubic cells.

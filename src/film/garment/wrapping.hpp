@@ -22,7 +22,8 @@ bool are_drawn_from_same_side(const Panel& a, const Panel& b);
 ///   from the skin is Pattern::gap plus kLayerDistance for each layer below.
 /// - The panels around a part form a ring. If the ring is wider than the girth there, its panels move outward until the
 ///   ring closes. Narrow sleeves move toward the skin.
-/// - A panel without a position gets the one along its part at which its seams to placed panels are shortest.
+/// - If the pattern states no position for a panel, the panel gets the position along its part at which its seams to
+///   placed panels are shortest.
 /// `refuse` receives the description of a mistake and must throw.
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer, const std::function<void(const std::string&)>& refuse);

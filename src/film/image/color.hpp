@@ -20,7 +20,7 @@ inline constexpr int kHeatColors = 256;
 /// to pale yellow. Lightness (CIE L*) rises linearly from 15 to 90, so that equal differences look equal, also in grey.
 Vec3 heat_color(double t);
 
-/// heat_color at i / (kHeatColors - 1).
+/// Entry i is heat_color(i / (kHeatColors - 1)).
 std::array<Vec3, kHeatColors> heat_table();
 
 }  // namespace weft::image

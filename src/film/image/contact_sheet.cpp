@@ -40,7 +40,7 @@ std::size_t fitting(const Font& font, std::string_view text, int max_width) {
   return length;
 }
 
-// Longer captions are cut, to limit the height of a sheet.
+// If SheetPicture::left needs more lines, the last one is "…". This limits the height of a sheet.
 constexpr std::size_t kMaxCaptionLines = 60;
 
 // Wraps a text at blanks to lines no wider than `max_width` [pixels]; splits a word that is longer than a line.

@@ -10,7 +10,7 @@ namespace weft::image {
 
 struct SheetPicture {
   Image image;
-  std::string left, right;  ///< caption: `left` can take several lines, `right` is at the end of the last line
+  std::string left, right;  ///< caption: `left`, wrapped to lines; `right` at the end of the last line
 };
 
 /// Size of a contact sheet [pixels].
@@ -22,11 +22,11 @@ struct SheetSize {
   bool is_writable() const;
 };
 
-/// Size of the sheet that contact_sheet() makes. Reads the captions and sizes of the pictures, but not their pixels.
+/// Size of the sheet that contact_sheet() makes of `pictures` (at least one). Does not read the pixels of the pictures.
 SheetSize contact_sheet_size(std::span<const SheetPicture> pictures, int columns);
 
 /// Lays out pictures of one size in rows under a heading. The size of the text is proportional to the width of the
-/// pictures, within limits.
+/// pictures, within limits. Throws Error(internal) if `pictures` is empty, the sizes differ or `columns` is below 1.
 Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const std::string& heading);
 
 }  // namespace weft::image

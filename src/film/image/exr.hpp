@@ -23,11 +23,11 @@ struct Layers {
   bool empty() const { return channels.empty(); }
 };
 
-/// Writes the channels with ZIP compression under a temporary name, then renames the file. The primaries are those of
-/// Rec. 709 and sRGB. Throws Error(output_failed) with the reason.
+/// Writes the channels with ZIP compression under a temporary name, then renames the file. The colour primaries are
+/// those of Rec. 709, which sRGB shares. Throws Error(output_failed) with the reason.
 void write_exr(const std::filesystem::path& file, const Layers& layers, const Metadata& metadata = {});
 
-/// Size [pixels] and metadata of a file.
+/// Size [pixels] of a file, and those of its attributes that are texts.
 struct ExrHeader {
   int width = 0, height = 0;
   Metadata metadata;

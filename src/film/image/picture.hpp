@@ -27,7 +27,7 @@ bool is_targa(std::string_view bytes);
 /// Decodes a PNG (any depth, palette, with or without alpha), JPEG or TGA file. Throws std::runtime_error.
 Picture decode_picture(std::string_view bytes);
 
-/// Decodes a file. Throws Error(asset_unreadable), which names the file.
+/// Reads and decodes a file as decode_picture() does. Throws Error(asset_unreadable) with the name of the file.
 Picture read_picture(const std::filesystem::path& file);
 
 }  // namespace weft::image

@@ -32,7 +32,7 @@ std::string png_bytes(const Picture& picture);
 /// over white. Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 
-/// Reads the metadata that precede the pixels, without decoding the pixels. Throws Error(asset_unreadable).
+/// Reads the metadata that precede the pixels in the file, without decoding the pixels. Throws Error(asset_unreadable).
 Metadata read_png_metadata(const std::filesystem::path& file);
 
 }  // namespace weft::image

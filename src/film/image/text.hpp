@@ -12,7 +12,8 @@ namespace weft::image {
 
 using Color = std::array<std::uint8_t, 3>;  ///< sRGB
 
-/// DejaVu Sans in one size. Text is UTF-8; invalid bytes and characters missing in the font are drawn as boxes.
+/// DejaVu Sans in one size. Text is UTF-8. An invalid byte is drawn as U+FFFD (a question mark in a rhombus), and a
+/// character that the font lacks as a box.
 class Font {
  public:
   /// `pixels`: size of the em square, clamped to 4 to 400.
@@ -23,7 +24,7 @@ class Font {
 
   int width(std::string_view text) const;  ///< [pixels]
 
-  /// Draws a line of text from (x, baseline) on, clipped to the picture.
+  /// Draws a line of text that starts at column `x` and stands on row `baseline` [pixels], clipped to the picture.
   void draw(Image& image, int x, int baseline, std::string_view text, const Color& color) const;
 
  private:

@@ -11,8 +11,8 @@ Vec3 mean_of(std::span<const Vec3> points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// The pose that maps `mesh` to `x` best in the least-squares sense. Computed from vertices, because bodies that forces
-/// move have no key-framed pose.
+/// The pose that maps `mesh` to `x` best in the least-squares sense. The pose is computed from vertices, because a body
+/// that forces move has no key-framed pose.
 scene::Pose pose_of(std::span<const Vec3> mesh, std::span<const Vec3> x) {
   const Vec3 middle_mesh = mean_of(mesh), middle = mean_of(x);
   Mat3 covariance = Mat3::Zero();

@@ -14,8 +14,9 @@ class CameraMounts {
  public:
   CameraMounts(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Moves each camera that follows a body: applies the motion of the body since its start to position and target, as
-  /// the camera's keys give them. Takes time linear in the number of vertices of the followed obstacles.
+  /// Moves each camera that follows an obstacle or part. The snapshot must contain the cameras as their keys place
+  /// them. Transforms position and target by the motion of the obstacle or part since the start. Takes time linear in
+  /// the number of vertices of the followed obstacles.
   void move(frame::FrameSnapshot& snapshot) const;
 
  private:

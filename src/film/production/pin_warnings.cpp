@@ -16,9 +16,10 @@
 namespace weft::production {
 namespace {
 
-// Smallest jump of a pin at the start that is reported [m].
+// A pin whose keys begin farther than this from its particles gets a warning [m].
 constexpr double kMinJump = 1e-3;
-// Maximum distance without a warning between a pin and the body that it follows, at the start [m]; 5 cm for capes.
+// Maximum distance without a warning between a pin and the body that it follows, at the start [m]. Pins of capes start
+// up to 0.05 m away.
 constexpr double kMaxPinDistance = 0.1;
 // Minimum depth in an obstacle from which a particle counts as inside [m].
 constexpr double kEntryDepth = 1e-3;
@@ -163,7 +164,8 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
     for (const integrator::HeldParticle& particle : held) {
       const std::size_t number = moving.pins.pin_of(particle.constraint.particle, t);
       Vec3& x = before[static_cast<std::size_t>(particle.constraint.particle)];
-      // Compare the mean speed, too: the velocity of a target does not show a jump between two samples.
+      // Also test the mean speed since the last sample: the velocity of a target does not show a jump between two
+      // samples.
       const double mean = t > last && last >= 0 ? (particle.x_end - x).norm() / (t - last) : 0;
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
@@ -281,8 +283,8 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       for (const integrator::HeldParticle& particle : held) {
         const std::size_t pin = moving.pins.pin_of(particle.constraint.particle, t);
         if (entered.contains(pin) || !moving.is_moved(scene, pin)) continue;
-        // A pin enters a body only if it was outside before: an open surface, such as a floor, has no inside, and what
-        // is behind it has not entered it.
+        // A pin enters a body only if the pin was outside before. An open surface, such as a floor, has no inside: a
+        // pin that has always been behind the surface has not entered it.
         const double height = height_of(particle.x_end);
         if (height > 0) outside.insert(pin);
         if (height > -kEntryDepth || !outside.contains(pin)) continue;

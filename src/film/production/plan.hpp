@@ -16,19 +16,20 @@ struct PlanItem {
 };
 
 /// Lists the parts without building the simulation. Reads only the files of characters (for the size of their key
-/// frames), and of cloths from meshes and fitted patterns (for their rest shapes). If one cannot be used, throws Error
-/// with the code asset_unreadable or scene_invalid.
+/// frames), and builds only cloths from meshes and from fitted patterns (for their rest shapes). If a file or cloth
+/// cannot be used, throws Error with the code asset_unreadable or scene_invalid.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
 /// Whether anything in the scene can collide.
 bool can_collide(const scene::Scene& scene);
 
-/// One warning for each infinite plane beyond the first, and for each light beyond the maximum number: pictures do not
-/// show them.
+/// One warning for each visible infinite plane after the first, and one for each light after the first
+/// frame::kMaxLights: pictures show neither.
 std::vector<std::string> find_undrawn(const scene::Scene& scene);
 
-/// The warnings of `weft check`: find_undrawn(), bodies that implicit Euler slows down, and pin_warnings.hpp. If the
-/// scene has moving pins, throws what the constructor of SceneSimulation throws.
+/// The warnings of `weft check`: those of find_undrawn(), those of pin_warnings.hpp, and with implicit Euler one for
+/// each obstacle that can turn freely, because this method slows its rotation. If the scene has moving pins, throws
+/// what the constructor of environment::Environment throws.
 std::vector<std::string> find_warnings(const scene::Scene& scene);
 
 }  // namespace weft::production

@@ -14,13 +14,14 @@ namespace weft::production {
 
 class SceneSimulation : public simulation::Simulation {
  public:
-  /// Poses wearers with their arms in the sleeves of their garments. If a garment cannot be untangled from its wearer,
-  /// lets the wearer grow into it (environment/growing.hpp). Logs the warnings of find_undrawn() and find_jumps().
-  /// Throws Error with the code asset_unreadable or scene_invalid.
+  /// If the arms of a wearer (a character in a garment) go through the garment at the start, poses them in its sleeves
+  /// or off the body. If a garment cannot be untangled from its wearer, lets the wearer grow into the garment. For
+  /// both, see film/environment/growing.hpp. Logs the warnings of find_undrawn() (plan.hpp) and find_jumps()
+  /// (pin_warnings.hpp). Throws Error with the code asset_unreadable or scene_invalid.
   explicit SceneSimulation(const scene::Scene& scene);
 
-  /// Snapshot of the current frame, made at the first call in each frame. After construction, this is frame 0 or, with
-  /// a preroll, its first frame, whose number is negative.
+  /// Snapshot of the current frame; made anew only if the simulation has changed since the last call. After
+  /// construction, this is frame 0 or, with a preroll, the first frame of the preroll, whose number is negative.
   frame::SnapshotPtr snapshot() const;
   std::vector<frame::ObjectInfo> objects() const;
 
@@ -42,8 +43,8 @@ struct StartView {
   std::string description;                            ///< describes `places` for a message; empty if there are none
 };
 
-/// Makes the start as the scene gives it: does not untangle, and does not refuse surfaces that touch or cross. Throws
-/// Error with the code asset_unreadable or scene_invalid.
+/// Shows the start as the scene gives it: neither untangles cloth nor poses wearers, and accepts surfaces that touch or
+/// cross. Throws Error with the code asset_unreadable or scene_invalid.
 StartView view_start(const scene::Scene& scene);
 
 }  // namespace weft::production

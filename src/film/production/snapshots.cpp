@@ -27,7 +27,7 @@ constexpr double kCharacterCrease = 80;
 // Maximum roll of a camera in a file that is ignored without a warning [degrees].
 constexpr double kMaxIgnoredRoll = 0.1;
 
-// Default colour of the back of a cloth: this fraction of the way from the colour of its front to white.
+// The default colour of the back of a cloth lies this fraction of the way from the colour of the front to white.
 constexpr double kBackPaleness = 0.35;
 
 frame::Appearance appearance(const scene::Look& look) {
@@ -47,12 +47,12 @@ frame::Appearance appearance(const scene::Look& look) {
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Ratio of thickness to density of cloth without a named fabric [m per kg/m²], estimated from the named fabrics.
 constexpr double kThicknessPerDensity = 2.2e-3;
-// kStrandTurnLength: length of a rope along which a strand turns once [diameters]. kMinTwistedDiameter: minimum
-// diameter of ropes that are drawn with strands [m], because strands finer than a pixel would flicker.
+// kStrandTurnLength: length of a rope along which a strand turns once around the rope [diameters]. kMinTwistedDiameter:
+// minimum diameter of ropes that are drawn with strands [m], because strands finer than a pixel would flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
-/// The look of a cloth or rope. If the scene does not set a value of a cloth, it comes from the fabric; the width of
-/// hems also depends on the shape.
+/// The look of a cloth or rope. Values of a cloth that the scene does not set come from the fabric; the width of hems
+/// also depends on the shape.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
   if (cloth.rope) {
@@ -124,7 +124,7 @@ void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pict
     surface.appearance.coat = look.gloss.value_or(0);
   }
   if (surface.infinite_floor && look.image) make_opaque(surface.appearance);
-  // Keep the materials of the character's file, which its parts have already.
+  // Keep the materials of the character's file, which the parts of the surface have already.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
     const frame::Paint figure = part.appearance.paint;
@@ -161,7 +161,8 @@ std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
   return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
 }
 
-/// Surface part with a material of a character's file. Warns if its picture cannot be decoded, and leaves it out.
+/// Surface part with a material of a character's file. If the picture of the material cannot be decoded, warns and
+/// leaves the picture out.
 frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
   frame::SurfacePart part{material.name, {}};
   part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
@@ -259,8 +260,8 @@ Box3 bounds_over_run(const model::Model& model, std::size_t body, double duratio
   return bounds;
 }
 
-/// Sensor height of a camera [mm]; 0 if it has no focal length. The width of the sensor lies along the longer side of
-/// the picture.
+/// Sensor height of a camera [mm]; 0 if the camera has no focal length. The width of the sensor lies along the longer
+/// side of the picture.
 double sensor_height(const scene::Camera& camera, const scene::Render& render) {
   if (!scene::has_focal_length(camera)) return 0;
   return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
@@ -277,7 +278,7 @@ motion::Spline<7> camera_track(const scene::Camera& camera) {
   return {camera.interpolation, std::move(times), std::move(values)};
 }
 
-// Track of a camera from a file, in whose coordinates y is up and z points to the front.
+// Track of a camera from a file. In the coordinates of the file, y is up and z points to the front.
 motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
   const std::string where =
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);

@@ -21,20 +21,23 @@ namespace weft::production {
 /// Textures from picture files. Decodes each file once.
 class Pictures {
  public:
-  /// Throws Error(scene_invalid) if the file cannot be read, because it has changed since the scene was checked.
+  /// Throws Error(scene_invalid) if the file cannot be read, such as after a change since the scene was checked.
   std::shared_ptr<const frame::Texture> of_file(const std::filesystem::path& file);
 
  private:
   std::map<std::filesystem::path, std::shared_ptr<const frame::Texture>> known_;
 };
 
-/// The data of a scene that are drawn but not simulated: appearance of objects, stage, cameras and lights.
+/// The data of a scene that are drawn but not simulated: appearance of objects, stage (background, exposure, heat
+/// colours), cameras and lights.
 class Looks {
  public:
-  /// `environment`: that of the scene. If it is null and a camera follows a body, the constructor makes one.
+  /// `environment`: that of the scene. If this is nullptr and a camera follows a body, the constructor makes the
+  /// environment.
   explicit Looks(const scene::Scene& scene, const environment::Environment* environment = nullptr);
 
-  /// Returns a copy of a snapshot with these looks. The snapshot must have the same objects as the scene.
+  /// Returns a copy of a snapshot with these looks. The snapshot must have the same objects as the scene. All snapshots
+  /// must have the surfaces of the first call: their looks are applied only once.
   frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
   /// Sets stage, cameras and lights of a snapshot. Its time and the positions of its objects must be set already.
   void surround(frame::FrameSnapshot& snapshot) const;
@@ -67,9 +70,9 @@ class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// `model`: that of the environment, with its current motions. `particles`: positions of all cloths [m]. `heat`: one
-  /// list per cloth, or none. `moved`: per body, its vertices if forces have moved it [m]; empty if it is where its
-  /// keys place it.
+  /// `model`: that of the simulation, with the current motions. `particles`: positions of all cloths [m]. `heat`: per
+  /// cloth, one value per particle (see frame::Stage::Heat); or no lists. `moved`: per body, the positions of its
+  /// vertices if forces have moved the body [m], otherwise an empty list; or no lists, if forces move no body.
   frame::SnapshotPtr make(int frame, double time, const model::Model& model, std::span<const Vec3> particles,
                           std::vector<std::vector<float>> heat, std::vector<std::vector<Vec3>> moved = {}) const;
 

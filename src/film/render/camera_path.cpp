@@ -10,8 +10,9 @@ namespace {
 
 using Kind = frame::Camera::Kind;
 
-// A camera of kind `whole` keeps cloth in view up to this distance from the subjects of the first frame [diagonals of
-// their bounding box]. Without this limit, the camera would have to move very far away from cloth that falls endlessly.
+// A camera of kind `whole` keeps cloth in view up to this distance from the bounding box of the subjects in the first
+// frame [diagonals of this box]. Without this limit, the camera would have to be very far away if cloth falls
+// endlessly.
 constexpr double kClothRange = 1.5;
 
 // The smoothing kernel, a Gaussian, ends at this number of standard deviations; 0.3 % of its weight is beyond.
@@ -158,7 +159,7 @@ double CameraPath::frames_in(double seconds) const {
 }
 
 /// Gaussian means of the subjects' centres over neighbouring frames. At both ends, point reflection continues the
-/// trajectory of the centre, so that the camera moves steadily with a steady walk from the first frame on.
+/// trajectory of the centre. Thus, if the subjects move steadily, the camera does too, from the first frame on.
 std::vector<Vec3> CameraPath::smooth_centers() const {
   const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
   const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;

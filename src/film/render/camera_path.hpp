@@ -1,4 +1,4 @@
-// The camera of a run: placed by the scene, or computed from all frames before the first is drawn.
+// The camera of a run: placed by the scene, or computed from all frames of the run.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,23 @@ namespace weft::render {
 
 class CameraPath {
  public:
-  /// `camera`: name of the camera. Empty: the scene's first camera; without any, one that shows the whole run.
+  /// `camera`: name of the camera. Empty: the scene's first camera; if the scene has none, automatic_camera().
   /// `aspect`: width / height of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
-  /// Whether the camera needs all frames before the first can be drawn. Throws as find_camera() does.
+  /// Whether the camera is computed, so that no frame can be drawn until all are known. Throws as find_camera() does.
   static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
 
-  /// Call add_frame() with every frame of the run, in order; then compute_cameras().
+  /// To compute the camera, call add_frame() with every frame of the run, in order, and then compute_cameras().
   void add_frame(const frame::FrameSnapshot& snapshot);
   void compute_cameras();
 
-  /// The camera of a frame. If the camera is computed, add_frame() must have received at least one frame. The result is
-  /// then that of the last such frame whose number is at most that of `snapshot`, or of the first frame if all are
-  /// later.
+  /// The camera of a frame. A computed camera requires at least one added frame; the result is the camera of the last
+  /// added frame that is not later than `snapshot` or, if all are later, of the first added frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:
-  /// One frame: the points that must be in view (`fit`), their bounding box, and the camera.
+  /// One frame: the points that must be in view (`fit`), the bounding box of these points, and the camera.
   struct Frame {
     int number = 0;
     double time = 0;

@@ -26,15 +26,15 @@ class DataPasses {
  public:
   DataPasses(int width, int height) : width_(width), height_(height) {}
 
-  /// Appends to `layers`, as 32-bit floats:
+  /// Appends these channels to `layers`, as 32-bit floats:
   /// - depth.Z: distance along the view axis [m]; infinite where nothing is visible
   /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
   /// - id.object: 0 for nothing, 1 for the floor, 2 + i for surface i of the picture; id.part: 1 + k for part k of that
   ///   surface, 0 if it has no parts
-  /// - uv.U, .V: rest coordinates (weft, warp) [m]
+  /// - uv.U, .V: Surface::uv (weft, warp) [m]; 0 without
   /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the motion of the
-  ///   camera; a surface that `before` does not contain counts as still; 0 without `before`
-  /// - heat.V: strain or speed, if Stage::heat selects one; otherwise there is no such layer
+  ///   camera; a surface without `before`->positions() counts as still; 0 without `before`
+  /// - heat.V: strain or speed (Stage::heat), only if a surface has heat values
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);
 

@@ -11,7 +11,8 @@ namespace weft::render {
 
 /// Calls write(index, covered, depth, weight_b, weight_c) for each texel of the triangle's bounding box inside the
 /// `width` x `height` texels, row by row; never for a triangle seen edge-on. `covered`: whether the triangle covers the
-/// texel's centre. Corners: x, y in texels; z is the depth, interpolated linearly.
+/// texel's centre. `weight_b`, `weight_c`: barycentric weights of b and c. Corners: x, y [texels]; z is the depth,
+/// which is interpolated linearly.
 template <class Write>
 void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, int width, int height,
                    const Write& write) {

@@ -10,8 +10,8 @@
 
 namespace weft::render {
 
-/// Darkens `picture` (format as for Outlines::smooth()) along the edges of the faces that are visible according to
-/// `seen`. Lines are one pixel wide and antialiased. In `seen`, surface i has the number kFirstSurface + i.
+/// Darkens `picture` (RGBA with 16 bits per channel, lowest row first) along those edges of faces that are visible
+/// according to `seen`, in which surface i has the number kFirstSurface + i. Lines are one pixel wide and antialiased.
 void draw_edges(std::span<const SurfaceBuffers> surfaces, const View& view, int width, int height,
                 std::span<const Seen> seen, std::span<std::uint64_t> picture);
 

@@ -43,7 +43,7 @@ class FrustumFit {
   void add(const FrustumFit& other);
 
   const ViewAxes& axes() const { return axes_; }
-  /// Distance from `center` that an eye looking at it needs, so that all points are in the picture [m].
+  /// Smallest distance from `center` [m] at which an eye that looks at `center` has all points in its picture.
   double distance(const Vec3& center) const;
   /// Sets position and target of the camera. The eye is at the smallest distance that has all points in the picture.
   /// The points are centred in the direction of the picture (horizontal or vertical) that needs the larger distance.

@@ -25,7 +25,7 @@ std::vector<Instant> instants(double shutter, bool lens, int count) {
     Instant instant;
     instant.back = shutter / 360 * (k + 0.5) / count;
     // Points spread evenly over the disc (Vogel 1979). The factor 5 changes their order, so that position on the lens
-    // and time do not correlate. Each point occurs once, because `count` is a power of two.
+    // and time do not correlate. Each point occurs once, because `count` is a power of two if `lens` is true.
     const int place = 5 * k % count;
     if (lens)
       instant.lens = std::sqrt((place + 0.5) / count) * Vec2(std::cos(golden * place), std::sin(golden * place));

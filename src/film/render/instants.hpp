@@ -20,9 +20,9 @@ struct Instant {
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
 /// Interpolates linearly between a frame (back = 0) and the one before (back = 1): time, positions, and direction,
-/// position, target and intensity of lights. What `before` lacks stays as in `now`.
+/// position, target and intensity of lights. Surfaces and lights that `before` lacks stay as in `now`.
 frame::FrameSnapshot between(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, double back);
-/// The same for position, target and field of view of a camera.
+/// Interpolates position, target and field of view of a camera in the same way.
 frame::Camera between(const frame::Camera& now, const frame::Camera& before, double back);
 
 /// The camera with its eye moved to a point of its lens, and turned so that the point in focus on its view axis stays

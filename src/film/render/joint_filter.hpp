@@ -10,10 +10,10 @@
 namespace weft::render {
 
 /// Averages each of `planes` over 5 x 5 points, first along rows, then along columns. `step`: distance between these
-/// points [points]. A neighbour on the same surface has more weight if it is near the tangent plane and if its normal
-/// is similar; if `step` exceeds 1, also if its value is similar. The weight does not depend on the distance within the
-/// tangent plane: otherwise, floors at oblique view would be averaged along rows only, which would be visible as
-/// streaks. `scratch`: as many planes as `planes`; overwritten.
+/// points [points]. A neighbour on another surface has no weight. On the same surface, it has more weight if it is near
+/// the tangent plane of the point and if its normal is similar; if `step` exceeds 1, also if its value is similar. The
+/// weight does not depend on the distance within the tangent plane: otherwise, floors at oblique view would be averaged
+/// along rows only, which would be visible as streaks. `scratch`: as many planes as `planes`; overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
 /// Averages `plane` over 5 x 5 points in a single pass, only at points whose `wanted` is above 0, and only over

@@ -15,7 +15,7 @@ namespace weft::render {
 using frame::kMaxLights;
 
 /// The first kMaxLights lights of the snapshot. If it has none, the lights of the look: a warm key light from above and
-/// beside the camera; for the look `stage`, also a second light from the other side.
+/// left of the camera; for the look `stage`, also a rim light from the right, behind the subjects.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
                                            const ViewAxes& camera, const Vec3& up);
 
@@ -41,7 +41,7 @@ struct LightsUniform {
 /// A light, prepared for shaders and rays.
 struct Lamp {
   LightUniform packed;
-  /// Tangent of half the angular width of the source; that of a spot is seen from its target.
+  /// Tangent of half the angular width of the source (for a spot: as seen from its target).
   float source_tangent = 0;
 
   bool is_spot() const { return packed.toward_light.w() != 0; }

@@ -27,8 +27,8 @@ class Mirror {
     bool painted;  ///< whether pictures on surfaces are shown
   };
   /// Draws the subjects from `view`, a mirrored() view, whose frame block is `block`. The light block must be bound.
-  /// Binds the picture to texture unit 13 and its distances to unit 14. Leaves the frame block and the other units
-  /// bound to the data of this pass.
+  /// Binds the picture to texture unit 13 and its distances to unit 14. Leaves the frame block and other units bound to
+  /// the data of this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }

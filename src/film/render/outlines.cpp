@@ -22,12 +22,13 @@ constexpr float kOffsetX[] = {19 / 32.f, 15 / 32.f, 11 / 32.f, 25 / 32.f, 7 / 32
 constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 32.f, 27 / 32.f, 23 / 32.f, 7 / 32.f,
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
-// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance is linear. It has a
-// step where a surface ends, and a kink where a surface folds. At a crease seen head-on, the change of slope from pixel
-// to pixel, relative to 1 / distance, is this tangent times the angle of a pixel.
+// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance is linear.
+// 1 / distance has a step where a surface ends, and a kink where a surface folds. At a crease seen head-on, the change
+// of slope from pixel to pixel, relative to 1 / distance, is the tangent of the crease angle times the angle of a
+// pixel.
 constexpr double kMinCreaseTangent = 0.4;
 // A sample takes the colour of its pixel if the point that the pixel shows is in the plane of the sample's triangle, up
-// to this tolerance [`kink_`].
+// to this tolerance [multiples of `kink_`].
 constexpr float kSamePlane = 0.25f;
 
 /// Edge function: twice the signed area of the triangle of a, b and a point; positive if the point is left of the edge
@@ -278,9 +279,10 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
   }
 }
 
-/// The pixel from which each sample takes its colour. If the sample's own pixel shows the sample's surface in the plane
-/// of the sample's triangle, it is this pixel. Else it is that neighbour with the same surface whose point is nearest
-/// to this plane. Thus samples on each side of an edge take colours from their own side.
+/// The source of each sample: the pixel from which the sample takes its colour. This is the sample's own pixel if it
+/// shows the sample's surface in the plane of the sample's triangle. Else it is that neighbour with the same surface
+/// whose point is nearest to this plane, so that samples on each side of an edge take colours from their own side.
+/// Without such a neighbour, it is the own pixel.
 std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t slot, std::span<const Seen> seen) const {
   const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
@@ -349,7 +351,7 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   number_samples();
   for (std::size_t i = 0; i < meshes.size(); ++i) sample(meshes[i], static_cast<float>(kFirstSurface + i), view);
   if (floor) sample_floor(*floor, view);
-  // Computes all pixels before the first is written, because they read each other.
+  // Computes all pixels before it writes the first one, because each pixel reads its neighbours.
   resolved_.clear();
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
     std::uint64_t sums[3] = {}, mean = 0;

@@ -1,5 +1,6 @@
-// Antialiasing: pixels in which a surface ends or folds get 16 samples. Each sample takes its colour from the pixel, or
-// from a neighbour, that shows the same surface as the sample.
+// Antialiasing: pixels in which a surface ends or folds get 16 samples. Each sample takes its colour from its own pixel
+// or, if this pixel shows another surface or the other side of the fold, from a neighbouring pixel that shows what the
+// sample shows.
 #pragma once
 
 #include <array>
@@ -35,7 +36,7 @@ class Outlines {
  private:
   static constexpr int kSamples = 16;
   /// What the samples of one pixel show: 1 / distance [1/m] (0: nothing), the change of this value from pixel to pixel
-  /// in the plane of the triangle [1/m], and the number of the surface.
+  /// in the plane of the triangle [1/m], and the number of the surface (as Seen::surface).
   struct Samples {
     float nearness[kSamples] = {}, slope_x[kSamples] = {}, slope_y[kSamples] = {}, surface[kSamples] = {};
   };
@@ -63,7 +64,7 @@ class Outlines {
   int width_, height_, words_;  // words_: bit words in a row
   float kink_ = 0;              // minimum second difference of 1 / distance at a fold, relative to 1 / distance
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
-  std::vector<int> first_;      // by word of `bits_`: index of its first pixel in `pixels_`
+  std::vector<int> first_;      // by word of `bits_`: index in `pixels_` of the first pixel of the word
   std::vector<Pixel> pixels_;
   std::vector<Samples> samples_;
   std::vector<std::uint64_t> resolved_;

@@ -25,6 +25,7 @@ struct PaintedMesh {
 /// Splits drawn vertices whose corners have different paint coordinates, as at seams, and sorts the triangles by part.
 PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
 
+/// The holes of a painted mesh, for passes on the CPU.
 class Holes {
  public:
   /// `opacity`: per range, the opacity of its picture; null if the range has no holes.
@@ -34,7 +35,7 @@ class Holes {
   /// Opacity of the triangles of a range; null if they have no holes.
   const Opacity* opacity(std::size_t range) const { return opacity_[range]; }
   std::span<const PaintedRange> ranges() const { return mesh_->ranges; }
-  /// Coordinates of a drawn vertex in the picture of a range.
+  /// Coordinates of a drawn vertex in the picture of a range (0 to 1, see Paint::texture_from_uv).
   Eigen::Vector2f place(std::size_t range, Index vertex) const;
 
  private:

@@ -24,7 +24,7 @@ class Paints {
  public:
   explicit Paints(const Gl& gl) : gl_(&gl) {}
 
-  /// The texture of a paint, made on first use. The paint must have a picture.
+  /// The texture of a paint, made on first use. `paint` must have a picture (`texture`).
   const PaintTexture& of(const frame::Paint& paint);
 
  private:

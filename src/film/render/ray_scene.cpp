@@ -74,7 +74,7 @@ constexpr const char* kKernels = "isa=sse2";
 struct RayScene::Tree {
   RTCDevice device = rtcNewDevice(kKernels);
   RTCScene scene = nullptr;
-  std::deque<DrawnMesh> filtered;  // surfaces that do not stop all light
+  std::deque<DrawnMesh> filtered;  // meshes with holes or an opacity below 1, for reject_random_hits()
 
   ~Tree() {
     if (scene != nullptr) rtcReleaseScene(scene);

@@ -47,8 +47,8 @@ struct Hits {
   static constexpr int kNone = -1;
   std::array<int, kLanes> mesh;  ///< index of the mesh; kNone: the ray hits nothing
   std::array<std::size_t, kLanes> triangle;
-  Lanes distance;  ///< in lengths of the ray's direction
-  Lanes3 normal;   ///< unit length, on the side from which the corners run counter-clockwise
+  Lanes distance;  ///< in lengths of the ray's direction; 0 if the ray hits nothing
+  Lanes3 normal;   ///< unit length, on the side from which the corners run counter-clockwise; +z if it hits nothing
 };
 
 class RayScene {
@@ -58,8 +58,8 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// Replaces the surfaces. Positions and triangles are copied, but a mesh with holes must stay valid for all later
-  /// rays. Throws std::bad_alloc, or Error(internal) with Embree's reason.
+  /// Replaces the surfaces. Positions and triangles are copied; but the triangles and Holes of a mesh with holes must
+  /// stay valid while rays are traced. Throws std::bad_alloc, or Error(internal) with the number of Embree's error.
   void build(std::span<const DrawnMesh> meshes);
 
   /// 1 for each wanted ray that a surface stops, else 0. A surface with holes or an opacity below 1 stops a random

@@ -17,7 +17,8 @@
 
 namespace weft::render {
 
-/// Mean linear colours of appearances. Holes that pictures cut do not count. Each picture is averaged only once.
+/// Mean linear colours of appearances. A picture with Alpha::over_color is ignored; in others, holes do not count. Each
+/// picture is averaged only once.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back);
@@ -35,7 +36,8 @@ struct ReflectingSurface {
   std::vector<Range> ranges;  ///< the last range also covers all further triangles
 };
 
-/// `look`: appearance of the whole surface. `plain`: all parts have this appearance. `dark`: all colours are black.
+/// `look`: appearance of the whole surface. `plain`: all parts have the appearance `look`. `dark`: all colours are
+/// black.
 ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
                                      bool dark, MeanColors& colors);
 

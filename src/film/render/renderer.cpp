@@ -28,8 +28,8 @@ namespace {
 
 // Cloth is refined if all cloths together have at most this number of triangles; finer meshes look smooth without it.
 constexpr std::size_t kMaxRefinedTriangles = 20000;
-constexpr std::size_t kMaxPeeledLayers = 4;  // overlapping layers of translucent cloth that are drawn
-// Motion blur averages so many sharp pictures that the motion during the time of each is at most this [pixels].
+constexpr std::size_t kMaxPeeledLayers = 4;  // maximum number of drawn layers of translucent cloth
+// Motion blur averages so many sharp pictures (at most `instants`) that each covers at most this motion [pixels].
 constexpr double kMaxMotionPerPicture = 5;
 constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor / (subjects' radius + distance of the eye)
 
@@ -259,7 +259,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   gl.Disable(GL_DITHER);
   std::vector<DrawnMesh> meshes;
   std::deque<Holes> holes;
-  std::vector<char> sheer;  // flag for each surface that is translucent; empty if none is
+  std::vector<char> sheer;  // per surface: 1 if it is translucent; empty if none is
   for (const SurfaceBuffers& surface : passes->surfaces) {
     meshes.push_back({surface.positions(), surface.triangles()});
     const double opacity = quality.trims && !plan.lighting.style.plain ? opacity_of(surface.surface()) : 1;

@@ -19,12 +19,12 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;          ///< name; empty: the scene's first camera; without any, one that shows the whole run
+  std::string camera;          ///< name; empty: the scene's first camera; if it has none, automatic_camera()
   int threads = 0;             ///< number of threads of the software rasteriser; 0: its default
   bool layers = false;         ///< whether layers() will be called; pictures are then sharp, without blur
   bool needs_image16 = false;  ///< whether image16() will be called
-  std::optional<frame::Stage::Look> look;  ///< overrides that of the scene
-  std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides that of the scene
+  std::optional<frame::Stage::Look> look;  ///< overrides the look of the scene
+  std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides Stage::motion_blur
 
   double aspect() const { return static_cast<double>(width) / height; }
 };
@@ -37,7 +37,7 @@ struct DrawTimes {
 /// Owns an OpenGL context, which keeps the data that do not change during a run. Use from a single thread.
 class Renderer {
  public:
-  /// Throws as make_context() does, and Error(usage) for a bad size.
+  /// Throws as make_context() does, and Error(usage) if a side is below 1 or above the limit of OpenGL.
   explicit Renderer(const Settings& settings);
   ~Renderer();
   Renderer(const Renderer&) = delete;
@@ -47,7 +47,8 @@ class Renderer {
   void set_camera_path(CameraPath path);
   /// `before`: the previous frame, for motion blur and for the motion in layers(); null: no motion.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
-  /// The last picture as linear layers for compositors. Channels R, G, B and A hold the surfaces alone, premultiplied.
+  /// Moves out the last picture as linear layers for compositors; they are empty in a second call, and without
+  /// Settings::layers. Channels R, G, B and A hold the surfaces alone, premultiplied.
   /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor and no
   /// translucent cloth, channel caught.A holds the alpha of the surfaces over the floor's shadow (black, with the
   /// fraction of blocked light as alpha). All layers of DataPasses follow.
@@ -56,7 +57,7 @@ class Renderer {
   image::Image16 image16();
   DrawTimes last_times() const;
 
-  /// The loaded backend, and its vendor, renderer and version of OpenGL.
+  /// See Context::description().
   std::string description() const;
 
  private:

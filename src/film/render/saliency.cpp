@@ -13,7 +13,7 @@ namespace {
 
 // Number of rows of the grid on which occlusion is computed. In a picture of 16:9, a cell covers 1/9216 of the area.
 constexpr int kRows = 72;
-// Mean speed of vertices within the cloth at which Saliency::motion is 1/2 [sizes of the cloth per second].
+// Value of v in Saliency::motion at which the result is 1/2 [√(area of the cloth) per second].
 constexpr double kHalfScoreRate = 0.5;
 
 /// A coarse depth buffer: the nearest surface in each cell.
@@ -26,7 +26,7 @@ class CoverageGrid {
         cloth_(nearness_.size(), 0) {}
 
   void add(const frame::Surface& surface, const std::vector<Vec3>& positions) {
-    std::vector<Vec3> cells;  // column, row, near / distance; NaN if the vertex is in front of the near plane
+    std::vector<Vec3> cells;  // column, row, near / distance; NaN if the vertex is nearer than the near plane
     for (const Vec3& position : positions) {
       const Eigen::Vector4d clip = view_.clip_from_world * position.homogeneous();
       const Vec3 ndc = clip.head<3>() / clip.w();
@@ -44,7 +44,7 @@ class CoverageGrid {
 
  private:
   // Fills the cells whose centre is in the triangle, unless they show something nearer. Ignores triangles with a vertex
-  // in front of the near plane.
+  // nearer than the near plane.
   void fill(const Vec3& a, const Vec3& b, const Vec3& c, bool cloth) {
     const auto area = [](const Vec3& p, const Vec3& q, const Vec3& r) {
       return (q.x() - p.x()) * (r.y() - p.y()) - (q.y() - p.y()) * (r.x() - p.x());
@@ -103,7 +103,8 @@ Facing facing(const frame::Surface& surface, const std::vector<Vec3>& x) {
   return result;
 }
 
-/// Mean speed of the vertices relative to their mean velocity [m/s]. Translation of the whole cloth does not count.
+/// Mean speed of the vertices relative to their mean velocity [m/s], so that translation of the whole cloth does not
+/// count.
 double speed_within(const std::vector<Vec3>& now, const std::vector<Vec3>& before, double seconds) {
   Vec3 mean = Vec3::Zero();
   for (std::size_t v = 0; v < now.size(); ++v) mean += (now[v] - before[v]) / static_cast<double>(now.size());
@@ -118,7 +119,7 @@ Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSna
                      const std::string& camera, double aspect) {
   Saliency saliency;
   saliency.coverage = coverage(snapshot, camera, aspect);
-  double area = 0, flat = 0, rate = 0;  // `rate`: sum of area times speed_within() in cloth sizes per second
+  double area = 0, flat = 0, rate = 0;  // `rate`: sum of area times v of Saliency::motion
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     if (surface.kind != frame::ObjectKind::cloth || !is_subject(surface)) continue;

@@ -10,15 +10,16 @@ namespace weft::render {
 /// What a picture of a frame would show of its cloth, computed without drawing it; each from 0 to 1.
 struct Saliency {
   double coverage = 0;  ///< fraction of the picture that shows unoccluded cloth
-  double folding = 0;   ///< 0: all cloth is flat; 1: the normals of its faces cancel each other
-  double motion = 0;    ///< v / (v + 1/2), v: mean speed of vertices within the cloth [cloth sizes per second]
+  double folding = 0;   ///< 0: all cloth is flat; 1: the normals of the faces cancel each other
+  /// v / (v + 1/2). v: mean speed of the vertices relative to their mean velocity [√(area of the cloth) per second].
+  double motion = 0;
 
   /// Cloth outside the picture scores 0. Folding and motion each weigh at most as much as coverage.
   double score() const { return coverage * (1 + folding + motion); }
 };
 
-/// `previous`: the frame that is `seconds` earlier; null for the first frame. `camera`: as in Settings. A computed
-/// camera is derived from this frame alone.
+/// `previous`: the frame that is `seconds` earlier, with the same surfaces; null for the first frame. `camera`: as in
+/// render::Settings. A computed camera is derived from `snapshot` alone.
 Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
                      const std::string& camera, double aspect);
 

@@ -1,4 +1,4 @@
-// What a pixel shows: output of the geometry buffer for later passes.
+// What a pixel shows. GeometryBuffer writes this, later passes read it.
 #pragma once
 
 namespace weft::render {

@@ -51,10 +51,10 @@ struct ShadedMesh {
   std::vector<Triangle> triangles;  ///< of drawn vertices; in the surface's order or, if painted, sorted by part
 };
 
-/// Computes the drawn mesh. The normal of a corner is the area-weighted mean over the triangles of its vertex star
-/// whose normals differ from that of its own triangle by less than `crease_angle` [degrees, 0 to 180]. At 180, no
-/// vertex is split, and under mesh refinement the normals converge to those of the smooth surface. If the mean is zero,
-/// as for degenerate triangles, the normal is +z.
+/// Computes the drawn mesh. The normal of a corner is the area-weighted mean over those triangles of its vertex star
+/// whose normals differ from that of the corner's triangle by less than `crease_angle` [degrees, 0 to 180] plus a
+/// margin of 0.37 degrees. At 180, no vertex is split, and under mesh refinement the normals converge to those of the
+/// smooth surface. If the mean is zero, as for degenerate triangles, the normal is +z.
 ShadedMesh shade(std::span<const Triangle> triangles, const CornerMap& corners, std::span<const Vec3> positions,
                  double crease_angle);
 

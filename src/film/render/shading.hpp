@@ -97,7 +97,8 @@ class Shading {
 /// scatter light to the other side, but nothing is visible through them.
 double opacity_of(const frame::Surface& surface);
 
-/// Whether a body, such as the mannequin, shows skin where no picture covers its colour.
+/// Whether a body shows skin where no picture covers its colour: a character, such as the mannequin, whose first part
+/// has Alpha::over_color.
 bool is_skin(const frame::Surface& surface);
 
 /// `plain`: clay in place of the colours of the surface.

@@ -11,13 +11,14 @@ namespace weft::render {
 namespace {
 
 constexpr int kTile = 8;  // side of the tiles of dilate_motions() [pixels]
-// Longer motions are shortened to this length [pixels]. A smear extends by half of the motion to each side, so that it
-// does not extend beyond the neighbouring tile.
+// Longer motions are shortened to this length [pixels]. A smear extends by half of the motion to each side, thus by at
+// most one tile.
 constexpr float kMaxMotion = 2 * kTile;
-// Shorter motions are not smeared, because they are no wider than an antialiased edge [pixels].
+// Shorter motions [pixels] are not smeared, because the smear would be no wider than an antialiased edge.
 constexpr float kMinMotion = 1.2f;
 
-/// Position in the picture [pixels], from the lower left corner; z: 1 / distance [1/m]. 0 in front of the near plane.
+/// Position in the picture [pixels], from the lower left corner; z: 1 / distance [1/m]. All are 0 if `position` is
+/// nearer than the near plane.
 Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int height) {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
   if (clip.w() < view.near) return Eigen::Vector3f::Zero();
@@ -111,8 +112,8 @@ void Smear::dilate_motions() {
 }
 
 /// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
-/// Motion Blur", 2012. A sample has the colour at its own position in two cases: if the surface there moves across (x,
-/// y), or if this surface is behind the surface at (x, y), which moves away. Else, it has the colour at (x, y).
+/// Motion Blur", 2012. A sample takes the colour at its own position in two cases: the surface there moves across the
+/// pixel, or the surface at the pixel is nearer and its motion uncovers the sample. Else, it takes the pixel's colour.
 Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
@@ -125,8 +126,9 @@ Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
     const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * motion.x())), 0, width_ - 1),
               to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
     const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
-    // `extent`: distance that the nearer surface moves to either side [pixels]. The weight `share` of the sample's own
-    // colour falls from 1 to 0 over one pixel around this distance.
+    // `extent`: distance that the nearer surface moves to either side [pixels]; at equal distances from the eye, that
+    // of the faster one. The weight `share` of the sample's own colour falls from 1 to 0 over one pixel around
+    // `extent`.
     constexpr float kSame = 1.01f;
     const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
     const bool before = motions_[there].nearness > kSame * motions_[here].nearness,

@@ -1,5 +1,5 @@
-// Motion blur: the mean of several sharp pictures. Each pixel of these is averaged along the motion of what it shows
-// (smeared), so that few pictures suffice.
+// Motion blur: the mean of several sharp pictures. Each sharp picture is first smeared: each pixel is averaged along
+// the motion of what it shows. Thus few pictures suffice.
 #pragma once
 
 #include <span>

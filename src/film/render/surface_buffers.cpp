@@ -175,7 +175,7 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
     for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
     return;
   }
-  // Each painted range that has strips gets a second range, which contains them.
+  // For each painted range that has strips, appends a range of these strips.
   const auto& parts = surface_->part_of_triangle;
   const auto look_of = [&](std::int32_t triangle) {
     return parts.empty() ? &look : &surface_->parts[static_cast<std::size_t>(parts[triangle])].appearance;
@@ -196,8 +196,8 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // The strips along borders must show neither the fold of the hem nor its stitches. Their distance from the border is
-  // therefore set between that of the fold and that of the stitches.
+  // The strips along borders must show neither the fold of the hem nor its stitches. Therefore the strips get a
+  // distance from the border at which there is neither: farther than the fold, nearer than the stitches.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);

@@ -15,7 +15,7 @@ namespace weft::render {
 
 /// Detail of the drawn surface beyond its simulated triangles.
 struct Detail {
-  bool refines = false;  ///< splits each triangle in four (Refinement); mesh() keeps the coarse ones
+  bool refines = false;  ///< splits each triangle in four (Refinement); mesh() has the triangles before this split
   bool rims = false;     ///< strips along borders, which show the thickness of the cloth; mesh() excludes them
   bool trims = false;    ///< hems and seams
 };
@@ -37,8 +37,8 @@ class SurfaceBuffers {
   void draw(const PaintedRange& range) const;
   /// The painted mesh; null if nothing is painted.
   const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }
-  /// Whether only front faces are visible from `eye`: the surface is closed, its normals point outwards, and the eye is
-  /// outside its bounding box.
+  /// Whether only front faces are visible from `eye`: the surface is closed (and neither cloth nor perforated by
+  /// pictures), its normals point outwards, and the eye is outside its bounding box.
   bool shows_only_fronts(const Vec3& eye) const { return faces_outward_ && !bounds_.contains(eye); }
   /// World positions of the drawn vertices [m], and the drawn triangles.
   std::span<const Vec3> positions() const { return positions_; }

@@ -16,14 +16,15 @@ struct Style {
   double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
   Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon; if this is a grey: a factor on the colour of open floor
   Vec3 zenith = Vec3::Ones();     ///< backdrop straight above; if `horizon` is a grey: a factor as well
-  double glow = 0;                ///< fraction by which the backdrop is darker far from the subjects than behind them
+  double glow = 0;                ///< fraction by which the backdrop darkens from behind the subjects to far from them
   double floor_tint = 1;          ///< factor on the colour of the floor
   double floor_roughness = 1;     ///< upper limit on the roughness of a floor, unless the floor is fully matte (1)
   double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
-  bool exposes = true;            ///< direct light is increased until floor shows its own colour
+  bool exposes = true;            ///< increases direct light until floor shows its own colour, within limits (expose())
   bool plain = false;             ///< all surfaces are clay, without own colours
   bool edges = false;             ///< draws the edges of faces
 };
+/// The style of the look, with the sky colour and intensity of `stage` if these are set.
 Style style_of(const frame::Stage& stage);
 
 /// Environment light for each direction: a sky, a ground, and soft boxes as spherical Gaussians. Unit: under uniform
@@ -35,6 +36,7 @@ struct Surroundings {
     Vec3 light = Vec3::Zero();
   };
   static constexpr int kBoxes = 3;
+  /// `sky`, `horizon`, `ground`: light from straight above, from just above the horizon, and from below.
   Vec3 up = Vec3::UnitZ(), sky = Vec3::Zero(), horizon = Vec3::Zero(), ground = Vec3::Zero();
   std::array<Box, kBoxes> boxes;
 

@@ -221,8 +221,8 @@ void TracedLight::trace_shadows(const ReflectedLight& light) {
   upload(lit_, points, lit_texture_, 0, Eigen::Vector4f::Ones());
 }
 
-/// Traces rays from each point to the lamp: one ray to find penumbrae, half of all rays if the point may be in a
-/// penumbra, and all rays if it is.
+/// Traces rays from each point to the lamp: one ray to find penumbrae, half of quality_.shadow_rays if the point may be
+/// in a penumbra, and all of them if the point is in a penumbra.
 void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit) {
   const PixelPoints& points = lit_points();
   const int width = points.width(), height = points.height(), rays = quality_.shadow_rays;
@@ -331,7 +331,7 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
   upload(open_, points, open_texture_, 1, {0, 0, 0, 1});
 }
 
-/// Traces rays about the mirrored direction of view; they spread more widely from rougher surfaces.
+/// Traces rays around the mirrored direction of view. The rays spread more widely from rougher surfaces.
 void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Surface> surfaces, const Vector3f& eye) {
   const PixelPoints& points = open_points_;
   mirrored_.resize(4, Plane(points.width(), points.height(), 0));

@@ -37,7 +37,7 @@ class TracedLight {
   void draw(const ReflectedLight& light, const GeometryBuffer& geometry, std::span<const Seen> seen,
             std::span<const Surface> surfaces, const View& view, const std::optional<Floor>& floor);
 
-  /// Areas of the picture that contain all floor on which some light is missing or added. Call after draw().
+  /// Areas of the picture that contain all floor with shadow, occlusion or reflected light. Call after draw().
   std::vector<PixelArea> shaded_floor() const;
 
  private:
@@ -53,15 +53,15 @@ class TracedLight {
   QualitySettings quality_;
   int width_, height_;
   PixelPoints pixels_, open_points_;
-  std::optional<PixelPoints> lit_points_;              // if shadows have a lower resolution
-  std::vector<Plane> lit_;                             // visible fraction of each lamp
+  std::optional<PixelPoints> lit_points_;              // set only if shadows have a lower resolution than the picture
+  std::vector<Plane> lit_;                             // per lamp: its visible fraction at each point
   std::vector<Plane> open_, open_scratch_, mirrored_;  // red, green, blue, fraction
   std::vector<Eigen::Vector3f> directions_;            // directions of the rays to the surroundings
   std::array<Plane, 5> scratch_;                       // scratch planes, as large as those of lit_
   Texture lit_texture_, open_texture_;
   std::optional<Texture> mirrored_texture_;
   std::vector<Eigen::Vector4f> normals_, values_, texels_;
-  std::vector<char> shaded_;  // flag of each tile of the picture
+  std::vector<char> shaded_;  // per tile of the picture: 1 if it contains shaded floor
 };
 
 }  // namespace weft::render

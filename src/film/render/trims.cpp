@@ -80,8 +80,8 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
 
 }  // namespace
 
-/// Fills in places, the positions of vertices in their flat panels. A vertex on a seam has one place for each side of
-/// the seam, even if both sides belong to one panel. Returns the places of the corners of each triangle.
+/// Fills in `places_`, the positions of vertices in their flat panels. A vertex on a seam has one place for each side
+/// of the seam, even if both sides belong to one panel. Returns the places of the corners of each triangle.
 std::vector<Triangle> Trims::find_places(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
   const bool by_part = surface.part_of_triangle.size() == triangles.size(),
@@ -198,7 +198,7 @@ Trim Trims::trim(const Vec2& at, std::span<const Index> near) const {
       if (nearest < 0) continue;
       try_segment(nearest);
       // At a vertex of a line, two segments are equally near, but only one is stored. A point beside the vertex may be
-      // closer to the other one.
+      // closer to the segment that is not stored.
       for (const Index end : {lines.segments[nearest].a, lines.segments[nearest].b})
         std::ranges::for_each(lines.at[end], try_segment);
     }

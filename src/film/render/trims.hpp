@@ -10,7 +10,7 @@
 
 namespace weft::render {
 
-inline constexpr float kNoTrim = 1e3f;
+inline constexpr float kNoTrim = 1e3f;  ///< distance if there is no border or seam [m]
 
 /// Distances from a point to the nearest line (border or seam) of each kind, in rest coordinates [m]; kNoTrim if there
 /// is none. The borders on both sides of a corner have different kinds, `border` and `other_border`, because near the
@@ -27,7 +27,7 @@ struct Trim {
 /// The borders and seams of a surface in its rest shape. They are the same in all frames.
 class Trims {
  public:
-  /// Uses the surface's rest coordinates; without them, all trims are kNoTrim.
+  /// Measures in the rest coordinates of the surface. If it has none, all distances are kNoTrim.
   explicit Trims(const frame::Surface& surface);
 
   /// The trim at a vertex of the surface, and at the midpoint of an edge.
@@ -79,9 +79,9 @@ struct RimStrip {
   std::vector<std::int32_t> owner;  ///< by triangle: the triangle of the surface at its border
 };
 
-/// Width of the strips [m]: the thickness of the cloth, doubled at a hem. If this covers less than 2.5 pixels in a
-/// picture with `rows` rows, the width is reduced. If less than a pixel would remain, it is 0, because thinner strips
-/// are drawn as separate dots.
+/// Width of the strips [m]: the thickness of the cloth, doubled at a hem. If it covers less than 2.5 pixels at the
+/// vertex nearest to the eye, in a picture with `rows` rows, it is reduced. If less than a pixel would remain, the
+/// result is 0, because thinner strips appear as separate dots.
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows);
 
 /// The strips of a surface in one frame, `thickness` [m] wide; `normals` by vertex.

@@ -11,7 +11,8 @@ namespace {
 
 // Rec. 709 luminance weights.
 const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
-// Light from below / light of open floor. It is below 1, because far floor fades into a darker backdrop.
+// Ratio of the light from below to the light of open floor. It is below 1, because far floor fades into a darker
+// backdrop.
 constexpr double kGroundLight = 0.8;
 // Factor on the light from below in reflections. It is below 1, because floor near glossy surfaces is often shaded.
 constexpr double kReflectedGround = 0.5;
@@ -74,7 +75,7 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
     if (height > 0) nearest = std::min(nearest, height / widest);
   }
   // If the eye is close to the subjects, `nearest` may be negative. `near` is then a fraction of the scene's size, but
-  // at most kClosest [m], so that the near plane of a large scene does not cut close cloth. No lens focuses closer.
+  // at most kClosest [m], so that the near plane of a large scene does not cut close cloth.
   constexpr double kClosest = 0.01;
   view.near = std::max(0.8 * nearest, std::min(1e-3 * reach, kClosest));
   view.far = 200 * reach;

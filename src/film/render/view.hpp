@@ -46,8 +46,8 @@ struct PixelArea {
 PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
 
 /// Whether the floor fades into the backdrop (fade_out() in shaders/open_floor.glsl) within so few pixels that colours
-/// cannot be interpolated over `cell` pixels. This is so if the horizon is in view and the eye is low compared with the
-/// size of `surroundings`. `height`: that of the picture [pixels].
+/// cannot be interpolated over `cell` pixels. This is so if distant floor is in view and the eye is low compared with
+/// the size of `surroundings`. `height`: height of the picture [pixels].
 bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Box3& surroundings, int height, int cell);
 
 /// The frame block of shaders/frame.glsl, in the layout std140.
@@ -70,7 +70,7 @@ struct Exposure {
 /// Exposes for the floor, as product photographers do for a white ground: if open floor is darker than its own colour,
 /// increases direct light. A white balance then changes each channel slightly, so that a white floor stays white under
 /// a bluish sky or coloured light. Both changes are limited, so that dark or coloured scenes stay dark or coloured.
-/// Without a floor, or if Style::exposes is false, direct light is not changed.
+/// Without a floor, or if Style::exposes is false, Exposure::direct is 1 - Style::sky_intensity.
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
 
 /// Style, environment and exposure of a picture.

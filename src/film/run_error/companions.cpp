@@ -12,14 +12,16 @@ namespace {
 
 // Maximum displacement of a particle at the start, in the companion for ErrorSource::start [m].
 constexpr double kStartDisplacement = 1e-6;
-// The motion is chaotic if this displacement grows more than tenfold, and to more than this fraction of the step and
+// The motion is chaotic if this displacement grows more than tenfold, and to more than kChaosRatio times the step and
 // solver errors.
 constexpr double kChaosRatio = 0.3;
-// The motion is also chaotic if the displacement grows by more than this factor, however large those errors are.
+// The motion is also chaotic if the displacement grows by more than this factor, however large step and solver errors
+// are.
 constexpr double kMaxAmplification = 1e3;
 constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
-// Lower bound of observed orders, relative to the expected order, which is the upper bound. Stiff waves and borders
-// lower the order. If it is below the lower bound, the difference of the companions hardly depends on step or spacing.
+// Lower bound of observed orders, relative to the expected order; the expected order is the upper bound. Stiff waves
+// and borders lower the order. At an order below the lower bound, the difference of the companions hardly depends on
+// step or spacing.
 constexpr double kMinOrderRatio = 0.5;
 // Fraction of the expected order that is assumed if there is only one companion.
 constexpr double kAssumedOrderRatio = 0.75;
@@ -57,7 +59,7 @@ double observed_order(double coarse_ratio, double fine_ratio, double quotient, d
   return 0.5 * (least + most);
 }
 
-// Error of a run, extrapolated from its difference to one companion and, if there is one, to a coarser companion.
+// Error of a run, extrapolated from its difference to one companion (`change`) and, if given, to a coarser companion.
 // `order`: the expected order.
 Errors richardson(double order, const Change& change, const std::optional<Change>& coarser) {
   Errors errors{};

@@ -24,17 +24,18 @@ struct ErrorPart {
 };
 
 struct ErrorEstimate {
-  /// The motion is chaotic. If particles start with random offsets of up to 1 µm, the companion fails, or its error of
-  /// position exceeds a limit: 0.3 of the step and solver errors together, but at least 10 µm and at most 1 mm.
+  /// The motion is chaotic: the companion for ErrorSource::start fails, or its difference in position to the run
+  /// exceeds a limit. The limit is 0.3 of the step and solver errors (root of the sum of squares), but at least 10 µm
+  /// and at most 1 mm.
   bool is_chaotic = false;
-  /// The step error does not follow the order of the method. The companion with twice the step fails, or its difference
-  /// to the run is too small compared with that of the companion with half the step.
+  /// The step error does not follow the order of the method: the companion with twice the step fails, or its difference
+  /// to the run is too small compared with the difference of the companion with half the step.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
-  Errors all{};      ///< root of the sum of squares of the errors of all parts
+  Errors all{};      ///< root of the sum of squares over all parts; unknown errors count as 0
   double cpu_s = 0;  ///< CPU time of all companions
 
-  /// Whether the estimate is only a lower bound of the error.
+  /// Whether the known errors are only lower bounds. Does not consider parts whose errors are not known.
   bool is_lower_bound() const { return is_chaotic || steps_irregular; }
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
@@ -48,12 +49,14 @@ struct CompanionOptions {
 /// Estimates the difference of a run to the limit of infinitely short, exactly solved steps; with options.mesh, also of
 /// infinitely small cells. Simulates these companions:
 /// - start: particles displaced at random by up to 1 µm at the start,
-/// - solver: a tenth of solver.newton_tolerance; the companions below use this tolerance, too,
-/// - steps: half of the step, and twice the step unless a step is as long as a frame (or time.tolerance accordingly),
-/// - mesh: half of the cells along each side, and a quarter if at least four remain.
+/// - solver: a tenth of solver.newton_tolerance; unless this companion fails, the companions below use this tolerance,
+///   too, and are compared with this companion,
+/// - steps: half of the step, and twice the step unless a step is as long as a frame; if the scene has time.tolerance,
+///   the tolerances that halve and double the steps,
+/// - mesh: half of the cells along each side, and a quarter if this leaves whole numbers of cells, at least four.
 /// Richardson extrapolation gives the errors of steps and mesh. It uses the observed order, limited to 0.5 to 1 times
-/// the expected order; if there is only one companion, 0.75 times the expected order. Only the frames in `run` are
-/// compared. If a companion fails (except that with twice the step), ErrorPart::missing has the reason. Throws
+/// the expected order; if a source has only one companion, 0.75 times the expected order. Only the frames in `run` are
+/// compared. If a companion fails (except the one with twice the step), ErrorPart::missing gives the reason. Throws
 /// Error(usage) if the scene has neither cloth nor ropes, and Error(interrupted) if options.proceed returns false.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 

@@ -124,7 +124,7 @@ Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
 
 Errors compare(const Functionals& run, const Functionals& reference) {
   Errors errors{};
-  // If nothing moves, the energies in play are only rounding errors. Then do not divide errors of energy by them.
+  // If nothing moves, the energies in play are only rounding errors. Then errors of energy are not divided by them.
   constexpr double kRounding = 1e-12;  // [J]
   const double in_play = reference.energies_in_play > kRounding ? reference.energies_in_play : 1;
   for (std::size_t k = 0; k < run.energy.size(); ++k) {

@@ -13,17 +13,17 @@
 
 namespace weft::run_error {
 
-/// The quantity whose error is measured. Position and velocity compare particles; with contact, their motion is
-/// chaotic, and these errors do not converge. The other quantities are functionals of the whole motion, which converge
-/// even then.
+/// The quantity whose error is measured. Position and velocity compare particles. With contact, the motion of particles
+/// is chaotic, and these two errors do not converge. The other quantities are functionals of the whole motion, which
+/// converge even with contact.
 enum class Quantity : std::size_t {
   position,  ///< of all particles; mass-weighted root mean square error, maximum over all frames [m]
-  velocity,  ///< likewise [m/s]
+  velocity,  ///< of all particles; measured as for `position` [m/s]
   energy,    ///< kinetic + elastic + gravitational; maximum error over all frames, relative to energies_in_play
-  drift,     ///< the same energy; error in the last frame, relative to energies_in_play
+  drift,     ///< as `energy`, but error in the last frame
   centre,    ///< centre of mass in the last frame [m]
   top,       ///< height of the highest particle in the last frame [m]
-  shadow,    ///< projected area of all cloths in the last frame, seen from above, relative to their area at the start
+  shadow,    ///< projected areas of the cloths in the last frame, seen from above, relative to the cloths' start area
   rest_energy,  ///< elastic + gravitational in the last frame, relative to energies_in_play
 };
 inline constexpr std::size_t kQuantities = 8;
@@ -55,7 +55,7 @@ struct Work {
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
 };
 
-/// Motion and cost of a run, without frame 0.
+/// Motion and cost of a run; frame 0 and the preroll are not included.
 struct Trajectory {
   struct Frame {
     std::vector<Vec3> x, v;  ///< of all particles [m, m/s]; `v` is empty if the velocities are not known
@@ -69,7 +69,7 @@ struct Trajectory {
 /// Records the Trajectory of a run, frame by frame.
 class Recorder {
  public:
-  /// `start`, `report`: those of frame 0.
+  /// `start`, `report`: snapshot and report of frame 0.
   Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const simulation::FrameReport& report);
   /// Adds the next frame. `velocities`: of all particles [m/s]; empty if they are not known.
   void add_frame(const frame::SnapshotPtr& snapshot, const simulation::FrameReport& report,
@@ -98,7 +98,7 @@ struct FollowLimits {
 /// many steps, and Error(interrupted) if `proceed` returns false.
 Trajectory follow(const scene::Scene& scene, const FollowLimits& limits = {});
 
-/// Errors of the functionals. The errors of position and velocity are set to 0.
+/// Errors of the functionals of a run against a reference. The errors of position and velocity are set to 0.
 Errors compare(const Functionals& run, const Functionals& reference);
 /// Errors of a motion against a reference. Compares particle i of `run` with particle same[i] of `reference`; if `same`
 /// is empty, with particle i. Compares velocities only if both motions have them.
@@ -110,13 +110,14 @@ double cloth_size(const frame::FrameSnapshot& snapshot);
 /// The median of each member.
 Functionals median(const std::vector<Functionals>& samples);
 
-/// Whether all cloths are grids that can have `refinement` times as many cells along each side. `refinement` must be a
-/// multiple of 1/8, and must give whole numbers of cells, at least two.
+/// Whether refine() can be used: all cloths are grids, `refinement` is a multiple of 1/8, and each side gets a whole
+/// number of cells, at least two.
 bool can_refine(const scene::Scene& scene, double refinement);
 /// Multiplies the number of cells along each side of all cloths that are grids; other cloths and ropes do not change.
 void refine(scene::Scene& scene, double refinement);
 
-/// For each particle of the scene, the index of the particle at the same place after refine(scene, 2).
+/// For each particle of the scene, the index of the particle at the same place of the cloth after refine(scene, 2). All
+/// cloths must be grids.
 std::vector<std::size_t> matching_particles_in_refined(const scene::Scene& scene);
 
 }  // namespace weft::run_error

@@ -21,7 +21,8 @@ namespace weft::scene {
 
 namespace {
 
-constexpr long kMaxParticles = 4'000'000;  // of all rectangles; their data fit into the memory of a workstation
+// Maximum number of particles of all rectangles of cloth; their data fit into the memory of a workstation.
+constexpr long kMaxParticles = 4'000'000;
 
 template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
@@ -61,7 +62,8 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-/// Reports key frames that change several angles, one by more than half a turn: they do not define an axis of rotation.
+/// Reports key frames that change several angles, at least one of them by more than half a turn: such changes do not
+/// define an axis of rotation.
 template <class Key>
 void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
@@ -116,8 +118,8 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // other shapes have no rows of particles
-  // Report a part between two rows of particles, which contains none. If no row of particles along an axis is in the
-  // part, the lambda returns the position of the nearest row, as a fraction of the size of the cloth.
+  // Report a part that lies between two rows of particles, and thus contains no particle. If no row of particles along
+  // an axis is in the part, the lambda returns the position of the nearest row, as a fraction of the size of the cloth.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -210,7 +212,7 @@ void check_attachments(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports each `over` that names no cloth, and the first that closes a cycle.
+/// Reports each `over` that names no cloth, and the first `over` that closes a cycle.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
@@ -356,8 +358,8 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports key frames that give the lens by the other quantity (field of view, focal length) than the camera: the two
-/// cannot be interpolated. Also reports `sensor_width` and `follow_rotation` without the key that they refine.
+/// Reports key frames with a focal length if the camera has a field of view, and the reverse: there is no interpolation
+/// between the two. Also reports `sensor_width` and `follow_rotation` without the key that they refine.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

@@ -6,7 +6,7 @@
 
 namespace weft::scene {
 
-/// Key path of a cloth, or of the rope that the cloth represents.
+/// Key path of the cloth with the index `cloth`, or of its rope, if the cloth is simulated for a rope.
 const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings);
 
 /// Reports names that do not exist or are used twice, key frames that are not in time order, unreadable pictures, and

@@ -54,8 +54,9 @@ std::string decode_escapes(std::string_view text) {
   return plain;
 }
 
-/// Possible file names in text or binary content. Splits the content at quotes and control characters, then again at
-/// these, brackets, commas, equals signs and bars. Pieces, and words of pieces, count if they have an extension.
+/// Possible file names in text or binary content. Splits the content twice: at quotes and control characters; then at
+/// these and at brackets, commas, equals signs and bars. Returns the pieces, and the words of pieces, that have an
+/// extension.
 std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {

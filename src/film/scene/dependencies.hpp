@@ -16,11 +16,11 @@ using DependencyVisitor = std::function<void(const std::filesystem::path& file, 
 
 /// Calls `each` once for each file on which the scene depends, with its path and content. The order depends only on the
 /// scene and the files:
-/// - first the files of obstacles, of cloths with the masks of their pins and weights, of masks of attachments, and of
-///   characters; then pictures of looks, and files of cameras;
+/// - first the files of obstacles, the files of cloths and the masks of their pins and weights, the masks of
+///   attachments, and the files of characters; then the pictures of looks and the files of cameras;
 /// - after each file except masks and pictures, the files that it names: drawings of a sewing pattern, buffers of a
 ///   glTF file, skeletons, materials.
-/// Skips unreadable files and files larger than kMaxDependencyBytes.
+/// Skips unreadable files and files larger than kMaxDependencyBytes (dependencies.cpp).
 void for_each_dependency(const Scene& scene, const DependencyVisitor& each);
 
 }  // namespace weft::scene

@@ -16,10 +16,11 @@ namespace weft::scene {
 /// Maximum size of a scene file [bytes]; a scene with ten thousand key frames has about one megabyte.
 inline constexpr std::uintmax_t kMaxFileSize = 16 << 20;
 
-/// Reads a scene file. Reports a mistake without a place if it is no regular file, too large or unreadable.
+/// Reads a scene file. Reports a mistake without a place and returns nothing if the file is no regular file, too large
+/// or unreadable.
 std::optional<std::string> read_file(const std::filesystem::path& file, Findings& findings);
 
-/// Parses TOML text. Reports a mistake and returns nothing if the text is not TOML.
+/// Parses TOML text. Reports a mistake and returns nothing if the text is empty or not TOML.
 std::optional<toml::table> parse(std::string_view text, Findings& findings);
 
 /// Sets a value in the document, given as "path.to.key=value". The path names entries of lists by name or index. A

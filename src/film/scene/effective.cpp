@@ -188,8 +188,8 @@ void identify(Scene& scene) {
   keep_file_names(copy);
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
-  // The duration affects the motion of characters: it is sampled into key frames up to the end of the film, and the
-  // last key frames influence the interpolation before them.
+  // The duration affects the motion of characters: the motion is sampled into key frames up to the end of the film, and
+  // the last key frames influence the interpolation before them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
   scene.hash = shown.value();
   scene.simulation_hash = simulated.value();

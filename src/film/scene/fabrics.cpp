@@ -31,7 +31,8 @@
 //                another quantile of their class (Hand). The ratio of warp to weft is the median of the data, 1.4.
 //   hysteresis   HB / B: cotton 50, wool 25, filaments 18 m⁻¹; measured: 53 and 43 m⁻¹ for broadcloth and denim,
 //                25 m⁻¹ for a tropical (light worsted wool), 19 and 18 m⁻¹ for polyesters
-//   shear        G: cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves: 65, 24 to 26, 30.
+//   shear        G: cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves of these: 65, 24 to
+//   26, 30.
 //                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. For faille alone, G is fitted
 //                to the published drape: 7.5 N/m.
 //   extension    EMT: weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, fabrics

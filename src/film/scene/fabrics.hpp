@@ -16,7 +16,7 @@ struct MeasuredValue {
   bool estimated = false;
 };
 
-/// Quantities that textile laboratories measure of a fabric.
+/// Quantities of a fabric that textile laboratories measure. EMT, G, B and HB are names of KES (see fabrics.cpp).
 struct Measurements {
   MeasuredValue density;                         ///< [kg/m²]
   MeasuredValue thickness;                       ///< of the cloth itself [m]
@@ -28,7 +28,7 @@ struct Measurements {
 };
 
 struct Fabric {
-  Material material;  ///< derived from `measured`, except contact thickness, friction, drag
+  Material material;  ///< contact thickness, friction and drag are chosen, the other members derived from `measured`
   Measurements measured;
   Finish finish;       ///< chosen by fibre and weave, not measured
   bool frays;          ///< cut edges fray, and are therefore drawn with hems
@@ -37,7 +37,8 @@ struct Fabric {
 };
 
 /// kExtensionLoad: maximum load of the extension test of KES (500 gf/cm) [N/m]. kWornLoad: load of worn cloth (20
-/// gf/cm, one of the loads of FAST) [N/m]; Material's `stretch` is the secant stiffness up to this load.
+/// gf/cm, one of the loads of FAST) [N/m]; Material::stretch_weft and stretch_warp are the secant stiffnesses up to
+/// this load.
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
 /// All fabrics. The first is the default: its material equals Material{}.

@@ -18,7 +18,8 @@ struct Place {
   std::string override_text;  ///< see Mistake
 };
 
-/// Place of a node or key of a parsed document. Nodes of overrides have the text of the override as source path.
+/// Place of a node or key of a parsed document. The source path of a node is empty, or the text of the override that
+/// the node comes from.
 Place place_of(const toml::source_region& source);
 
 class Findings {
@@ -40,7 +41,7 @@ class Findings {
   const std::string& entry(const std::string& list, std::size_t i) const { return entries_.at(list).at(i); }
 
   /// Returns and clears the mistakes: first those of the file in its order, then those of overrides, at most
-  /// kMaxMistakes. If there are more, a last entry gives the number of the others.
+  /// kMaxMistakes. If there are more, one more entry gives the number of further mistakes.
   std::vector<Mistake> take_mistakes();
 
  private:

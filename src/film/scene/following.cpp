@@ -16,8 +16,8 @@ const Obstacle* obstacle_named(const Scene& scene, const std::string& name) {
   return name.empty() || found == scene.obstacles.end() ? nullptr : &*found;
 }
 
-/// The obstacles that `obstacle` follows, first that which it follows directly, then those that this one follows, and
-/// so on. Each occurs once; if they form a cycle that contains `obstacle`, it is the last.
+/// The chain of obstacles that `obstacle` follows: each entry follows the next entry. Each obstacle occurs once. If the
+/// chain is a cycle through `obstacle`, `obstacle` is the last entry.
 std::vector<const Obstacle*> parents_of(const Scene& scene, const Obstacle& obstacle) {
   std::vector<const Obstacle*> chain;
   const Obstacle* parent = obstacle_named(scene, obstacle.follow);

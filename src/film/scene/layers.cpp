@@ -32,7 +32,8 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
 
 std::vector<std::size_t> layer_depths(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
-  // One pass per cloth is enough: a chain without a cycle has each cloth at most once. check_layers() reports cycles.
+  // One pass per cloth is enough: a chain without a cycle contains each cloth at most once. check_layers() (checks.cpp)
+  // reports cycles.
   for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
     for (std::size_t c = 0; c < scene.cloths.size(); ++c)
       for (std::size_t below = 0; below < scene.cloths.size(); ++below)

@@ -15,7 +15,8 @@ namespace weft::scene {
 inline constexpr std::size_t kMaxMistakes = 200;
 
 struct Mistake {
-  int line = 0, column = 0;   ///< from 1; 1:1 if something is missing; 0 outside of the file's text
+  /// From 1. 1:1 if neither the key nor a table around it is in the file; 0:0 if the mistake has no place in the file.
+  int line = 0, column = 0;
   std::string key;            ///< such as cloth.band.material.thickness; empty: the whole file
   std::string text;           ///< such as "expected > 0 m, got -0.001"
   std::string override_text;  ///< "--set key=value" if an override caused it; else empty
@@ -31,11 +32,12 @@ struct LoadResult {
   std::string text;  ///< content of the file
 };
 
-/// Reads and checks a scene. `overrides`: texts "path.to.key=value", checked like the file. No content makes it throw.
+/// Reads and checks a scene. `overrides`: texts "path.to.key=value", checked like the file. Does not throw, whatever
+/// the file and the overrides contain.
 LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// As load(), for text in memory (tests, fuzzing). `name`: path of the text, which need not exist; it gives the name of
-/// the scene and the folder of relative paths.
+/// As load(), for text in memory (tests, fuzzing). `name`: a path that need not exist; its file name is the name of the
+/// scene, and relative paths start at its folder.
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides = {});
 

@@ -32,7 +32,8 @@ bool is_plain_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), plain);
 }
 
-/// Parses a value. Returns { value = ... } whose nodes have `source` as source path; nothing if it is no TOML value.
+/// Parses a value. Returns { value = ... } whose nodes have `source` as source path; nothing if the text is neither a
+/// TOML value nor a plain word.
 std::optional<toml::table> parse_value(std::string_view text, const std::string& source) {
   const auto parse = [&](const std::string& value) -> std::optional<toml::table> {
     try {

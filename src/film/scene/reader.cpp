@@ -17,7 +17,7 @@ std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Place of a key. For a key of an override, toml++ stores none; the place of its value is used.
+/// Place of a key. toml++ stores no place for the key of an override; the place of its value is used.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
@@ -27,7 +27,7 @@ bool is_override(const toml::node& node) {
   return !place_of(node.source()).override_text.empty();
 }
 
-/// Whether the file gives the key of `rule`, and --set a key that excludes it and thus replaces it.
+/// Whether the file gives the key of `rule`, but an override (--set) gives a key that excludes it and thus replaces it.
 bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
   const toml::node* node = table.get(rule.key);
   return node != nullptr && !is_override(*node) && std::ranges::any_of(rules, [&](const Rule& other) {
@@ -109,7 +109,8 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   }
   findings_.set_place(key, place_of(node->source()));
 
-  // Of two keys that exclude each other, one from --set replaces one from the file. Otherwise, both are a mistake.
+  // Of two keys that exclude each other, the key from --set replaces the key from the file. If both come from the same
+  // source, report a mistake.
   const toml::node* excluded = rule.excludes.empty() ? nullptr : table.get(rule.excludes);
   if (excluded != nullptr && is_override(*node) == is_override(*excluded)) {
     findings_.report(key, place_of(node->source()),

@@ -33,8 +33,9 @@ class Reader {
  private:
   void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
   void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
-  /// The key path of a list entry. If the name of the entry is valid and not yet in `names`, the path ends with it, and
-  /// `names` receives it. Otherwise, it is `by_index`, which ends with the index. Reports a name that occurs twice.
+  /// The key path of a list entry. If the name of the entry is valid and not yet in `names`, the path ends with the
+  /// name, and `names` receives the name. Otherwise, the path is `by_index`, which ends with the index. Reports a name
+  /// that occurs twice.
   std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
                          const std::string& by_index, std::set<std::string>& names);
   void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);

@@ -10,7 +10,7 @@
 namespace weft::scene {
 namespace {
 
-constexpr long kMaxRopeParticles = 1'000'000;  // total of all ropes
+constexpr long kMaxRopeParticles = 1'000'000;  // of all ropes together
 
 // Reports mistakes in the start path of a rope. Returns whether the path is defined, so that the pieces can be checked.
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {

@@ -6,8 +6,8 @@
 
 namespace weft::scene {
 
-/// Reports ropes without a start path, with pieces too short for contact or the name of a cloth, and too many
-/// particles.
+/// Reports each rope that has no start path, too short pieces for contact, or the name of a cloth. Also reports if all
+/// ropes together have too many particles.
 void check_ropes(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

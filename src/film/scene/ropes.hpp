@@ -9,7 +9,7 @@
 
 namespace weft::scene {
 
-/// Constants of a kind of rope. Mass and stretch stiffness are divided by the square of the rope's diameter [m²].
+/// Constants of a kind of rope. `mass` and `stretch` are those of a rope divided by the square of its diameter [m²].
 struct RopeMaterial {
   std::string name;
   double mass;            ///< [kg/m per m²]
@@ -38,12 +38,13 @@ RopeShape start_shape(const Rope& rope, UpAxis up);
 /// Default length of a piece [diameters].
 inline constexpr double kRopePiece = 3;
 using model::kMinRopePiece;
-/// Minimum horizontal distance between the ends of a rope for which hangs_slack() [diameters].
+/// Minimum horizontal distance between the ends of a rope [diameters], if hangs_slack().
 inline constexpr double kMinRopeSpan = 4;
-/// Whether the scene gives only the ends of a rope, and the rope is longer than their distance.
+/// Whether the scene gives only the ends of a rope, and start_length() exceeds their distance.
 bool hangs_slack(const Rope& rope);
 
-/// Rest length at the start [m]; empty: length of the path through the points or between the ends.
+/// Rest length at the start [m]. If the scene gives none, returns nullopt: the length of the path through the points or
+/// between the ends applies.
 std::optional<double> start_length(const Rope& rope);
 
 /// The one-dimensional cloth that is simulated for a rope.

@@ -94,7 +94,7 @@ struct Table {
 
   const Rule* find(std::string_view key) const;
   const Variant* find_variant(std::string_view name) const;
-  /// The variant that the selector of `target` has; null if the table has no variants.
+  /// The variant that the selector in the struct `target` selects; null if the table has no variants.
   const Variant* variant_of(void* target) const;
 };
 
@@ -103,7 +103,7 @@ const Table& scene_rules();
 
 /// Text of the accepted values, such as "a number > 0 m", "[x, y, z] in m, each from -1 to 1", "linear or cubic".
 std::string expectation(const Rule& rule);
-/// Text of the bound that `value` violates, such as "> 0 m" or "<= 100 m"; the whole range if `value` is not finite.
+/// Text of the bound that `value` violates, such as "> 0 m" or "<= 100 m"; the whole range if `value` is +∞ or NaN.
 std::string violated_bound(const Rule& rule, double value);
 /// Text such as "a, b or c".
 std::string join_or(const std::vector<std::string>& words);

@@ -19,7 +19,7 @@ namespace weft::scene {
 
 namespace {
 
-/// Rotates a vector given for z up to the up axis of the scene.
+/// Rotates a vector from axes with z up to axes with the up axis of the scene.
 Vec3 rotate_to_up_axis(UpAxis up, const Vec3& z_up) {
   return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
 }
@@ -69,7 +69,7 @@ const Table& solver_rules() {
   return kTable;
 }
 
-/// Rows of keys that the look of a cloth and that of a panel share.
+/// Adds the keys that the look of a cloth and the look of a panel share.
 template <class Painted>
 void paint_rows(TableBuilder<Painted>& rows) {
   rows.color("color", &Painted::color, "color of the front, the side to which weft x warp points")

@@ -63,14 +63,15 @@ struct Time {
   double fps = 25;      ///< frames per second
   double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
   double step = 0.01;   ///< maximum time step [s]; each frame is divided into equal steps no longer than this
-  std::optional<double> tolerance = std::nullopt;  ///< replaces `step`: allowed local error of positions per step [m]
+  /// Allowed local error of positions per step [m], which determines the steps in place of `step`; absent: equal steps.
+  std::optional<double> tolerance = std::nullopt;
   Integrator integrator = Integrator::implicit_euler;
 };
 
-/// Colours of an object or of a panel of a cloth, and a picture, which is aligned with weft and warp on cloth.
+/// Colours and picture of an object or of a panel of a cloth. On cloth, the picture is aligned with weft and warp.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
-  std::optional<Vec3> back_color;              ///< sRGB, back of cloth; absent: that of the front, paler
+  std::optional<Vec3> back_color;              ///< sRGB, back of cloth; absent: `color`, paler
   std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute path
   double image_width = 0.2;                    ///< width of one tile along weft [m]; the height keeps the proportions
   Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
@@ -94,13 +95,13 @@ struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< colours of the panels of a pattern
   bool as_file = true;             ///< characters: use the colours and pictures of their file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;        ///< cloth: of threads, absent: by fabric; obstacles: of a clear coat
+  std::optional<double> gloss;  ///< of threads (cloth; absent: by fabric), or of a clear coat (obstacles; absent: 0)
   std::optional<double> fuzz, sheer;  ///< cloth only, see Finish; absent: by fabric
   double metal = 0;                   ///< obstacles only: 0 no metal, 1 metal, which reflects in its own colour
   std::optional<double> tile_width;   ///< obstacles only: width of one tile [m]; absent: once over the shape
-  double warp_fraction = 0.5;         ///< by fabric: fraction of warp among the threads on top
-  Threads threads = Threads::plain;   ///< by fabric: pattern of the drawn threads
-  double cloth_thickness = 0;         ///< of the fabric itself, not its contact thickness; or of a rope [m]
+  double warp_fraction = 0.5;         ///< set by the fabric: fraction of warp among the threads on top
+  Threads threads = Threads::plain;   ///< set by the fabric: pattern of the drawn threads
+  double cloth_thickness = 0;         ///< of the fabric itself, not its contact thickness; ropes: diameter [m]
   double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: draws no threads
   std::optional<double> hem;          ///< cloth only: width of drawn hems [m]; 0: none; absent: by fabric and shape
   bool checker = false;               ///< infinite planes only: faint grid of 0.5 m tiles
@@ -111,7 +112,7 @@ struct Look : Paint {
 /// Key frame of a pin: the pose in which it holds its particles at one time. The particles rotate about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;        ///< position: displacement of the centroid; if `in_world`, its position in the world
+  Pose pose;        ///< position: displacement of the centroid; if `in_world`, the centroid's position
   bool in_world = false;
 };
 
@@ -148,8 +149,8 @@ struct Pin : ClothPart {
   PinTrack motion;                 ///< motion of the particles, if `follow` is empty
   double release = -1;             ///< time of release [s]; negative: never
   std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
-  double fade =
-      0;  ///< distance along the cloth over which its pull on other particles fades to 0 [m]; needs `strength`
+  /// Distance along the cloth over which the pull on particles around the part fades to 0 [m]; needs `strength`.
+  double fade = 0;
 };
 
 /// A `follow` divided into the name of the body and, for a part of a character, that of the part (else empty).
@@ -175,8 +176,11 @@ struct Attachment : ClothPart {
   std::optional<double> breaking_load;  ///< total force above which all springs break [N]; absent: never
 };
 
+/// At the start: keep the given positions, or move the cloth off surfaces that it touches or crosses.
 enum class ClothStart { as_given, untangle };
+/// quads, aligned_triangles and crossed_triangles are rectangles of cloth; they differ in their meshes.
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern, rope };
+/// Source of the rest shape of a mesh. `automatic`: the UVs if they are panels of cloth (UvRest), else the mesh.
 enum class ClothRest { automatic, mesh, uv };
 
 struct Rope;
@@ -185,7 +189,7 @@ struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< rectangles: size along weft and warp [m]
-  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed triangles add one per cell
+  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed_triangles add one per cell
   Vec2 grading{1, 1};                            ///< rectangles: last spacing of particles / first spacing
   std::filesystem::path file;                    ///< mesh or sewing pattern; absolute path
   double scale = 1;                              ///< mesh, pattern: factor on all lengths of the file
@@ -202,7 +206,7 @@ struct Cloth {
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec3 spin{0, 0, 0};        ///< angular velocity at the start, about the centre of mass [degrees/s]
   Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
-  std::optional<ClothStart> start;  ///< if surfaces touch or cross at the start; absent: by shape
+  std::optional<ClothStart> start;  ///< for surfaces that touch or cross at the start; absent: see starts_untangled()
   std::vector<std::string> over;    ///< cloths over which this one is worn
   double start_noise = 0;           ///< maximum random offset of a particle at the start, along each axis [m]
   Material material;
@@ -213,8 +217,8 @@ struct Cloth {
   std::shared_ptr<const Rope> rope;  ///< the rope for which this cloth is simulated; null: a sheet
 };
 
-/// Whether the start moves this cloth off surfaces that it touches or crosses. (It always does for cloth that is worn
-/// `over` other cloth.) The default is true for patterns, since the program, not the scene, places their panels.
+/// Whether the start moves this cloth off surfaces that it touches or crosses. (Cloth that is worn `over` other cloth
+/// is always moved off it.) The default is true for patterns, since the program, not the scene, places their panels.
 inline bool starts_untangled(const Cloth& cloth) {
   return cloth.start ? *cloth.start == ClothStart::untangle : cloth.shape == ClothShape::pattern;
 }
@@ -226,7 +230,7 @@ inline long rectangle_particles(const Cloth& cloth) {
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
-/// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth().
+/// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth() (ropes.hpp).
 struct Rope {
   std::string name;
   std::vector<Vec3> points;      ///< points that it passes through at the start [m]
@@ -254,12 +258,13 @@ struct Obstacle {
   Shape shape;
   int segments = 48;  ///< round shapes: number of faces around the axis
   Pose pose;
-  PoseTrack motion;               ///< key frames, not relative to `pose`; empty: rests at `pose`
-  double mass = 0;                ///< [kg]; 0: from the density
-  double density = 0;             ///< [kg/m³]; 0: from the mass; if both are 0, forces do not move it
-  Vec3 velocity{0, 0, 0};         ///< at the start, if forces and no key frames move it [m/s]
-  Vec3 spin{0, 0, 0};             ///< likewise: angular velocity about the centre of mass [degrees/s]
-  std::optional<double> release;  ///< forces move it from this time, key frames before [s]; absent: always
+  PoseTrack motion;        ///< key frames, not relative to `pose`; empty: rests at `pose`
+  double mass = 0;         ///< [kg]; 0: follows from `density`
+  double density = 0;      ///< [kg/m³]; 0: follows from `mass`; if both are 0, forces do not move it
+  Vec3 velocity{0, 0, 0};  ///< at the start, if forces and no key frames move it [m/s]
+  Vec3 spin{0, 0, 0};      ///< as `velocity`: angular velocity about the centre of mass [degrees/s]
+  /// Time from which forces move the obstacle; before it, key frames do [s]. Absent: forces always do.
+  std::optional<double> release;
   /// Obstacle or "<character>.<part>" with which the obstacle moves: the rigid motion of that body since the start of
   /// the run is applied in addition to its own motion. Empty: none.
   std::string follow = {};
@@ -290,17 +295,19 @@ struct Travel {
   double speed = 0;  ///< for Kind::speed: horizontal speed in the scene [m/s]
 };
 
-/// The motion of a body with a skeleton.
+/// The motion of a body with a skeleton. A clip is an animation in a file.
 struct SkeletonMotion {
   std::optional<std::string> clip;  ///< name of the clip in `motion`, else in the file of the body; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file with the motion of another skeleton; absolute path
   FileUp motion_up = FileUp::as_file;           ///< up axis of `motion`
   std::vector<JointNames> joints;
   Travel travel;
-  Stance stance = Stance::first;      ///< pose during `dressing`: that of the clip at `start`, or the rest pose
-  std::optional<double> stance_arms;  ///< angle of straight arms from hanging down [degrees]; absent: as in the pose
-  bool loop = false;                  ///< repeats the clip; each round starts where the previous one ended
-  double crossfade = 0;               ///< time at the end of each round that is blended into the next round [s]
+  /// Pose during Character::dressing. `first`: that of the clip at Character::start; `rest`: that of the skeleton.
+  Stance stance = Stance::first;
+  /// Angle between the straight arms and the downward direction, in `stance` [degrees]; absent: as in the pose.
+  std::optional<double> stance_arms;
+  bool loop = false;     ///< repeats the clip; each round starts where the previous one ended
+  double crossfade = 0;  ///< clip time over which each round is blended into the next one [s]; 0: none
 };
 
 /// A character from a file, with skeleton and animations.
@@ -344,16 +351,17 @@ struct BodyPart {
 struct Character {
   std::string name;
   CharacterSource source;
-  std::optional<double> scale;  ///< metres per unit of the file; absent: as the file states, else 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, else 1
   FileUp up = FileUp::as_file;
-  Pose pose;                   ///< of the file's origin, or of the floor below the mannequin
-  double dressing = 0;         ///< time for which it stands still, from the start of the preroll [s]
-  double blend = 0;            ///< time after `dressing` in which its motion fades in [s]
+  Pose pose;            ///< of the file's origin, or of the floor below the mannequin
+  double dressing = 0;  ///< time from the start of the preroll for which it stands still, to be dressed [s]
+  /// Time after `dressing` [s] in which the clip accelerates to `speed` and the pose changes from `stance` to the clip.
+  double blend = 0;
   double grow = 0;             ///< time at the start of `dressing` in which it grows from its bones to its size [s]
   double start = 0;            ///< time of the clip at which the motion begins [s]
   double speed = 1;            ///< factor on the speed of the clip
-  std::optional<double> room;  ///< clearance between limbs [m]; absent: see clearance_between_limbs()
-  std::optional<double> keys_per_second;  ///< computed key frames per second [Hz]; absent: by the clip
+  std::optional<double> room;  ///< clearance between limbs [m]; absent: clearance_between_limbs()
+  std::optional<double> keys_per_second;  ///< computed key frames per second [Hz]; absent: rate of the clip, in bounds
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
@@ -372,8 +380,9 @@ inline SkeletonMotion* acting_of(Character& character) {
 }
 
 struct LightKey {
-  double time = 0;                                                     ///< [s]
-  Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};  ///< position, target: [m]
+  double time = 0;  ///< [s]
+  /// Suns have a direction, in which the light travels; spots have a position and a target [m].
+  Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
   double intensity = 1;
 };
 
@@ -391,7 +400,7 @@ enum class StageLook { studio, stage, daylight, clay, wire, strain };
 
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;  ///< name; empty: the first, or automatic framing if there is none
+  std::string camera;  ///< name; empty: the first camera or, if there is none, automatic framing
   StageLook look = StageLook::studio;
   std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
   std::optional<double> sky_intensity;
@@ -405,8 +414,8 @@ struct Scene {
   std::filesystem::path file;
   std::string name;  ///< file name without extension; names the output
   std::string title;
-  std::uint64_t hash = 0;                    ///< see identify()
-  std::uint64_t simulation_hash = 0;         ///< likewise, for the simulation alone
+  std::uint64_t hash = 0;                    ///< see identify() (effective.hpp)
+  std::uint64_t simulation_hash = 0;         ///< see identify()
   std::vector<std::filesystem::path> files;  ///< files that for_each_dependency() visits
   UpAxis up = UpAxis::z;
   Time time;
@@ -415,7 +424,7 @@ struct Scene {
   Solver solver;
   Contact contact;
   std::vector<Cloth> cloths;  ///< cloths of ropes come last
-  std::vector<Rope> ropes;    ///< for each, `cloths` also has a cloth
+  std::vector<Rope> ropes;    ///< each has a cloth in `cloths`, too
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;

@@ -93,7 +93,7 @@ void add_rule(Json& schema, const Rule& rule, void* defaults) {
   if (rule.need == Need::required) schema["required"].push_back(rule.key);
 }
 
-/// The schema of a table with the rules of one variant, or (null) without variants.
+/// The schema of a table with its common rules and those of `variant`; null: only the common rules.
 Json variant_schema(const Table& table, const Variant* variant) {
   Json schema = {{"type", "object"}, {"description", table.documentation}, {"properties", Json::object()}};
   const auto defaults = table.make();
@@ -105,7 +105,7 @@ Json variant_schema(const Table& table, const Variant* variant) {
   return schema;
 }
 
-/// Whether both schemas allow the same values; descriptions and defaults may differ.
+/// Whether two schemas allow the same values; their descriptions and defaults may differ.
 bool allow_same_values(Json one, Json other) {
   for (Json* schema : {&one, &other}) {
     schema->erase("description");
@@ -125,7 +125,8 @@ Json condition(const Table& table, const Variant& variant) {
 }
 
 // The schema of a table. Its properties are those of all variants, so that editors can complete them. For each variant,
-// a condition gives the allowed keys, so that editors name the wrong key; with oneOf, they do not.
+// a condition gives the allowed keys, so that editors name the wrong key. If the schema used oneOf instead, editors
+// would not name it.
 Json table_schema(const Table& table) {
   Json schema = variant_schema(table, nullptr);
   if (table.variants.empty()) return schema;

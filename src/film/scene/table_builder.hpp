@@ -209,7 +209,7 @@ class TableBuilder : public RowBuilder {
     return *this;
   }
 
-  // The functions below modify the row added last.
+  // The functions from here to written_if() modify the row added last.
   TableBuilder& need(Need need) {
     last().need = need;
     return *this;

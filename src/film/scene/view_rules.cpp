@@ -6,8 +6,9 @@
 namespace weft::scene {
 namespace {
 
-// The first key frame stores the values given directly in the table of a camera or light. If the table has `keys`, they
-// are the defaults of its first entry; each later entry takes its defaults from the entry before.
+// The first key frame stores the values given directly in the table of a camera or light. If the table has `keys`,
+// these values are the defaults of the first entry of `keys`; each later entry takes its defaults from the entry
+// before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -33,7 +34,7 @@ const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
 /// Adds the row of the focal length, after that of the field of view. `stands(s)`: whether the effective scene may
-/// contain it in the table of `s`; `otherwise`: documents its default.
+/// contain the focal length in the table of `s`. `otherwise`: documents its default.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm",
@@ -123,7 +124,7 @@ void smoothing_row(TableBuilder<Camera>& rows) {
               "time over which the motion of the camera is smoothed; 0: no smoothing");
 }
 
-/// Adds the keys of computed cameras that see the subject from a given direction.
+/// Adds the keys of computed cameras that have a given direction from the subject.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
               "direction of the camera as seen from the subject, around the up axis from the front to the right: with "

@@ -60,7 +60,7 @@ struct Decoder::Impl {
   FramePtr frame{av_frame_alloc()};
   ScalerPtr scaler;  // created for the first frame
   std::map<std::string, std::string> metadata;
-  bool at_end = false;  // of the file; the decoder may still hold frames
+  bool at_end = false;  // all packets of the file are read; the decoder may still hold frames
 
   explicit Impl(const std::filesystem::path& name) : file(name) {
     collect_log();
@@ -70,7 +70,7 @@ struct Decoder::Impl {
     } catch (const std::runtime_error& error) {
       fail_to_read(file, error.what());
     }
-    // Allows no playlists: libav detects them by their content, and they could open other files.
+    // Excludes playlists: libav detects them by their content, and a playlist could make it open other files.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
     // The path is absolute, since libav reads the text before a colon as a protocol.

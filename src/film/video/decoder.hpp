@@ -11,7 +11,8 @@
 
 namespace weft::video {
 
-/// Reads the pictures of a video in display order. All functions throw Error(asset_unreadable) with libav's message.
+/// Reads the pictures of a video in display order. The constructor and next() throw Error(asset_unreadable) with the
+/// name of the file and the reason.
 class Decoder {
  public:
   explicit Decoder(const std::filesystem::path& file);
@@ -21,9 +22,10 @@ class Decoder {
 
   int width() const;   ///< [pixels]
   int height() const;  ///< [pixels]
-  /// Whether the codec is lossy, so that the pictures differ from those given to the encoder.
+  /// Whether the pictures may differ from those given to the encoder. H.264 can be lossless: RGB counts as lossless,
+  /// YUV as lossy.
   bool lossy() const;
-  double fps() const;  ///< frames per second, 0 if the file does not state it
+  double fps() const;  ///< frames per second; 0 if libav finds no rate
   const std::map<std::string, std::string>& metadata() const;
 
   /// Returns the next picture, or nullopt after the last one.

@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kCodecName = "libx264";
 
-/// Names of a codec and its encoder, and the file extensions for the codec, the default one first.
+/// Names of a codec and its encoder, the pixel format, and the file extensions that the codec allows.
 struct CodecKind {
   Codec codec;
   const char *name, *encoder;
@@ -32,6 +32,7 @@ struct CodecKind {
   std::vector<std::string> endings;
 };
 const std::vector<CodecKind>& codec_kinds() {
+  // H.264 must be first: is_written() takes its extensions for all.
   static const std::vector<CodecKind> kKinds{
       {Codec::h264, "h264", kCodecName, AV_PIX_FMT_YUV420P, {".mp4", ".mov", ".mkv"}},
       {Codec::h264_lossless, "h264_lossless", "libx264rgb", AV_PIX_FMT_RGB24, {".mkv", ".mp4", ".mov"}},

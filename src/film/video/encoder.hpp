@@ -10,13 +10,13 @@
 
 namespace weft::video {
 
-/// h264 is for players: 8 bits, 4:2:0, in .mp4, .mov or .mkv. The others are for editing. h264_lossless (.mkv, .mp4,
-/// .mov) and ffv1 (.mkv) keep the bytes of the pictures; prores is ProRes 422 HQ with 10 bits (.mov, .mkv). automatic:
+/// h264 is for players: 8 bits, 4:2:0, in .mp4, .mov or .mkv. The next three codecs are for editing: h264_lossless
+/// (.mkv, .mp4, .mov) and ffv1 (.mkv) are lossless, and prores is ProRes 422 HQ with 10 bits (.mov, .mkv). automatic:
 /// ffv1 for .mkv, prores for .mov, else h264.
 enum class Codec { automatic, h264, h264_lossless, ffv1, prores };
 
 struct Settings {
-  int width = 1280, height = 720;  ///< [pixels]; odd sizes are padded by one column or row unless the codec keeps RGB
+  int width = 1280, height = 720;  ///< [pixels]; odd sizes are padded by a column or row, unless the codec is lossless
   /// [1/s]; 23.976 means 24000/1001. Frame k is shown at k / fps (in Matroska, rounded to 1 ms).
   double fps = 25;
   Codec codec = Codec::automatic;
@@ -27,9 +27,9 @@ struct Settings {
   std::map<std::string, std::string> metadata;
 };
 
-/// Writes one video: by default MP4 with H.264, yuv420p, BT.709, and the index before the frames. The file gets its
-/// final name only in finish(). Until then, a hidden temporary file beside it holds the frames in fragments, which can
-/// be played even if the process is killed.
+/// Writes one video: for .mp4, by default H.264, yuv420p, BT.709, and the index before the frames. The file gets its
+/// final name only in finish(). Until then, a hidden temporary file in the same folder holds the frames in fragments,
+/// which can be played even if the process is killed.
 class Encoder {
  public:
   /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written,
@@ -39,12 +39,12 @@ class Encoder {
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  /// Appends the next frame. Throws Error(internal) if its size differs from the settings, Error(output_failed) with
-  /// libav's message, for example if the disk is full.
+  /// Appends the next frame. Throws Error(internal) if its size differs from the settings or finish() has been called,
+  /// Error(output_failed) with libav's message if libav fails, for example because the disk is full.
   void add(const image::Image& image);
 
   /// Flushes the encoder, moves the index to the front, reads the file to verify the time of each frame, and renames it
-  /// to its final name. At least one frame must have been added. Throws Error(output_failed). If all frames are encoded
+  /// to its final name. Throws Error(output_failed), also if no frame has been added. If all frames are encoded
   /// but the finished file cannot be made, partial_name(file) keeps the frames, and the error names that file.
   void finish();
 
@@ -58,7 +58,8 @@ class Encoder {
 /// Whether videos with this extension, such as ".mp4", can be written.
 bool is_written(const std::string& ending);
 
-/// The codec for a file of this name. Throws Error(usage) if such files cannot contain `codec`.
+/// The codec for a file of this name: `codec` itself or, for `automatic`, the default of the extension (see Codec).
+/// Throws Error(usage) if such files cannot contain `codec`.
 Codec codec_of(const std::filesystem::path& file, Codec codec);
 
 /// Name of the file that keeps all frames if the finished file cannot be made: that of `file` with ".partial" inserted

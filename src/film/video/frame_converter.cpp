@@ -29,7 +29,8 @@ ScalerPtr make_scaler(int width, int height, AVPixelFormat format, bool rgb, con
   set("dstw", width);
   set("dsth", height);
   set("dst_format", format);
-  // Full chroma input: the filter uses every column. (Measured at 1280×720: 1.5 ms per frame instead of 2.6 ms.)
+  // Full chroma input: the filter uses every column. (Measured at 1280×720: with this flag, 1.5 ms per frame;
+  // without, 2.6 ms.)
   set("sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP);
   set("src_range", 1);
   set("dst_range", rgb);

@@ -12,13 +12,14 @@ namespace weft::video {
 /// of the video is RGB, keeps RGB.
 class FrameConverter {
  public:
-  /// `file` names the video in errors. Sizes are in pixels; odd sizes are padded by one unless the format is RGB.
+  /// `file`: name of the video in errors. Sizes are in pixels; odd sizes are increased by one unless the format is RGB.
   FrameConverter(int width, int height, std::filesystem::path file, AVPixelFormat format = AV_PIX_FMT_YUV420P);
 
   int padded_width() const { return rgb_ ? width_ : width_ + width_ % 2; }
   int padded_height() const { return rgb_ ? height_ : height_ + height_ % 2; }
 
-  /// Returns a frame of the padded size. Its colour space is set, its pixels are not. Throws Error(output_failed).
+  /// Returns a frame of the padded size, with its colour space set and its pixels uninitialised. Throws
+  /// Error(output_failed).
   FramePtr make_frame() const;
 
   /// Writes the picture into `frame`; repeats the last column or row if the size is odd. Throws Error(output_failed).

@@ -11,7 +11,7 @@
 namespace weft::video {
 namespace {
 
-// Number of log lines before an error that its message repeats.
+// Size of the log buffer [lines].
 constexpr std::size_t kRememberedLines = 4;
 
 std::mutex g_log_mutex;  // encoder threads log too

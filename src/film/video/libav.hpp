@@ -39,17 +39,18 @@ using ScalerPtr = std::unique_ptr<SwsContext, LibavDeleter>;
 using OutputPtr = std::unique_ptr<AVFormatContext, OutputDeleter>;
 using InputPtr = std::unique_ptr<AVFormatContext, InputDeleter>;
 
-/// Redirects the log of libav and x264 from standard error to a buffer of the latest warnings and errors, and empties
-/// this buffer. The whole process has one buffer. Thread-safe.
+/// Redirects the log of libav and x264 from standard error to the log buffer, which holds the latest warnings and
+/// errors, and empties this buffer. The whole process has one log buffer. Thread-safe.
 void collect_log();
 
-/// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by libav's latest warnings.
+/// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by the content of the log buffer, which is
+/// then empty.
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view step, std::string_view reason);
 
-/// Returns `code` if it is not an error; otherwise fails with the text of av_strerror.
+/// Returns `code` if it is not an error (at least 0). Otherwise calls fail() with the text of av_strerror().
 int check(int code, const std::filesystem::path& file, std::string_view step);
 
-/// Returns `pointer` if it is not null; otherwise fails with "out of memory".
+/// Returns `pointer` if it is not null. Otherwise calls fail() with the reason "out of memory".
 template <class Pointer>
 Pointer check_allocated(Pointer pointer, const std::filesystem::path& file) {
   if (!pointer) fail(file, "start libav", "out of memory");

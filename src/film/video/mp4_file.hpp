@@ -16,12 +16,12 @@ enum class Mp4Layout {
   fast_start,  ///< the index precedes the frames: browsers can start and seek before the whole file is loaded
 };
 
-/// A video file that is being written.
+/// Writes a video file, packet by packet.
 class VideoFileWriter {
  public:
   /// Opens `file` and writes its header. The path must be absolute, since libav reads the text before a colon as a
-  /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, the name that
-  /// the user has given. Throws Error(output_failed).
+  /// protocol. Packet times are in units of one frame, 1 / `rate` seconds. `reported_file`: the name that the user has
+  /// given; its extension selects the container, and errors name it. Throws Error(output_failed).
   VideoFileWriter(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
                   const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
 
@@ -37,8 +37,8 @@ class VideoFileWriter {
   OutputPtr output_;
 };
 
-/// Copies the packets of the files `from`, one after the other, into a new fast-start file `to`. The first frame is at
-/// time zero. Throws Error(output_failed), also if the codec parameters of the files differ.
+/// Copies the packets of all files `from`, in this order, into a new fast-start file `to` (an absolute path). The first
+/// frame is at time zero. Throws Error(output_failed), also if the codec parameters of the files differ.
 void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
                         const std::filesystem::path& reported_file, AVRational rate,
                         const std::map<std::string, std::string>& metadata);

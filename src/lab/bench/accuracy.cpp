@@ -19,9 +19,9 @@ using scene::Integrator;
 
 // Fixed steps, relative to the scene's.
 constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
-// Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference then has
-// 1/64 of the error of that shortest step. With contact, so short a step would be useless: chaotic divergence exceeds
-// its error.
+// Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference has 1/64
+// of the error at the shortest measured step. With contact, so short a step would be useless, because chaotic
+// divergence exceeds the step error.
 constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
 // Values of time.tolerance fall from kLargestTolerance [m] by half a decade each. They end after kTolerances values, or
 // earlier if a run fails or takes more steps than the run with the shortest fixed step.
@@ -37,7 +37,8 @@ constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
 // Additional start_noise of each start, compared with the start before [m].
 constexpr double kStartShift = 1e-6;
-// A single run of less CPU time than this is repeated, and the smaller time counts [s].
+// If there is only one start and its run takes less CPU time than this [s], it is repeated, and the smaller time
+// counts.
 constexpr double kShortRun = 0.3;
 // A run fails if it takes too many steps. With fixed steps, the limit is kMaxStepRatio max(n, expected number), where n
 // is the number of steps with the shortest fixed step. With time.tolerance, it is min(kMaxStepRatio n, number of steps
@@ -88,8 +89,8 @@ class Campaign {
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
-  // Assumed factor by which the error falls if the step is divided by `shorter`. Uses half of the order, because waves
-  // and contact lower the observed order; the full order would understate the uncertainty.
+  // Assumed factor by which the error falls if the step is divided by `shorter`. Uses half of the order (with contact,
+  // 0.5), because waves and contact lower the observed order; the full order would understate the uncertainty.
   double error_ratio(Integrator integrator, double shorter) const {
     const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
     return std::pow(shorter, 0.5 * order);
@@ -253,8 +254,8 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   }
 }
 
-// Runs a candidate for the reference and estimates its errors. Chooses newton_tolerance at twice the step, because runs
-// take half the time there. If a run fails, returns nullptr.
+// Runs a candidate for the reference and estimates its errors. Chooses newton_tolerance at twice the step, because such
+// runs take half the time. If a run fails, returns nullptr.
 Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   try {
     Setting twice = candidate.setting;
@@ -303,8 +304,8 @@ bool Campaign::decides(const Run& run, const Run& tighter) const {
   return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.uncertainty_of(tighter, q));
 }
 
-// With this fixed step, lowers newton_tolerance from the scene's value until Run::step_decides. Returns the run with
-// step_decides; nullptr if there is none.
+// Runs this fixed step with newton_tolerance falling from the scene's value until Run::step_decides. Returns the run
+// with step_decides; nullptr if there is none.
 Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
@@ -332,7 +333,8 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   return exact;
 }
 
-// Measures all fixed steps. Then adds a cross check of the reference by the run with the shortest step; see CrossCheck.
+// Measures all fixed steps. Then adds the CrossCheck of the run with the shortest step, if the conditions of CrossCheck
+// hold.
 void Campaign::measure_steps(Integrator integrator) {
   SamplePtr before, last;
   double step_before = 0, step_last = 0;
@@ -382,8 +384,8 @@ void Campaign::measure_linear() {
   }
 }
 
-// Runs meshes from fine to coarse, and compares each with the mesh of twice the cells along each side, if there is one.
-// Lists the results from coarse to fine.
+// Runs meshes from fine to coarse, and compares each with the mesh that has twice the cells along each side, if that
+// mesh was run. Lists the results from coarse to fine.
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // the keys, multiples of 1/8, are exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
@@ -403,7 +405,7 @@ void Campaign::measure_meshes() {
     by_refinement[refinement] =
         run(tried, against,
             against ? run_error::matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
-    // Do not list meshes with which others are only compared, unless they fail.
+    // Do not list a mesh that only serves for comparison, unless its run fails.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;
     if (!against && !tried.failed()) tried.failure = "nothing finer to compare with";

@@ -19,7 +19,7 @@ using run_error::kQuantities;
 inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
                                                      scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};
 
-/// The values that differ between runs. All others are those of the scene.
+/// The values that differ between runs. All other values are those of the scene.
 struct Setting {
   scene::Integrator integrator = scene::Integrator::implicit_euler;
   double step = 0;                       ///< [s]
@@ -30,28 +30,31 @@ struct Setting {
 
 /// The parameter that varies in a series of runs. Along a series, the error should fall.
 enum class Axis {
-  grid,       ///< fixed steps; for each, newton_tolerance falls tenfold from run to run until Run::step_decides
+  grid,       ///< fixed steps; for each, newton_tolerance falls tenfold per run until Run::step_decides or 1e-8
   tolerance,  ///< time.tolerance varies, with the solver settings of the scene
   linear,     ///< solver.linear_tolerance varies, at the scene's step
-  mesh,       ///< the number of cells varies; the error is the difference to twice the cells along each side
+  mesh,       ///< the number of cells varies; error: difference to the run with twice the cells along each side
 };
 inline constexpr std::size_t kAxes = 4;
 
-/// Runs of one setting, from one or several starts: initial states that differ by micrometres (start_noise). With
-/// contact, the medians of functionals over the starts count; without, the trajectory of the first start.
+/// Results of one setting, run from one or several starts: initial states that differ by micrometres (start_noise).
+/// With contact, errors are those of the functionals' medians over the starts; without contact, those of the trajectory
+/// from the first start.
 struct Run {
   Axis axis = Axis::grid;
   Setting setting;
   std::string failure = {};  ///< why the run did not reach the end; empty if it did
-  Errors errors{};           ///< difference to the reference; for Axis::mesh, to the finer mesh
-  Errors spread{};           ///< largest difference of a start to the median (without contact: to the first start)
+  Errors errors{};           ///< difference to the reference; for Axis::mesh, to the run with twice the cells
+  Errors spread{};           ///< largest difference of a start to the medians (without contact: to the first start)
   /// Only for Axis::grid, in deciding_quantity(); otherwise NaN. `change`: difference to the run with a tenth of this
-  /// newton_tolerance. `solver_error`: difference to the run with the same step and the smallest newton_tolerance.
+  /// newton_tolerance. `solver_error`: difference to the successful run with the same step and the smallest
+  /// newton_tolerance.
   double change = std::numeric_limits<double>::quiet_NaN(), solver_error = change;
   /// Only for Axis::grid: whether the step, not the solver, determines the error. True if `change` is at most a tenth
   /// of the error of the run with a tenth of this newton_tolerance, or at most the uncertainty of that error.
   bool step_decides = false;
-  /// Of the first start. CPU time: minimum over all starts; a single start is run twice if it is short.
+  /// Cost of the run from the first start; but the CPU time is the minimum over all starts. If a single start takes
+  /// less than 0.3 s, it is run twice.
   Work work = {};
   int particles = 0;
   std::vector<double> start_errors = {};  ///< error of each start alone, in deciding_quantity(); empty for Axis::mesh
@@ -73,8 +76,8 @@ double expected_order(const Run& run);
 struct Candidate {
   Setting setting;
   std::string failure = {};
-  Errors step{};    ///< error due to its step, extrapolated from the difference to the run with twice the step
-  Errors solver{};  ///< change that a tenfold newton_tolerance causes, measured at twice the step
+  Errors step{};    ///< error due to the step, extrapolated from the difference to the run with twice the step
+  Errors solver{};  ///< difference to a run with ten times the newton_tolerance, both at twice the step
   Errors spread{};  ///< see Run::spread
   /// See Functionals::energies_in_play [J].
   double energies_in_play = 0;
@@ -83,32 +86,35 @@ struct Candidate {
   Errors uncertainty() const;
 };
 
-/// Check of the reference by the run of an integrator with the shortest measured step. Made only if Run::step_decides
-/// is true in that run and in a run with a longer step.
+/// Check of the reference by the run of an integrator with the shortest fixed step that was measured. The check is made
+/// only if Run::step_decides is true for this run and for a run with a longer step.
 struct CrossCheck {
   scene::Integrator integrator = scene::Integrator::implicit_euler;
   double step = 0;      ///< [s]
   Errors difference{};  ///< difference to the reference
-  /// Uncertainty of this run: its difference to the next longer step with Run::step_decides, extrapolated with half of
-  /// the order (with contact, with an order of 0.5), plus Run::spread.
+  /// Uncertainty of this run: its difference to the run with the next longer step and Run::step_decides, extrapolated
+  /// with half of the order (with contact, with an order of 0.5), plus Run::spread.
   Errors uncertainty{};
 };
 
 struct Accuracy {
-  bool contact = false;         ///< whether any two surfaces can touch in the scene
+  bool contact = false;         ///< whether surfaces can touch in the scene; see production::can_collide()
   int starts = 1;               ///< number of starts of each setting; see Run
-  double cloth_size = 0;        ///< longest side of the bounding box of the largest cloth at the start [m]
+  double cloth_size = 0;        ///< run_error::cloth_size() at the start [m]
   int frames = 0;               ///< number of frames after the start
   double duration = 0;          ///< [s]
   double largest_energy = 0;    ///< Functionals::energies_in_play of the reference [J]
   Candidate reference, second;  ///< `reference` is the one with the smaller uncertainty; `second` checks it
   Errors difference{};          ///< difference between `reference` and `second`; 0 if `second` failed
-  Errors uncertainty{};  ///< Candidate::uncertainty() of `reference`; more if `second` or a cross check differs by more
+  /// At least Candidate::uncertainty() of `reference`, and at least the difference to `second` or to a cross check
+  /// minus the uncertainty of `second` or of the cross check.
+  Errors uncertainty{};
   std::vector<CrossCheck> cross_checks;
-  Setting of_scene;       ///< settings of the scene, with the step shortened so that it divides a frame evenly
-  std::vector<Run> runs;  ///< all runs of a series (one axis and integrator) follow each other, from coarse to fine
+  Setting of_scene;       ///< settings of the scene; the step is shortened so that it divides a frame evenly
+  std::vector<Run> runs;  ///< runs of one series (same axis and integrator) are consecutive, from coarse to fine
 
-  /// Uncertainty of the error of `run`.
+  /// Uncertainty of the error of `run`. For Axis::mesh, only Run::spread, because the error does not refer to the
+  /// reference.
   double uncertainty_of(const Run& run, Quantity quantity) const {
     return (run.axis == Axis::mesh ? 0 : at(uncertainty, quantity)) + at(run.spread, quantity);
   }
@@ -118,9 +124,9 @@ struct Accuracy {
   }
   /// The runs of one series; for Axis::grid, those of all steps.
   std::vector<const Run*> series(Axis axis, scene::Integrator integrator) const;
-  /// The run with the scene's own settings; nullptr if there is none.
+  /// The successful run with the scene's own settings; nullptr if there is none.
   const Run* scene_setting_run() const;
-  /// The runs of Axis::grid with Run::step_decides: at most one for each step.
+  /// The runs of Axis::grid and of this integrator with Run::step_decides: at most one for each step.
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };
 
@@ -132,18 +138,19 @@ Quantity deciding_quantity(const Accuracy& accuracy);
 /// The scene that is measured if the user names none, as TOML.
 extern const char* const kSwingingSheet;
 
-/// Called after each run. `done`: estimated fraction of the work that is complete.
+/// Called after the runs of each setting, also of those for the references. `done`: estimated fraction of the work that
+/// is complete.
 using EachRun = std::function<void(const Run& run, double done)>;
 
-/// Raises `uncertainty` to at least `difference` − `uncertainty` of each cross check.
+/// Raises `uncertainty` to at least CrossCheck::difference − CrossCheck::uncertainty of each cross check.
 void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks);
 
 /// Runs the scene some hundred times. Computes two independent references: with midpoint and BDF2; with contact, with
-/// BDF2 and Euler, because midpoint does not damp contact. Their step is an eighth of the shortest measured step; with
-/// contact, half of it. Their newton_tolerance is divided by ten until, at twice their step, this changes the result by
-/// less than a tenth of the step error, or by less than the starts differ, or until it is 1e-8 or a run fails. The
-/// candidate with the smaller uncertainty becomes the reference. Throws Error(simulation_failed) if both fail, and
-/// Error(usage) if the plan does not suit the scene.
+/// BDF2 and Euler, because midpoint does not damp contact. Their step is an eighth (with contact, half) of the shortest
+/// step of Axis::grid. Their newton_tolerance is divided by ten until, at twice their step, a division changes the
+/// result by less than a tenth of the change expected from halving the step, or by less than the starts differ, or
+/// until the tolerance is 1e-8 or a run fails. Of the two candidates, the one with the smaller uncertainty becomes the
+/// reference. Throws Error(simulation_failed) if both fail, and Error(usage) if the plan does not suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

@@ -8,14 +8,14 @@
 
 namespace weft::bench {
 
-/// If a list is absent, the program chooses it. If a list is empty, its runs are omitted (except the run with the
-/// scene's own time.tolerance).
+/// If a member is absent, the program chooses the values. If a list is empty, its runs are omitted (but not the run
+/// with the scene's own time.tolerance).
 struct AccuracyPlan {
   std::optional<std::vector<scene::Integrator>> integrators;
   std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step
   std::optional<std::vector<double>> tolerances;  ///< time.tolerance [m]
   std::optional<std::vector<double>> meshes;      ///< number of cells along each side, relative to the scene
-  std::optional<int> starts;  ///< number of starts (Run), each displaced by 1 µm more; default: 1, with contact 3
+  std::optional<int> starts;  ///< number of starts (Run); each has 1 µm more start_noise; default: 1, with contact 3
 };
 /// Minimum number of starts with contact: the median of fewer is no more reliable than a single run.
 inline constexpr int kMinStartsWithContact = 3;

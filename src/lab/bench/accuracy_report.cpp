@@ -41,7 +41,7 @@ std::string error_text(const Accuracy& accuracy, const Run& run, Quantity quanti
   return fmt::format("{}{:.1e}", accuracy.resolved(run, quantity) ? "" : "~", error_of(run, quantity));
 }
 
-// Runs of several integrators. With `with_orders`, each error is followed by the order observed since the row above.
+// One row per run. With `with_orders`, each error is followed by the order observed between the row above and this row.
 Table runs_table(const Accuracy& accuracy, const std::vector<const Run*>& runs, bool with_orders) {
   const auto quantities = quantities_of(accuracy);
   Table table{{"integrator", "setting", "steps", "rejected", "Newton a step", "linear a step", "CPU s"}};
@@ -143,7 +143,8 @@ std::string reference_text(const Accuracy& accuracy) {
       cross_checks_text(accuracy));
 }
 
-// Distribution of the errors over the starts, for all runs with the newton_tolerance of the scene.
+// Distribution of the errors over the starts, for all runs of Axis::grid and Axis::tolerance with the newton_tolerance
+// of the scene.
 Table starts_table(const Accuracy& accuracy) {
   const Quantity q = deciding_quantity(accuracy);
   std::vector<const Run*> runs = with_solver_of_scene(accuracy);

@@ -16,16 +16,17 @@ std::vector<const Run*> deciding(const Accuracy& accuracy);
 /// The runs of Axis::grid with the newton_tolerance of the scene, of all integrators.
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
 
-/// All runs with all errors, for other programs. The field of an unknown value is empty.
+/// One row per run with all its errors, for other programs. The field of an unknown value is empty.
 Table accuracy_table(const Accuracy& accuracy);
 
 /// Errors against CPU time, one panel per quantity.
 std::string work_svg(const std::string& title, const Accuracy& accuracy);
-/// Errors against step, solver tolerance and mesh.
+/// Errors against the step; errors due to the solver against newton_tolerance; errors of the meshes against CPU time.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
 /// The cheapest run of Axis::grid or Axis::tolerance that certainly reaches a target: its error plus uncertainty is at
-/// most `target`, and so is that of all finer runs of its axis and integrator. nullptr if there is none.
+/// most `target`, and the same holds for all finer runs of its axis and integrator that have not failed. nullptr if
+/// there is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
 /// The Pareto front of Axis::grid and Axis::tolerance, cheapest first: the runs for which no other run is cheaper and
 /// has a smaller error plus uncertainty.
@@ -35,11 +36,12 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);
 /// cloth's size.
 std::string recommendation(const Accuracy& accuracy);
 
-/// Three sentences: the cheapest setting for each of several errors, the factor of CPU time for a tenth of the error,
-/// and the errors due to step, solver and mesh. Empty if nothing moves.
+/// Three sentences: the cheapest setting for each of several target errors, the factor of CPU time for a tenth of the
+/// error, and the errors due to step, solver and mesh. Empty if nothing moves.
 std::string conclusion(const Accuracy& accuracy);
 
-/// The report, which begins with the recommendation. `work_plot`, `settings_plot`: names of files in its folder.
+/// The report, which begins with the recommendation. `work_plot`, `settings_plot`: names of the plots' files, in the
+/// folder of the report.
 std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy, const std::string& work_plot,
                               const std::string& settings_plot);
 

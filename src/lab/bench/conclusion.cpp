@@ -52,7 +52,7 @@ bool certainly_reaches(const Accuracy& accuracy, const Run& run, Quantity quanti
          });
 }
 
-// The step rounded up to four digits [s]. With a step rounded down, a frame would need one more step.
+// The step rounded up to four significant digits [s]. With a step rounded down, a frame would need one more step.
 double shown_step(double step) {
   const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
   return std::ceil(step * scale - 1e-6) / scale;
@@ -112,8 +112,8 @@ class Line {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
   }
-  // Factor of CPU time for a tenth of the error, as text, such as "3.6 times"; "unknown" if the points determine no
-  // falling line.
+  // Factor by which the CPU time grows for a tenth of the error, as text, such as "3.6 times"; "unknown" if the points
+  // determine no falling line.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
     if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "unknown";
@@ -124,7 +124,7 @@ class Line {
   double n_ = 0, x_ = 0, y_ = 0, xx_ = 0, xy_ = 0;
 };
 
-// The same text, fitted to the finest runs of a series whose errors are resolved (Accuracy::resolved()).
+// Line::cost_of_a_digit() of the finest runs of a series whose errors are resolved (Accuracy::resolved()).
 std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;
@@ -224,7 +224,8 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
 namespace {
 
 // Of the runs that reach the target in at most kEqualRatio times `cpu_s`, the one with the smallest error. Prefers a
-// run with the scene's own newton_tolerance if its error is at most kEqualRatio times that of others.
+// run with the scene's own newton_tolerance if its error is less than kEqualRatio times the error of runs with other
+// values.
 const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, double target, double cpu_s) {
   const Run* best = nullptr;
   double least = std::numeric_limits<double>::infinity();

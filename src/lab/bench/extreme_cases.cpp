@@ -17,7 +17,7 @@ std::string hanging(const std::string& cloth, const std::string& rest = {}) {
       kSecond, rest.empty() ? "" : "\n" + rest + "\n", cloth);
 }
 
-/// The same sheet without pins.
+/// The sheet of hanging() without pins.
 std::string free_sheet(const std::string& cloth) {
   return fmt::format(
       "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n\n"

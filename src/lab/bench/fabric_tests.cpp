@@ -108,7 +108,7 @@ scene::Scene scene_of(const Specimen& specimen, const scene::Material& material,
 
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved) {
   // newton_tolerance. Measured for wool, cotton, jersey and faille: a third of this value changes the drape coefficient
-  // by up to 0.003, half of the step by 0.004 to 0.01.
+  // by up to 0.003; half of the step changes it by 0.004 to 0.01.
   constexpr double kExact = 0.01;
   scene.time = {.duration = 1.5, .fps = 10, .step = 0.01};
   scene.contact.self = true;
@@ -156,8 +156,8 @@ double droop(const scene::Material& material, double overhang) {
 
 Cantilever cantilever(const scene::Material& material) {
   const double target_slope = std::tan(41.5 * kPi / 180), weight = material.density * kGravity;
-  // droop() grows with about the cube of a small overhang, and with a lower power of a larger one. Assuming the
-  // power 2.5 converges to 1e-3 of the length within a few attempts.
+  // droop() grows with about the cube of a small overhang, and with a lower power of a larger one. The iteration
+  // assumes the power 2.5, and converges to 1e-3 of the length within a few attempts.
   double overhang = 2 * std::cbrt(material.bend / weight);
   for (int attempt = 0; attempt < 8; ++attempt) {
     const double change = std::pow(target_slope / droop(material, overhang), 1 / 2.5);
@@ -173,7 +173,7 @@ double extension(const scene::Material& material, Direction direction, double lo
   const bool warp = direction == Direction::warp;
   scene::Scene scene = warp ? sheet_alone({kWidth, kLength}, kThreads, 21, material)
                             : sheet_alone({kLength, kWidth}, 21, kThreads, material);
-  // Implicit Euler, the default, damps the swinging of the load with long steps.
+  // With these long steps, implicit Euler (the default) damps the swinging of the load.
   scene.time = {.duration = 20, .fps = 2, .step = 0.5};
   scene.solver.newton_tolerance = 1e-3;
   scene.physics.gravity = warp ? Vec3(0, -kGravity, 0) : Vec3(-kGravity, 0, 0);

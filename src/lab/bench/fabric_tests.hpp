@@ -9,7 +9,8 @@
 
 namespace weft::bench {
 
-/// Cusick's drape test (ISO 9073-9): a disc of fabric (diameter 30 cm) hangs over two plates (18 cm) that hold it.
+/// Cusick's drape test (ISO 9073-9): two round plates (diameter 18 cm) hold the middle of a disc of fabric (30 cm). The
+/// rim of the disc hangs down.
 namespace cusick {
 
 inline constexpr double kPlateRadius = 0.09, kSpecimenRadius = 0.15;  // radii [m]
@@ -20,9 +21,9 @@ struct Specimen {
   std::vector<std::size_t> held;  ///< indices of the particles between the plates
 };
 
-/// A disc of concentric rings of vertices; ring k has 6 k of them. `free` rings lie outside of the plates; the last
-/// held ring lies on their edge. Vertices of the free rings are displaced by up to 0.15 of the spacing (on the border
-/// only along it), so that no direction is preferred. `seed` selects the displacements.
+/// A disc of concentric rings of vertices; ring k has 6 k vertices. `free` rings lie outside of the plates; the
+/// outermost held ring lies on the edge of the plates. Vertices of the free rings are displaced by up to 0.15 of the
+/// spacing (on the border only along it), so that no direction is preferred. `seed` selects the displacements.
 Specimen rings(int free, int seed);
 
 /// A scene with the specimen alone. Writes the specimen to `file` (OBJ), from which the scene reads it.
@@ -32,14 +33,15 @@ scene::Scene scene_of(const Specimen& specimen, const scene::Material& material,
 std::vector<scene::Pin> pins_at(const std::vector<Vec3>& x, const std::vector<std::size_t>& held);
 
 struct Drape {
-  double coefficient = 0;     ///< area of the overhang as seen from above / its flat area
+  double coefficient = 0;     ///< area of the overhang as seen from above / area of the flat overhang
   double strain = 0;          ///< largest strain along weft or warp in the last frame
   double kinetic_energy = 0;  ///< in the last frame [J]
   double cpu_s = 0;
 };
 
-/// Accuracy of the solver. It affects the drape, because bending friction holds cloth in the shape in which it first
-/// comes to rest. `exactly`: with a third of this newton_tolerance, the drape coefficient differs by at most 0.003.
+/// Accuracy of the solver. The accuracy affects the drape, because bending friction holds cloth in the shape in which
+/// it first comes to rest. `exactly`: newton_tolerance is 0.01; a third of this value was measured to change the drape
+/// coefficient by at most 0.003. `with_default_tolerance`: newton_tolerance is that of `scene`.
 enum class Solved { exactly, with_default_tolerance };
 
 /// Simulates how the specimen, level at first, falls and comes to rest, for 1.5 s. Throws Error(simulation_failed).
@@ -53,7 +55,7 @@ struct Cantilever {
   double bending_length = 0;  ///< half of the overhang [m]
   double rigidity = 0;        ///< density · 9.81 m/s² · bending_length³ [N·m]
 };
-/// Finds the overhang by simulating strips of different overhangs, each level at first, for 8 s. Throws
+/// Finds the overhang by simulating strips of different overhangs, each for 8 s from level. Throws
 /// Error(simulation_failed).
 Cantilever cantilever(const scene::Material& material);
 

@@ -16,9 +16,10 @@ inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
 
 struct FabricRun {
   scene::Fabric fabric;
-  /// Drape coefficients of two specimens, solved exactly and with the default tolerance (cusick::Solved).
+  /// Drape coefficients of two specimens. `drape`: solved exactly; `drape_in_scenes`: with the default tolerance
+  /// (cusick::Solved).
   std::array<double, 2> drape{}, drape_in_scenes{};
-  Cantilever elastic = {}, as_it_is = {};            ///< without and with bending friction
+  Cantilever elastic = {}, as_it_is = {};            ///< `elastic`: without bending friction; `as_it_is`: with
   std::array<double, kLoads.size()> weft{}, warp{};  ///< relative extension along weft and warp, at each load
   double cpu_s = 0;
 
@@ -29,16 +30,16 @@ struct FabricRun {
 /// Runs all tests of a fabric, with temporary files in `folder`. Throws Error(simulation_failed).
 FabricRun test_fabric(const scene::Fabric& fabric, const std::filesystem::path& folder);
 
-/// Relative deviation of the drape coefficient from the nearest published value; nullopt if none is published.
+/// Relative deviation of the mean drape coefficient from the nearest published value; nullopt if none is published.
 std::optional<double> drape_error(const FabricRun& run);
 
-/// All values, for other programs.
+/// All values, for other programs: one row per fabric and load.
 Table fabrics_table(const std::vector<FabricRun>& runs);
 /// Plots of drape, bending rigidity, and force against extension.
 std::string fabrics_svg(const std::vector<FabricRun>& runs);
-/// The report. `plot`: name of the file with the plot, in its folder.
+/// The report. `plot`: name of the file with the plot, in the folder of the report.
 std::string fabrics_markdown(const std::vector<FabricRun>& runs, const std::string& plot);
-/// One sentence: how many fabrics drape within 10 % of the published value.
+/// One sentence: how many fabrics have a drape coefficient within 10 % of the published value.
 std::string conclusion(const std::vector<FabricRun>& runs);
 
 }  // namespace weft::bench

@@ -49,8 +49,8 @@ std::string tick_name(double mantissa, int decade) {
                      decade);
 }
 
-// Multiples of powers of ten that get a label, so that there are about three labels or more, without overlap.
-// `decades`: length of the axis.
+// Multiples of powers of ten that get a label, chosen so that an axis has about three labels or more, without overlap.
+// `decades`: length of the axis [powers of ten].
 std::vector<double> labelled_multiples(double decades) {
   if (decades < 0.5) return {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9};
   if (decades < 1) return {1, 2, 3, 4, 5, 7};

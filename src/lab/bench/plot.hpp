@@ -22,7 +22,7 @@ struct Curve {
 struct Panel {
   std::string title, x_label, y_label;
   std::vector<Curve> curves;
-  double unresolved_below = 0;  ///< errors below this value are uncertain; their region is shaded
+  double unresolved_below = 0;  ///< values below this are uncertain, and their region is shaded; 0: none
 };
 
 /// Draws the panels in rows of three, each with its own axes and legend.

@@ -66,7 +66,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   return true;
 }
 
-// Whether the factor changes the simulation. For example, it does not if all values of this parameter are 0.
+// Whether the factor changes the simulation. For example, no factor does if all values of this parameter are 0.
 bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
@@ -87,11 +87,11 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
-      varied = scene;  // test the scene's own values: a factor of 0 changes friction, but leaves none
+      varied = scene;  // test the scene's own values, because a factor of 0 changes friction, too
       return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
              (scene.contact.self || scene.contact.obstacles);
-    // The simulation takes no step longer than a frame. Each factor above 1 is twice the one before: if half of a
-    // factor gives a step of at least a frame, the factor changes nothing any more.
+    // The simulation takes no step longer than a frame. Each factor above 1 is twice the factor before. If half of a
+    // factor gives a step of at least a frame already, the factor itself changes nothing more.
     case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
     case VariedParameter::mesh:
@@ -100,7 +100,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   return true;
 }
 
-// Adds the faults of a frame to `broken`; see TrialVerdict.
+// Adds the faults of a frame (see TrialVerdict) to `broken`.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
   if (report.stretch_ratio > simulation::kMaxStretchRatio) broken.insert("cloth is stretched beyond its max_stretch");

@@ -1,4 +1,5 @@
-// Stability margins of a scene. Each of its parameters is varied alone, and stiffness together with the step.
+// Stability margins of a scene: how far parameters can be varied until the simulation breaks. Each parameter is varied
+// alone, and stiffness together with the step.
 #pragma once
 
 #include <array>
@@ -68,7 +69,7 @@ struct SceneStability {
 
 /// All factors tried for one parameter, in ascending order, including 1.
 const std::vector<double>& factors_of(VariedParameter axis);
-/// Factors of stiffness and step whose combinations are tried: the map.
+/// The map: all combinations of these factors of stiffness and step are tried.
 inline constexpr std::array<double, 5> kMapStiffness{0.01, 0.1, 1, 10, 100};
 inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
 
@@ -82,8 +83,8 @@ SceneStability measure_scene_stability(
 /// How far a parameter can be varied to one side of the scene's own value until a trial breaks.
 struct Margin {
   VariedParameter axis;
-  double holds = 1;               ///< last factor, from 1 outward, before a trial breaks; 1 if the first one breaks
-  const Trial* breaks = nullptr;  ///< the first trial that breaks, from 1 outward; nullptr if none does
+  double holds = 1;               ///< last factor, from 1 outward, before a trial breaks; 1 if the first trial breaks
+  const Trial* breaks = nullptr;  ///< the first trial that breaks, from 1 outward; nullptr if none breaks
 };
 /// One margin below and one above 1 for each parameter that could be varied.
 std::vector<Margin> margins_of(const SceneStability& stability);

@@ -8,10 +8,10 @@
 
 namespace weft::bench {
 
-/// One sentence: the margin nearest to the scene's values; if the unchanged scene breaks, the smallest change with
-/// which it has no fault.
+/// One sentence: the margin nearest to the scene's values; but if the unchanged scene breaks, the smallest change with
+/// which the scene has no fault.
 std::string margin_sentence(const SceneStability& stability);
-/// For each parameter, the factors below and above 1 at which the scene first breaks, and its faults there.
+/// For each parameter, the factors below and above 1 at which the scene first breaks, and the faults there.
 Table margin_table(const SceneStability& stability);
 Table trial_table(const SceneStability& stability);
 /// One row of trials per parameter, and the map of stiffness and step, coloured by verdict.

@@ -13,11 +13,11 @@
 namespace weft::bench {
 namespace {
 
-// Bytes that one linear iteration moves at least, in single precision. Full block: nine numbers and a column index.
-// Isotropic block: one number and a column index. Particle: its preconditioner block (three padded vectors), and padded
-// vectors of conjugate gradients: direction p, product q, solution x, residual r, preconditioned residual z. These
-// operations move 2 + 6 + 2 + 3 vectors: the product reads p and writes q; the update reads p and q, and reads and
-// writes x and r; the preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
+// Minimum numbers of bytes that one linear iteration moves, in single precision. Full block: nine numbers and a column
+// index. Isotropic block: one number and a column index. Particle: its preconditioner block (three padded vectors), and
+// padded vectors of conjugate gradients: direction p, product q, solution x, residual r, preconditioned residual z.
+// These operations move 2 + 6 + 2 + 3 vectors: the product reads p and writes q; the update reads p and q, and reads
+// and writes x and r; the preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
 constexpr double kPaddedVec3Bytes = 16;
 constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4,
                  kParticle = 3 * kPaddedVec3Bytes + (2 + 6 + 2 + 3) * kPaddedVec3Bytes;
@@ -159,7 +159,8 @@ double memory_bound_s(const SpeedRun& run) {
 double read_bandwidth(double bytes) {
   constexpr double kMinTimedSeconds = 0.05;  // shorter timings are too noisy
   const std::vector<std::uint64_t> numbers(static_cast<std::size_t>(bytes / sizeof(std::uint64_t)) + 1, 1);
-  // Each thread reads its own range again and again without waiting for the others: synchronisation is not measured.
+  // Each thread reads its own range again and again without waiting for other threads, so synchronisation is not
+  // measured.
   const auto threads = static_cast<std::size_t>(thread_count());
   const std::size_t share = (numbers.size() + threads - 1) / threads;
   const auto read = [&](int times) {

@@ -18,7 +18,7 @@ namespace weft::bench {
 
 enum class SpeedStage : std::size_t {
   forces,          ///< evaluating forces and assembling the matrix
-  preconditioner,  ///< setting it up, and applying it outside of linear solves
+  preconditioner,  ///< setting up the preconditioner, and applying it outside of linear solves
   linear,          ///< linear solves
   collisions,
   rest,  ///< remainder of the simulation: vector operations of Newton's method, energies, snapshots
@@ -37,13 +37,14 @@ struct SpeedSetting {
 struct SpeedRun {
   SpeedSetting setting;
   std::string failure = {};  ///< why the run gave no measurement; empty if it did
-  /// Blocks of the matrix are 3 × 3; those that are multiples of the identity are isotropic.
+  /// Numbers of particles and of 3 × 3 blocks of the matrix. Isotropic blocks are multiples of the identity; all others
+  /// are full.
   std::int64_t particles = 0, full_blocks = 0, isotropic_blocks = 0;
-  int frames = 0;  ///< number of measured frames, over which the counts and times below are summed
+  int frames = 0;  ///< number of measured frames; counts and times below are sums over these frames
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
   std::array<StageTime, kSpeedStages> stages{};
   LoopCounts loops = {};  ///< zero if the run had several threads
-  /// Resident memory of the process before the scene is built, and its maximum [bytes].
+  /// Resident memory of the process before the scene is built, and maximum during the run [bytes].
   std::int64_t memory_before = 0, peak_memory = 0;
   double bandwidth = 0;         ///< see read_bandwidth() [bytes/s]
   std::uint64_t positions = 0;  ///< hash of the positions in the last frame, to compare the bits of runs
@@ -69,9 +70,9 @@ struct SpeedFrames {
 /// Draws one frame.
 using Drawing = std::function<void(const frame::FrameSnapshot&)>;
 /// Runs the scene and returns its cost. The caller must have applied the size and step of `setting` to the scene
-/// (overrides_of()). Call it in a process of its own, because it measures the memory of the process, and the CPU time
-/// of all its threads. If `open_drawing` is given, it is called after the preroll. The function that it returns draws
-/// frame 0, which is not measured, and each measured frame. Throws what a simulation throws.
+/// (overrides_of()). Call run_for_speed() in a process of its own, because it measures the memory of the process, and
+/// the CPU time of all threads of the process. If `open_drawing` is given, it is called after the preroll; the Drawing
+/// that it returns draws frame 0, which is not measured, and each measured frame. Throws what a simulation throws.
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing = {});
 
@@ -88,8 +89,8 @@ double bytes_of_newton_iteration(const SpeedRun& run);
 /// limit [s]; 0 if the bandwidth is unknown.
 double memory_bound_s(const SpeedRun& run);
 
-/// Rate at which thread_count() threads together read `bytes` bytes again and again [bytes/s]: that of the smallest
-/// cache level that holds them, or of memory.
+/// Measures the rate at which thread_count() threads together read `bytes` bytes again and again [bytes/s]. This is the
+/// rate of the smallest cache level that can hold these bytes, or of memory.
 double read_bandwidth(double bytes);
 
 /// The settings of all runs: each size with each number of threads; and each step with the size nearest to the scene's

@@ -23,8 +23,8 @@ Table speed_table(const std::vector<SpeedRun>& runs);
 std::vector<const SpeedRun*> over_sizes(const std::vector<SpeedRun>& runs);
 /// Successful runs with this size and the scene's step, in order of the number of threads.
 std::vector<const SpeedRun*> over_threads(const std::vector<SpeedRun>& runs, double size);
-/// Successful runs from the longest step to the shortest, with the size and number of threads of the first run whose
-/// step is not the scene's; empty if there is no such run.
+/// Successful runs that have the size and number of threads of the first run whose step is not the scene's, from the
+/// longest step to the shortest; empty if all runs have the scene's step.
 std::vector<const SpeedRun*> over_steps(const std::vector<SpeedRun>& runs);
 
 /// Exponent with which a value grows with the number of particles between two runs; nullopt unless `large` has more
@@ -32,11 +32,11 @@ std::vector<const SpeedRun*> over_steps(const std::vector<SpeedRun>& runs);
 std::optional<double> exponent(const SpeedRun& small, const SpeedRun& large, double of_small, double of_large);
 
 /// Sentences: cost of a frame and its growth with size, speed-up by threads, memory, and the ratio of the memory bound
-/// (memory_bound_s()) to the time of the solver.
+/// (memory_bound_s()) to the time of forces, preconditioner and linear solver.
 std::string conclusion(const std::vector<SpeedRun>& runs);
 
 std::string speed_svg(const SpeedReport& report);
-/// The report. `plot`: name of the file with the plot, in its folder.
+/// The report. `plot`: name of the file with the plot, in the folder of the report.
 std::string speed_markdown(const SpeedReport& report, const std::string& plot);
 
 }  // namespace weft::bench

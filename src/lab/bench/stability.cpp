@@ -19,7 +19,7 @@ double mechanical_energy(const simulation::FrameReport& report) {
   return report.kinetic_energy + report.potential_energy + report.elastic_energy;
 }
 
-/// Checks positions, speeds and energy of a run in each frame.
+/// Checks positions and energy of a run in each frame, and records the largest speed and energy gain.
 class Watch {
  public:
   Watch(const scene::Scene& scene, const production::SceneSimulation& simulation, const EnergyLimit& limit)

@@ -1,4 +1,4 @@
-// Tests how the simulation handles stiff and extreme scenes: whether it solves them, refuses them, or is wrong.
+// Tests whether the simulation solves stiff and extreme scenes, refuses them, or gives wrong results.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@ enum class Verdict {
   solved,     ///< ran to the end, finite, with at most the allowed energy
   refused,    ///< ended with an error
   warned,     ///< ran to the end, finite, with more energy than allowed; some frame has a warning
-  unbounded,  ///< the same, but no frame has a warning
+  unbounded,  ///< like `warned`, but no frame has a warning
   not_finite,
 };
 inline constexpr std::size_t kVerdicts = 5;
@@ -30,9 +30,10 @@ struct Outcome {
   double cpu_s = 0;
 };
 
-/// The allowed increase of energy. In addition, errors of the solver may add a fixed fraction of the energies in play.
+/// The allowed increase of energy. For errors of the solver, 0.1 times the energies in play (stability.cpp) is allowed
+/// in addition.
 struct EnergyLimit {
-  double driven = 0;  ///< largest energy that moving pins and bodies can add [J]
+  double driven = 0;  ///< largest energy that moving pins and bodies can add [J]; 0: none move
 };
 
 /// Simulates `frames` frames. If the simulation throws Error, returns Verdict::refused.

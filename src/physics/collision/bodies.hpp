@@ -15,11 +15,11 @@ namespace weft::collision {
 /// Collision properties of a body.
 struct BodyTraits {
   bool deformable = false;  ///< its vertices are particles, which the solve moves
-  double thickness = 0;     ///< contact thickness [m]; each side adds half of its own to the activation distance
+  double thickness = 0;     ///< contact thickness [m]; the activation distance is the mean of both sides' thicknesses
   double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
-  bool moving = true;       ///< false: its vertices never leave their start positions
+  bool moving = true;       ///< false: its vertices never leave their positions at the start of the run
   bool rigid = false;       ///< its vertices keep their distances from each other
-  Index frame = -1;         ///< if deformable and rigid: first of its four particles (mesh::RigidFrame); −1: none
+  Index frame = -1;  ///< if deformable and rigid: first of the four particles that carry it (mesh::RigidFrame); else −1
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
@@ -29,16 +29,17 @@ struct Patch {
   double friction = 0;                     ///< Coulomb coefficient; see ContactMaterial
 };
 
-/// Contact material of a vertex. A body has one for itself, followed by one for each of its patches. Two materials in
-/// contact use the geometric mean of their friction, unless ContactParameters::friction has coefficients for their
-/// bodies.
+/// Contact material of a vertex. A body has one for its vertices outside patches, followed by one for each patch. Two
+/// materials in contact use the geometric mean of their friction, unless ContactParameters::friction has coefficients
+/// for their bodies.
 struct ContactMaterial {
   std::size_t body = 0;
   double thickness = 0, friction = 0;  ///< [m], Coulomb coefficient
 };
 
 /// Owns the triangles; the rest of the engine holds spans of them. Vertex numbers are indices into the position arrays.
-/// These begin with the particles, so add cloths first, then rigid bodies that forces move, then obstacles.
+/// These begin with the particles (vertices of cloths, and of rigid bodies that forces move), so add cloths first, then
+/// these rigid bodies, then obstacles.
 class Bodies {
  public:
   Bodies() = default;
@@ -77,7 +78,7 @@ class Bodies {
   /// none. To find the first triangle at an edge, repeat one end of the edge.
   Index triangle_of(const Triangle& corners) const;
 
-  /// The part of an array over all vertices that belongs to this body.
+  /// Of an array with one element per vertex of all bodies: the elements of this body.
   template <class T>
   std::span<T> part(std::size_t body, std::span<T> values) const {
     return values.subspan(surfaces_[body].first_vertex, surfaces_[body].vertex_count);

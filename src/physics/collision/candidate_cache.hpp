@@ -22,13 +22,13 @@ struct SearchParameters {
 };
 
 /// Collects candidate pairs: pairs of triangles whose bounds overlap on the linear trajectories from x_t0 to x_t1. The
-/// bounds are enlarged by a margin at both ends. The margin is half the detection distance. With
-/// SearchParameters::reuse, it is larger in slow steps, by a Verlet margin of 2 · Numerics::Contact::margin detection
-/// distances. A step is slow if no vertex moves as far as the Verlet margin along an axis.
+/// bounds are enlarged by a margin at both ends. The margin is half the detection distance, below which features are
+/// near. With SearchParameters::reuse, it is larger in slow steps, by a Verlet margin of 2 · Numerics::Contact::margin
+/// detection distances. A step is slow if no vertex moves as far as the Verlet margin along an axis.
 ///
-/// The pairs stay valid while the starts are within the Verlet margin of those of the search and the ends inside the
-/// bounds. All features that are near (closer than the detection distance) then were closer than radius() at the
-/// search. Thus cloth at rest is searched only once.
+/// The pairs stay valid while each vertex starts within the Verlet margin of its start at the search and ends inside
+/// its bounds. Features that are near at such starts were closer than radius() at the search. Thus cloth at rest is
+/// searched only once.
 ///
 /// A clear obstacle is one that an axis-aligned plane separates from all particles. While it stays on its side of that
 /// plane, its motion is ignored: it neither makes a step fast nor invalidates the pairs.
@@ -60,8 +60,9 @@ class CandidateCache {
   double radius() const { return 2 * margin_; }
   double detection_distance() const { return detection_distance_; }
 
-  /// Whether each vertex at x is kept clear (is_kept_clear()) or within the Verlet margin of the start of the search
-  /// (without this margin: exactly there). Like the next two functions, false if no pairs are valid.
+  /// Whether each vertex at x is kept clear (is_kept_clear()) or within the Verlet margin of its start at the search
+  /// (if the search had no Verlet margin: exactly there). This function and the next two return false if no pairs are
+  /// valid.
   bool covers_start(std::span<const Vec3> x) const;
   /// Whether each vertex at x is kept clear or inside the bounds of its end. If so, the pairs include all that can meet
   /// on the trajectory from a covered start to x.
@@ -70,11 +71,12 @@ class CandidateCache {
   /// True only if the pairs contain all features that are near when the vertices end at x.
   bool lists_near(std::span<const Vec3> x) const;
 
-  /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if there is none.
+  /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if no such
+  /// half-space is known.
   bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
 
   /// For callers that collect pairs themselves: declares the pairs valid for ends within `margin` [m] of x_t1, and for
-  /// starts within `margin` minus half the detection distance of x_t0.
+  /// starts within (`margin` − half the detection distance) of x_t0.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     find_clear_bodies(Motion(x_t0, x_t1));
     cover(Motion(x_t0, x_t1), margin);

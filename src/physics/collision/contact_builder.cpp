@@ -147,8 +147,8 @@ void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closes
 }
 
 // Adds a contact between each corner that is a particle and the plane through the closest point of the other triangle,
-// perpendicular to the normal of `closest`. Its activation distance is at most the present gap, so it exerts no force
-// yet. It has no friction, because the contact of the closest features has friction.
+// perpendicular to the normal of `closest`. Its activation distance is at most the gap at x_from, so it exerts no force
+// there. It has no friction, because the contact of the closest features has friction.
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {

@@ -32,7 +32,7 @@ struct ContactParameters {
 };
 
 /// Positions of all vertices in a step. `x_from`: where the solve starts, x_t0 or the argument of
-/// Engine::continue_from().
+/// Engine::continue_from(). `x_t1`: expected end; in a continued step, equal to x_from.
 struct StepMotion {
   std::span<const Vec3> x_t0, x_from, x_t1;  ///< [m]
   double h = 0;                              ///< [s]
@@ -44,12 +44,11 @@ struct StepMotion {
 /// or Numerics::Contact::inertial_stiffness if that is larger.) The fraction fades from 1 to 0
 ///   - as the contact direction leaves a wedge (see Proximity), because a neighbouring face is then closer;
 ///   - for edge pairs, as both surfaces become flat at the edges, because vertices and faces then keep the layers
-///     apart. One sharp edge, such as that of a box on smooth cloth, suffices for 1;
+///     apart. One sharp edge, such as that of a box on smooth cloth, suffices for the fraction 1;
 ///   - for edge pairs, as a closest point approaches the end of its edge.
 ///
-/// Thanks to these ramps, no contact switches on or off while cloth rests. Between rigid bodies and obstacles
-/// (`with_cloth` is false), only the first condition counts, because the rims of stacked boxes may cross where no
-/// vertex is near.
+/// Thanks to these ramps, no contact switches on or off while cloth rests. If neither side is cloth (`with_cloth` is
+/// false), only the first ramp applies, because the rims of stacked boxes may cross where no vertex is near.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
@@ -66,16 +65,17 @@ class ContactBuilder {
            ContactResponse& response);
 
   /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction. Its activation
-  /// distance grows in Numerics::Contact::range_growth_time, as that of a new contact does. If the exit is blocked,
-  /// reduces the stiffness, so that two obstacles do not clamp the cloth.
+  /// distance grows in Numerics::Contact::range_growth_time, as that of a new contact does. If the exit is blocked (see
+  /// PinchedPairs::Push), reduces the stiffness, so that two obstacles do not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at
-  /// x_from. Adds a contact of these features, unless one of full stiffness exists; then returns false. If
-  /// motion.is_first_solve(), it only prevents the features from coming closer. In a continued step, it restores the
+  /// x_from. Adds a contact of these features, unless they already have one of full stiffness. In the first solve of a
+  /// step, this contact only prevents the features from coming closer. In a continued step, it pushes them apart to the
   /// activation distance, and further contacts keep each corner on its side of the plane between the triangles, because
   /// other features could slide past the closest ones. With velocity constraints, a pair with an obstacle instead gets
-  /// walls (see VelocityConstraints) for the corners of its cloth triangle.
+  /// walls (see VelocityConstraints) for the corners of the triangle that is not of the obstacle. Returns whether the
+  /// features had no contact of full stiffness before.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);
 

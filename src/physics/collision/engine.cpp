@@ -91,8 +91,9 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
   gathered_at_.clear();
 }
 
-// Gathers the pairs of features that may be near while no vertex is farther than the Verlet margin from x. Skips pairs
-// of triangles that a separating plane keeps far enough apart. Does nothing if the last result still covers x.
+// Gathers the pairs of features that may be near while no vertex is farther from x than the Verlet margin of near pairs
+// (Numerics::Contact::margin). Skips pairs of triangles that a separating plane keeps far enough apart. Does nothing if
+// the last result still covers x.
 void Engine::gather(std::span<const Vec3> x) {
   const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
   const auto is_near = [&] {
@@ -150,7 +151,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
 }
 
 // Pushes apart surfaces that would meet on the way to the estimate x_t1: contacts found at intersecting positions have
-// meaningless directions. Exempts no pinched cloth, because x_t1 is only an estimate. Between cloths, seeks only planes
+// meaningless directions. Exempts no further cloth, because x_t1 is only an estimate. Between cloths, seeks only planes
 // for the whole step. (In falling_band, two thirds of all searches would be for parts of the step, most in vain.)
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
@@ -187,7 +188,7 @@ void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<con
   std::ranges::copy_if(at_start, std::back_inserter(proximities_), fails);
 }
 
-// Adds contacts of these pairs; returns how many are new.
+// Adds contacts of failing pairs. Returns for how many of them ContactBuilder::add_failing() is true.
 int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion) {
   std::vector<ClosestFeatures> closest(pairs.size());
   parallel_for(pairs.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
@@ -208,7 +209,7 @@ void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& mot
 void Engine::continue_from(std::span<const Vec3> x) {
   const StepMotion motion{x_t0_, x, x, step_};
   carried_.begin_step(x, x, {});
-  if (coherence_) candidates_.invalidate();  // they belong to the start of the step
+  if (coherence_) candidates_.invalidate();  // the kept pairs belong to the start of the step
   begin_contacts(x, x);
   std::vector<Proximity> near;
   find_near(x, near);
@@ -319,7 +320,8 @@ void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
     candidates_.invalidate();
 }
 
-// Saves the positions for which candidate pairs were collected, and the planes that do not follow from them.
+// Saves the positions for which candidate pairs were collected, and the planes that do not follow from these positions.
+// Restoring collects the pairs again.
 template <class Archive>
 void Engine::serialize_candidates(Archive& archive) {
   const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };

@@ -2,11 +2,11 @@
 //
 //   CandidateCache     broad phase: candidate pairs of triangles, kept while valid
 //   Separation         finds a separating plane for each pair; the gap along it is a lower bound of the distance
-//   ProximityFinder    narrow phase: near vertex-face and edge-edge pairs at the expected end of the step, or its start
+//   ProximityFinder    narrow phase: vertex-face and edge-edge pairs closer than the detection distance (near pairs)
 //   ContactBuilder     near pairs -> contacts with stiffness, activation distance, friction
 //   ContactResponse    contacts in the solve, as springs or as velocity constraints
-//   Separation         checks the solved step; pairs that would meet get contacts or are pushed apart
-//   PinchedPairs       cloth squeezed between obstacles, exempt from this check
+//   Separation         checks the solved step; corrects pairs that would meet
+//   PinchedPairs       cloth squeezed between obstacles; Separation exempts it
 #pragma once
 
 #include <array>
@@ -35,8 +35,10 @@ struct EngineParameters {
   double stick_speed = numerics.contact.stick_velocity;  ///< as in ContactSet::set_step() [m/s]
 };
 
-/// In each step, the caller first calls begin_step(). After each solve, it calls is_separated(). If pairs fail, it
-/// calls push_apart(), then continue_from() for another solve. It calls accept() when it accepts the step.
+/// In each step, the caller first calls begin_step(). After each solve, it calls is_separated(). If pairs fail (have no
+/// separating plane), it calls push_apart(), which corrects the positions, and either accepts the result or calls
+/// continue_from() for another solve. With velocity constraints, it may call add_failing_contacts() for another solve
+/// instead. It calls accept() when it accepts the step.
 class Engine {
  public:
   /// `x`: all vertices at the start of the run [m]. `masses`: of the particles [kg]; must outlive the engine.
@@ -45,74 +47,79 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   /// Finds the contacts of a step over h [s] from x_t0. x_t1: the expected end, exact for obstacles, an estimate for
-  /// particles. Both must outlive the step. `motions`: per body, its rigid motion, or the identity if it deforms;
-  /// empty: no body moves rigidly. With springs, pushes x_t1 apart until every pair has a separating plane; if that
-  /// fails, x_t1 stays unchanged. `movable`: per vertex, a value of Movable; empty: nothing is pushed. Returns whether
-  /// x_t1 has changed.
+  /// particles. Both must outlive the step. `motions`: per body, the rigid motion of an obstacle; for all other bodies,
+  /// and for obstacles that deform or stand still, the identity. Empty: no obstacle moves rigidly. With springs,
+  /// corrects x_t1 by push_apart(), which may neither exempt cloth nor move pinned particles; if that fails, x_t1 stays
+  /// unchanged. `movable`: per vertex, a value of Movable; empty: no correction. Returns whether x_t1 has changed.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
-  /// Continues the step from x [m]. Surfaces must not intersect on the way from x_t0 to x, and obstacles must be at
-  /// their end. Finds contacts anew around x, and adds contacts for all pairs that failed before the calls of
-  /// push_apart() in this step. Friction still measures slip from the start of the step. x replaces x_t0 in the calls
-  /// that follow and must outlive the step.
+  /// Continues the step from x [m], with obstacles at their end. Surfaces must not intersect on the way from x_t0 to x.
+  /// Finds contacts anew around x, and adds contacts for all pairs in failing() at earlier calls of push_apart() since
+  /// begin_step(). Friction still measures slip from the start of the step. In later calls, pass x as x_t0. x must
+  /// outlive the step.
   void continue_from(std::span<const Vec3> x);
-  /// Pairs for which is_separated() found no separating plane. Valid until the next call that tests or pushes apart.
+  /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests or
+  /// pushes apart pairs.
   std::span<const CornerPair> failing() const { return failing_; }
 
-  /// Call between two steps. Drops search state that only saves time and does not follow from positions, so that
+  /// Call between two steps. Drops the state of separation lists, velocity cones and coherent detection, so that
   /// results do not depend on earlier steps.
   void forget();
 
   /// Saves or restores the state on which the next step depends, besides the positions x [m]. Throws std::runtime_error
-  /// if it does not fit these bodies.
+  /// if restored data do not fit these bodies.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
 
   ContactResponse& response() { return response_; }
   const ContactResponse& response() const { return response_; }
 
-  /// Whether every pair of triangles that is not exempted has a separating plane on the trajectory to x_t1.
+  /// Whether every pair of triangles that is not exempted has a separating plane on the trajectory from x_t0 to x_t1.
   bool is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Adds contacts for the failing pairs of the last call of is_separated(). Returns how many are new.
+  /// Adds contacts for the pairs in failing(). Returns the number of pairs whose closest features had no contact of
+  /// full stiffness before.
   int add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
-  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a pair of cloth and
-  /// obstacle cannot be separated, exempts the cloth from the obstacle. The result is not `separated` if other cloth
-  /// than this obstacle pinches already would be exempted and `may_pinch` is false, or if a pinned particle had to move
-  /// and `may_move_pins` is false. Nothing is exempted then. `which`: see Planes::kinds_of().
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a triangle of cloth and an
+  /// obstacle cannot be separated, exempts this triangle from the obstacle. If `may_pinch` is false, the correction
+  /// fails if the obstacle does not pinch this cloth already. If `may_move_pins` is false, the correction fails if a
+  /// pinned particle has to move. If the correction fails, the result is not `separated` and nothing is exempted.
+  /// `which`: see Planes::kinds_of().
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
-  /// Number of exempted cloth triangles, each counted once per obstacle limb.
+  /// Number of exempted cloth triangles, each counted once per limb of an obstacle from which it is exempt.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
-  /// The pinched cloths and their obstacles, with positions at x [m], the start of the last step.
+  /// The pinched cloths and the obstacles that they intersect. Pass the start x [m] of the last step.
   std::vector<Pinch> pinches(std::span<const Vec3> x) const {
     return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
-  /// The exempted triangles. exempt() copies one from another engine that this one replaces; call it between two steps.
+  /// The exempted triangles. exempt() adds one between two steps; use: to copy those of another engine that this one
+  /// replaces.
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Number of pairs within the detection distance at the expected end of the last step. At the start instead: with
-  /// springs, pairs that no plane of constant direction separates; with velocity constraints, all.
+  /// Number of near pairs of features in the last step, without those of continued solves. With velocity constraints,
+  /// they are near at the start of the step. With springs, they are near at its expected end; but features of triangles
+  /// that no plane of constant direction separates count if they are near at the start.
   int proximities() const { return static_cast<int>(proximities_.size()); }
-  /// Smallest distance of these pairs [m]; infinite if there are none.
+  /// Smallest distance of the pairs that proximities() counts [m]; infinite if there are none.
   double min_distance() const;
 
-  /// Pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as
-  /// failing().
+  /// Pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as long
+  /// as failing().
   std::span<const CornerPair> find_intersections(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
   /// Detection distance: features closer than this are near [m].
   double detection_distance() const { return candidates_.detection_distance(); }
-  /// Whether this body is an obstacle that no particle can meet in the current step. If so, its motion has no effect.
+  /// Whether this body is an obstacle that no particle can meet in the current step, so that its motion has no effect.
   bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
 
  private:

@@ -16,8 +16,9 @@ struct AirParameters {
   double drag = 1.0;         ///< coefficient of drag along the normal
 };
 
-/// Quadratic drag along the normal of each cell or triangle, divided equally among its corners: f = −½ ρ c A ‖v_n‖ v_n,
-/// with the density ρ, the drag coefficient c, the area A and the velocity v_n along the normal, relative to the air.
+/// Quadratic drag f = −½ ρ c A ‖v_n‖ v_n along the normal of each face (cell or triangle), divided equally among the
+/// corners of the face. ρ is the density of the air, c the drag coefficient, A the area of the face, and v_n the normal
+/// component of its velocity relative to the air.
 ///
 /// The drag is implicit although it is not stiff. If it were evaluated once per step, at the initial velocity (Etzmuß
 /// et al. 2001, "Time integration"), terminal velocities and folds in steady wind would depend on the step size. The

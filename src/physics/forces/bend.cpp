@@ -69,8 +69,8 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
 }
 
 // Adds the second derivative at the middle one of three particles; exact for parabolas. It is the change of slope,
-// divided by the length over which the slope changes: the mean of both spacings, or at a clamp half of the free spacing
-// (see Bend). The weights sum to zero, so that a translation causes no curvature.
+// divided by the length over which the slope changes: the mean of both spacings, or at a clamp half of the spacing on
+// the free side (see Bend). The weights sum to zero, so that a translation causes no curvature.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
@@ -119,8 +119,8 @@ void Bend::add(const Evaluation& at) const {
 }
 
 // The stiffness of damping is proportional to c cᵀ, with c as in BendDamping. The matrix contains ‖c‖² I instead, so
-// that all of bending needs scalars only, no 3×3 blocks. Along c, which is nearly the normal, both are equal; across c,
-// the stretch stiffness is usually far greater.
+// that all of bending needs scalars only, no 3×3 blocks. Along c, which is nearly parallel to the surface normal, both
+// are equal. Across c, the stretch stiffness is usually far greater than either.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

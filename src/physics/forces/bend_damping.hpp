@@ -16,8 +16,8 @@ struct BendParameters {
 /// Viscosity and friction act on each curvature vector κ separately: on the second derivatives s_uu, s_uv and s_vv of
 /// the surface s(u, v). Only the part of the rate κ̇ along κ counts, so that a curved piece loses no energy if it turns
 /// rigidly. Friction models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation",
-/// 1980): a moment of constant magnitude against the change, smoothed below a rate of kStickRate. Friction brings cloth
-/// to rest: without it, the hem of a draped sheet keeps moving at centimetres per second.
+/// 1980): a moment of constant magnitude against the change of curvature, smoothed below the rate kStickRate. Friction
+/// brings cloth to rest: without it, the hem of a draped sheet keeps moving at centimetres per second.
 ///
 /// Moment per width [N]:
 ///
@@ -26,20 +26,20 @@ struct BendParameters {
 /// c is κ at x̂ = x − v / rate (see Evaluation): for implicit Euler and the midpoint rule the start of the step, for
 /// BDF2 with constant steps about a third of a step later. If `rate` is 0, c is κ at x. κ_f is kFlatCurvature, κ_r is
 /// residual_curvature_, ε is kStickRate. As c is constant during a step, the moment is the gradient of a convex
-/// function of κ̇. If c were the κ of the iterate, its direction would change with every ripple of nearly flat cloth,
-/// and Newton's method would oscillate (measured: a strip pulled over a rod takes ten times the iterations). If c were
-/// the κ of the positions that constant velocity predicts, a draped sheet would tremble at 1 to 10 mm/s (measured with
-/// steps of 40 ms).
+/// function of κ̇. If c were κ at the current iterate, its direction would change with every ripple of nearly flat
+/// cloth, and Newton's method would oscillate (measured: a strip pulled over a rod takes ten times the iterations). If
+/// c were κ at the positions that constant velocity predicts, a draped sheet would tremble at 1 to 10 mm/s (measured
+/// with steps of 40 ms).
 ///
 /// Damping fades out in nearly flat cloth: viscosity below the curvature kFlatCurvature, friction below
 /// max(kFlatCurvature, τ/B), where τ/B is the curvature that friction can hold against elastic bending. With full
 /// damping there, the moment would change its direction with every ripple, and its stiffness would exceed that of
 /// bending.
 class BendDamping {
-  // Curvature below which the direction of κ is too uncertain for damping [1/m]; the radius is then 10 m.
+  // Curvature below which the direction of κ is too uncertain for damping [1/m]. It corresponds to a radius of 10 m.
   static constexpr double kFlatCurvature = 0.1;
   // Rate of curvature at which friction has 0.7 of its magnitude [1/(m·s)]: the end of a flap 10 cm long then moves at
-  // 2.5 mm/s. With smaller values folds creep more slowly, but the system is stiffer: below kStickRate, friction acts
+  // 2.5 mm/s. With smaller values, folds creep more slowly, but the system is stiffer: below kStickRate, friction acts
   // like a viscosity of τ / kStickRate.
   static constexpr double kStickRate = 0.5;
 
@@ -48,9 +48,9 @@ class BendDamping {
 
   bool is_active() const { return viscosity_ > 0 || friction_ > 0; }
 
-  /// The moment is secant(‖c‖², c·κ̇) (c·κ̇) c. `Scalar`: double, or Lanes. Newton's matrix contains the secant instead
-  /// of the tangent: with the tangent, Newton's method oscillates where friction changes sign, and takes 1.5 times the
-  /// iterations.
+  /// The moment of viscosity and friction is secant(‖c‖², c·κ̇) (c·κ̇) c. `Scalar`: double, or Lanes. Newton's matrix
+  /// contains the secant instead of the tangent: with the tangent, Newton's method oscillates where friction changes
+  /// sign, and takes 1.5 times the iterations.
   template <class Scalar>
   Scalar secant(const Scalar& c_sq, const Scalar& rate) const {
     using forces::sqrt, std::sqrt;

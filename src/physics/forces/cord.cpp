@@ -6,8 +6,8 @@
 namespace weft::forces {
 namespace {
 
-// Lower bound of a piece's length, relative to its rest length. It keeps the matrix finite: a piece of length 0 has no
-// direction.
+// Lower bound of a piece's length, relative to its rest length. The bound keeps the matrix finite: a piece of length 0
+// has no direction.
 constexpr double kMinPieceStretch = 1e-12;
 
 std::size_t slot(Index i) {
@@ -57,8 +57,8 @@ void Cord::compute_weights(BendElement& bend) const {
   bend.weights = {one, -(one + other), other};
 }
 
-// Clamps: if the middle and only one end are held, the second difference covers only the half piece on the free side;
-// see Bend.
+// At a clamp (the middle particle and exactly one end are held), the second difference covers only the half piece on
+// the free side; see Bend.
 void Cord::set_held(std::span<const char> held) {
   for (BendElement& bend : bends_) {
     const auto is_held = [&](std::size_t k) { return held[slot(bend.particles[k])] != 0; };
@@ -120,7 +120,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   at.force.add(a, pull);
   at.force.subtract(b, pull);
   if (!at.assembly) return;
-  // Compression does not reduce the stiffness across the piece; see Stretch.
+  // The matrix omits the negative stiffness across a compressed piece; see Stretch::add().
   const double lateral = piece.elasticity * std::max(1 - piece.rest / length, 0.0);
   const double along = piece.elasticity + at.rate * piece.viscosity;
   at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));

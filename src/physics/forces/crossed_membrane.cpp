@@ -11,16 +11,16 @@ using solver::PackedBlock;
 
 namespace {
 
-// Smallest relative length, as kMinStretch of TriangleMembrane.
+// Lower bound of length / rest length of a thread, as kMinStretch in triangle_membrane.cpp.
 constexpr double kCollapsed = 1e-12;
-// θ: fraction of ⟨g²⟩ that enters the lengths. With θ = 1, a cell that bends along one direction becomes narrower along
-// the other, but its neighbours and clamps do not. (Measured: errors of the tip of a cantilever of 16 cells with
-// stretch stiffnesses of 1e4, 1e5 and 1e6 N/m. θ = 1: −0.7, −3.5 and −8.1 %; 1/4: 0.1, −0.5 and −2.8 %; 1/10: 0.2, 0.1
-// and −0.8 %.) The smaller θ, the less tension flattens cells.
+// θ: fraction of ⟨g²⟩ that enters the lengths. With θ = 1, a cell that bends along one direction must become narrower
+// along the other, but its neighbours and clamps do not become narrower. (Measured: errors of the tip position of a
+// cantilever of 16 cells, with stretch stiffnesses of 1e4, 1e5 and 1e6 N/m. θ = 1: −0.7, −3.5 and −8.1 %; 1/4: 0.1,
+// −0.5 and −2.8 %; 1/10: 0.2, 0.1 and −0.8 %.) With a smaller θ, tension flattens cells less.
 constexpr double kHeightFraction = 0.1;
 // S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The rate at which the normal turns is proportional to 1/‖D₁ × D₂‖; in
-// folded cells it turns too fast to be a reference for the middle (measured: with a tenth in place of this half,
-// leather that a pin pulls needs steps of 1 µs).
+// folded cells, the normal turns too fast to be a reference for the height of the middle (measured: with 0.1, leather
+// that a pin pulls needs steps of 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -108,7 +108,8 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   return state;
 }
 
-// δn = (I − (1 − κ) e eᵀ) `product` / S, where `product` is δ(D₁ × D₂). The matrix is symmetric.
+// δn = (I − (1 − κ) e eᵀ) `product` / S, where `product` is δ(D₁ × D₂). The matrix is symmetric, so that pull_back()
+// can use this function, too.
 Vec3 CrossedMembrane::normal_change(const State& state, const Vec3& product) {
   return (product - (1 - state.kept_change) * state.direction.dot(product) * state.direction) / state.size;
 }
@@ -219,7 +220,7 @@ CrossedMembrane::CellWeights CrossedMembrane::cell_weights_of(const Cell& cell, 
   return {cell.height_weight, element.gradients[2].cwiseAbs2() / 16};
 }
 
-// Relative lengths of a triangle's threads, including the cell's height and skew.
+// Length / rest length of a triangle's threads, including the terms of the cell's height and skew.
 Vec2 CrossedMembrane::lengths_of(const Gradient& s, const CellWeights& cell_weights, const State& state) {
   const Vec2 added = state.height * state.height * cell_weights.of_height + state.skew * cell_weights.of_skew;
   return (Vec2(s.u.squaredNorm(), s.v.squaredNorm()) + added).cwiseSqrt().cwiseMax(kCollapsed);
@@ -232,10 +233,11 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
   return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
-// Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the relative lengths L, with the stretch stiffness k and the viscosity η,
-// and the same for shear without `lateral`. Then adds the geometric stiffness (that of the stresses): across n, with
-// the gradients of the flat cell; along n, with those of a cell with its middle at the mean of the corners, plus the
-// stiffness of the height; in all directions, the stiffness of the twist.
+// Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the ratios L of length to rest length, with the stretch stiffness k and
+// the viscosity η, and the same for shear without `lateral`. Then adds the geometric stiffness (that of the stresses):
+// across n, with the gradients of the flat cell; along n, with those of a cell with its middle at the mean of the
+// corners, plus the stiffness of the height; in all directions, the stiffness of the twist. If `definite`, the part of
+// the shear stress is made positive semidefinite, as in Shear.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

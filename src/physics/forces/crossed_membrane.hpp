@@ -6,20 +6,20 @@
 namespace weft::forces {
 
 /// TriangleMembrane without membrane locking (spurious bending stiffness). If the four triangles of a cell do not
-/// stretch, the middle m of the cell stays in the plane of the corners a, b, c, d: a TriangleMembrane of stiff threads
-/// bends only between cells. Here w is the height of the middle above the mean of the corners, along the normal n of
-/// both diagonals. It lengthens all four triangles equally, instead of each by its own inclination. The derivatives s_u
-/// and s_v are those of the flat cell with its middle at m' = m − w n, and
+/// stretch, the middle m of the cell stays in the plane of the corners a, b, c, d. Therefore, with stiff threads, a
+/// TriangleMembrane can bend only between cells. In this class, the height w of m above the mean of the corners, along
+/// the normal n of both diagonals, lengthens the threads of all four triangles equally, whatever the inclination of
+/// each triangle. The derivatives s_u and s_v are those of the flat cell with its middle at m' = m − w n, and
 ///
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
 ///
 /// where g is the gradient of the middle's barycentric coordinate in a triangle, and ⟨⟩ is the average over the cell. θ
-/// = kHeightFraction is positive, so that tension flattens cells. t = a − b + c − d is the twist of the cell. If the
-/// threads at two opposite sides are skew, the vector of the thread halfway between them is their mean. Its square is
-/// exactly ‖t‖²/4 less than the mean of their squares; the last term compensates this. A plane parallelogram has w = 0
-/// and t = 0, and the same energy as in a TriangleMembrane. The normal is n = D₁ × D₂ / S with the diagonals D₁ = c − a
-/// and D₂ = d − b and S = ‖D₁ × D₂‖. A cell with ‖D₁ × D₂‖ < S₀ is folded; then S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that
-/// ‖n‖ and thus the terms of w and t fall to zero as the cell folds. (Against the same locking, Chen et al.,
+/// = kHeightFraction is positive, so that tension flattens cells. t = a − b + c − d is the twist of the cell. If two
+/// opposite sides p and q are skew, the thread halfway between them has the vector (p + q) / 2. ‖(p + q) / 2‖² is
+/// ‖t‖²/4 less than the mean of ‖p‖² and ‖q‖²; the last term compensates for this difference. A plane parallelogram has
+/// w = 0 and t = 0, and the same energy as in a TriangleMembrane. The normal is n = D₁ × D₂ / S with the diagonals D₁ =
+/// c − a and D₂ = d − b and S = ‖D₁ × D₂‖. A cell with ‖D₁ × D₂‖ < S₀ is folded; then S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2,
+/// so that ‖n‖ and thus the terms of w and t fall to zero as the cell folds. (Against the same locking, Chen et al.,
 /// "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
@@ -31,7 +31,7 @@ class CrossedMembrane final : public TriangleMembrane {
   void attach(const solver::Assembly& assembly) override;
   void partition(std::span<const Index> bounds) override;
   /// The matrix and add_jacobian() contain the Gauss-Newton part and the geometric stiffness of elastic stresses. They
-  /// omit its part from changes of n, and the geometric stiffness of viscous stresses.
+  /// omit the geometric stiffness from changes of n, and that of viscous stresses.
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -65,7 +65,7 @@ class CrossedMembrane final : public TriangleMembrane {
   static Vec3 normal_change(const State& state, const Vec3& product);
   static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
   static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
-  /// Stiffness across a thread from its tension, relative to its stretch stiffness, as a function of its relative
+  /// Stiffness across a thread from its tension, relative to its stretch stiffness, as a function of its length / rest
   /// length.
   using Lateral = double (*)(double length);
   using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
@@ -79,7 +79,7 @@ class CrossedMembrane final : public TriangleMembrane {
   Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;
 
   std::vector<Cell> cells_;
-  std::vector<std::array<Index, 25>> cell_blocks_;  // at 5 a + b: of the pair (a, b), if a's particle comes before b's
+  std::vector<std::array<Index, 25>> cell_blocks_;  // at 5 a + b: of the pair (a, b), if particles[a] < particles[b]
   Ranges ranges_;                                   // of cells
 };
 

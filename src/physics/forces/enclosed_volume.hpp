@@ -37,8 +37,8 @@ class EnclosedVolume {
   std::vector<Index> star_begin_;            // per vertex: its first entry in star_; last: the size of star_
   std::vector<std::array<Index, 2>> star_;   // the two other corners of each triangle of the vertex star
   std::vector<std::vector<Index>> borders_;  // particles of each border; their mean is a further vertex
-  double sign_ = 1;
-  double flat_ = 0;  // [m³]
+  double sign_ = 1;                          // −1 if the volume at the start positions would be negative otherwise
+  double flat_ = 0;                          // volume up to which the surface counts as flat [m³]
 };
 
 }  // namespace weft::forces

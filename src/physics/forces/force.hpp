@@ -15,7 +15,7 @@
 
 namespace weft::forces {
 
-/// Sums the forces on particles [begin, end). Ignores forces on other particles, which another thread computes.
+/// Sums the forces on particles [begin, end). Ignores forces on other particles: another thread sums them.
 class ForceRows {
  public:
   ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
@@ -42,26 +42,28 @@ struct Evaluation {
   std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
   ForceRows force;                                ///< receives the forces f [N]
-  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part of add_constant_stiffness(). Each force makes its term
-  /// symmetric and positive semidefinite, as conjugate gradients and the line search require. Empty: forces only.
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part that Force::add_constant_stiffness() adds. Each force
+  /// approximates its term by a symmetric, positive semidefinite matrix, as conjugate gradients and the line search
+  /// require. If default-constructed: forces only.
   solver::AssemblyRows assembly = {};
-  /// dv/dx of the integration method [1/s]: v = rate (x − x̂), where x̂ is constant in a step; 0: v is constant.
+  /// dv/dx of the integration method [1/s]: v = rate (x − x̂), where x̂ is constant in a step; 0: v does not depend on
+  /// x.
   double rate = 0;
   /// Earlier positions whose weighted sum is x̂ (see Past). Empty: the rate of a strain q is ∂q/∂x v.
   std::span<const Past> past = {};
-  /// Index of the range of Force::partition() to evaluate; kAll: all particles.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  /// Index of the range of Force::partition() to evaluate; kAll: all particles.
   std::size_t range = kAll;
   /// Velocity of the air at each particle [m/s]. If empty, each force uses its own uniform wind.
   std::span<const solver::PaddedVec3<double>> air_velocity = {};
-  /// Extensions of threads at which StretchLimit linearises its stress for the matrix; null: at x. Its forces are
-  /// always those at x.
+  /// Extensions of threads at which StretchLimit linearises its stress for the matrix; null: at x. In both cases,
+  /// `force` receives the exact forces at x.
   const LockLinearisation* locks = nullptr;
 
-  /// Rate of a quantity q of the positions. `now` is q(x), at_positions(y) returns q at earlier positions y, and
-  /// by_velocity() returns ∂q/∂x v, which is used if `past` is empty. Why differences: if an edge turns by θ in a step
-  /// of implicit Euler, ∂q/∂x v counts this as a lengthening by the fraction 1 − cos θ. Stiff viscosity would then
-  /// shorten the edge by that fraction in every step, and add energy.
+  /// Rate of change dq/dt of a function q of the positions. `now` is q(x), at_positions(y) returns q at earlier
+  /// positions y, and by_velocity() returns ∂q/∂x v, which is used if `past` is empty. Differences, because ∂q/∂x v
+  /// adds energy: if an edge turns by θ in a step of implicit Euler, ∂q/∂x v counts the turn as a lengthening by the
+  /// fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step.
   template <class Quantity, class AtPositions, class ByVelocity>
   Quantity rate_of(const Quantity& now, const AtPositions& at_positions, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -71,8 +73,8 @@ struct Evaluation {
   }
 };
 
-/// A force on the particles of one cloth, rope or rigid body. Constructors of forces take `first`, its first particle
-/// in the global numbering.
+/// A force on the particles of one cloth, rope or rigid body. Constructors of forces take `first`: the index of the
+/// first of these particles in the global numbering.
 class Force {
  public:
   virtual ~Force() = default;
@@ -81,7 +83,7 @@ class Force {
   virtual void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const = 0;
   /// Whether everything that the force adds to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
-  /// Looks up the matrix blocks of these pairs. Call once, when the sparsity pattern is known.
+  /// Looks up the matrix blocks of the pairs from append_couplings(). Call once, when the sparsity pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
 
   /// Prepares ranges of particles that threads may evaluate at the same time: range r is [bounds[r], bounds[r + 1]).
@@ -93,17 +95,18 @@ class Force {
   virtual double energy(std::span<const Vec3> x) const = 0;
 
   /// Adds the part of −∂f/∂x that does not depend on x, if there is one. Only set_held() and Cord::set_length_ratio()
-  /// change it. add() adds the forces of this part, but not its matrix.
+  /// change this part. add() adds the forces of this part, but not its matrix.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
   /// For vibrations and tests: adds the exact −(∂f/∂x + rate ∂f/∂v), with rates of strain as if `Evaluation::past` were
-  /// empty. It is indefinite under compression and unsymmetric with viscosity. Exceptions: CrossedMembrane omits parts,
-  /// and Cord its air drag; Air and Rigidity add nothing.
+  /// empty. This matrix is indefinite under compression and unsymmetric with viscosity. Exceptions: CrossedMembrane
+  /// omits parts of it, and Cord omits air drag; Air and Rigidity add nothing.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 
-  /// Sets which particles are held, at rest or along a path: a clamp changes the bending stiffness of the free
-  /// particles beside it. `held`: per particle of all cloths. The sparsity pattern of the Jacobian does not change.
+  /// Sets which particles are held (fixed, or moved along a path). Held particles may form a clamp, which changes the
+  /// bending stiffness of the free particles beside it. `held`: per particle of all cloths. The sparsity pattern of the
+  /// Jacobian does not change.
   virtual void set_held(std::span<const char> /*held*/) {}
 };
 
@@ -118,8 +121,8 @@ class Membrane : public Force {
 
 /// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
-/// Lumped masses of a sheet [kg]: a third of each triangle at each corner, half of each piece of a band or seam
-/// allowance at each end.
+/// Lumped masses of a sheet [kg]: a triangle gives a third of its mass to each corner, and a piece of a band or seam
+/// allowance half of its mass to each end.
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

@@ -107,7 +107,7 @@ inline BlockLanes outer(const VecLanes& a, const VecLanes& b, const Lanes& s = L
   return {a.x * b.x + s, a.y * b.x, a.z * b.x, a.x * b.y,    a.y * b.y + s,
           a.z * b.y,     a.x * b.z, a.y * b.z, a.z * b.z + s};
 }
-/// The block of each element, in the order of the matrix's entries.
+/// Converts blocks of four elements to one PackedBlock per element.
 inline std::array<solver::PackedBlock, 4> packed(const BlockLanes& m) {
   const auto low = transposed(m[0], m[1], m[2], m[3]), high = transposed(m[4], m[5], m[6], m[7]);
   std::array<solver::PackedBlock, 4> blocks;
@@ -133,7 +133,8 @@ inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// Ranges::partition() for packs of four elements. all_of(pack) returns their particles: one IndexLanes per corner.
+/// Ranges::partition() for packs of four elements. all_of(pack) returns the particles of a pack: one IndexLanes per
+/// corner.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
   ranges.partition(bounds, packs.size(), [&](std::size_t p, const auto& visit) {

@@ -10,8 +10,8 @@
 
 namespace weft::forces {
 
-/// For each range of particles, the elements (or packs of elements) of a list that act on a particle in it. An element
-/// with particles of several ranges is in each of them; each range adds only to its own particles (ForceRows,
+/// For each range of particles, the elements (or packs of elements) of a list that act on a particle in this range. An
+/// element with particles of several ranges is in each of them; each range adds only to its own particles (ForceRows,
 /// AssemblyRows).
 class Ranges {
  public:

@@ -38,7 +38,7 @@ Mat3 Rigidity::strain_of(const Mat3& shape) const {
 void Rigidity::add(const Evaluation& at) const {
   const auto stage = [&](std::size_t i) { return solver::vec3_of(at.x[i]); };
   const Mat3 shape = shape_of(stage);
-  // With the midpoint rule, for which `past` is empty, the step ends half a step after the stage.
+  // With the midpoint rule, for which `past` is empty, the step ends half a step (1 / rate) after the stage.
   const double time_to_end = at.past.empty() && at.rate > 0 ? 1 / at.rate : 0;
   const Mat3 strain =
       strain_of(shape_of([&](std::size_t i) { return Vec3(stage(i) + time_to_end * solver::vec3_of(at.v[i])); }));

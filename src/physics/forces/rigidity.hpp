@@ -10,13 +10,14 @@
 namespace weft::forces {
 
 /// Keeps the distances between the four particles p_k of a rigid body (mesh::RigidFrame, with deviations s and corners
-/// t_k). If the body is not deformed, B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R. With the body's mass m and W
-/// = diag(s)^-½, the energy is κ m/8 ‖W Bᵀ B W − W⁻²‖². It is the energy of the strain AᵀA − I of an affine body, A = B
-/// diag(s)⁻¹ (Lan et al., "Affine Body Dynamics", 2022). The factors W scale the strain so that stretch along each axis
-/// has the same angular frequency √κ; thin bodies are then as rigid as round ones.
+/// t_k). If the body is not deformed, B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R. With the body's mass m, the
+/// stiffness κ and W = diag(s)^-½, the energy is κ m/8 ‖W Bᵀ B W − W⁻²‖². It is the energy of the strain AᵀA − I of an
+/// affine body, A = B diag(s)⁻¹ (Lan et al., "Affine Body Dynamics", 2022). The factors W scale the strain so that
+/// stretch along each axis has the same angular frequency √κ; thin bodies are then as rigid as round ones.
 ///
-/// The force is computed from the strain at the end of the step and the derivatives of the strain at the stage.
-/// Therefore the force does not resist rotation with the midpoint rule, and every integration method damps the strain.
+/// The force is the product of the strain at the end of the step and the derivatives of the strain at the stage x.
+/// Therefore, with the midpoint rule, the force does not resist rotation, and every integration method damps the
+/// strain.
 class Rigidity final : public Force {
  public:
   /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].

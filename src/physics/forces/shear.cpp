@@ -108,8 +108,8 @@ void Shear::add(const Evaluation& at) const {
       };
       stress += cells.viscosity * at.rate_of(c, strain_at, by_velocity);
     }
-    // Force = −stress × ∂c/∂x_k. `main` is stress × ∂c/∂x of corner 3, `cross` that of corner 1. The opposite corners 0
-    // and 2 get the opposite forces.
+    // Force = −stress × ∂c/∂x_k. `main` is stress × ∂c/∂x of corner 3, and `cross` that of corner 1. The force on
+    // corner 0 is opposite to that on corner 3, and the force on corner 2 to that on corner 1.
     const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;
     const VecLanes main = u_part + v_part, cross = u_part - v_part;
     forces::add(at.force, cells.corners[0], main);
@@ -127,8 +127,8 @@ void Shear::add(const Evaluation& at) const {
 void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
   const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);
   const Lanes size = cells.elasticity + at.rate * cells.viscosity;
-  // `main`, `cross`: ∂c/∂x of corners 3 and 1; those of corners 0 and 2 are the negatives. The same holds for the
-  // weights `main_half` and `cross_half` of corners 3 and 1 in the positive square.
+  // ∂c/∂x is `main` at corner 3, −`main` at corner 0, `cross` at corner 1, and −`cross` at corner 2. Likewise,
+  // `main_half` and `cross_half` are the weights of corners 3 and 1 in the positive square.
   const VecLanes u_part = cells.half_u * s.sv, v_part = cells.half_v * s.su;
   const VecLanes main = u_part + v_part, cross = u_part - v_part;
   const Lanes main_half = cells.half_u + sign * cells.half_v, cross_half = cells.half_u - sign * cells.half_v;

@@ -19,8 +19,8 @@ struct ShearParameters {
 /// computes each of them as the mean of the differences along two opposite edges. The error is O(l²) for a spacing l: a
 /// test measures order 2. The paper uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), and
 /// states O(l³). These differences vanish for every pattern that repeats at every second particle, so the paper's shear
-/// does not resist it. The differences of this class both vanish only for the checkerboard pattern, which the edges of
-/// Stretch resist.
+/// does not resist such patterns. The differences of this class both vanish only for the checkerboard pattern, which
+/// the edges of Stretch resist.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);
@@ -52,7 +52,7 @@ class Shear final : public Force {
     std::array<IndexLanes, 4> corners{};
     std::array<IndexLanes, 6> blocks{};  // of the pairs of corners 01, 02, 03, 12, 13, 23
     Lanes half_u{}, half_v{};            // 1 / (2 lu), 1 / (2 lv) [1/m]
-    Lanes elasticity{}, viscosity{};
+    Lanes elasticity{}, viscosity{};     // as in Cell; 0 in unused lanes
   };
   struct StrainLanes {
     VecLanes su, sv;

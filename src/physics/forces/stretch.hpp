@@ -14,12 +14,12 @@ struct StretchParameters {
   double viscosity = 0;       ///< η, stress per strain rate, both directions [N·s/m]
 };
 
-/// Tension along the grid lines: Eq. (1), entries 11 and 22, of Etzmuß et al. (2001), with the spring formula of
-/// "Elastic Model".
+/// Tension along the grid lines: Eq. (1), entries 11 and 22, of Etzmuß et al. (2001), with the spring formula of its
+/// section "Elastic Model".
 ///
 /// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
-/// force density of the paper, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A it is the force of
-/// an edge. Viscosity has the same form, with the rate of strain instead of the strain: dissipation ½ η A (d/dt
+/// force density of the paper, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A, it is the force of
+/// an edge on x_j. Viscosity has the same form, with the rate of strain instead of the strain: dissipation ½ η A (d/dt
 /// (‖d‖/l))².
 class Stretch final : public Membrane {
  public:
@@ -46,7 +46,7 @@ class Stretch final : public Membrane {
   /// Four edges.
   struct Edges {
     IndexLanes i{}, j{}, block{};
-    Lanes rest_length{}, elasticity{}, viscosity{};
+    Lanes rest_length{}, elasticity{}, viscosity{};  // stiffnesses are 0 in unused lanes
   };
 
   template <class Body>

@@ -7,8 +7,8 @@
 namespace weft::forces {
 namespace {
 
-// A piece needs some stiffness below the onset, so that find_extension() has one solution. The solution of the step
-// does not depend on the value.
+// A piece needs some stiffness below the onset, so that find_extension() has a unique solution. The solution of the
+// step does not depend on this minimum.
 StretchParameters with_min_stiffness(StretchParameters below) {
   constexpr double kMinStiffness = 1;  // [N/m]
   below.weft = std::max(below.weft, kMinStiffness), below.warp = std::max(below.warp, kMinStiffness);
@@ -19,8 +19,9 @@ StretchParameters with_min_stiffness(StretchParameters below) {
 constexpr int kMaxExtensionIterations = 20;
 constexpr double kExtensionTolerance = 1e-3;
 
-// Returns the extension at which cloth and lock together have this tension [N/m]. The tension at `e` must not be
-// smaller. Newton's method then converges from above, as the tension is a convex function of the extension.
+// Returns the extension at which cloth and lock together have the tension `tension` [N/m]. `e`: initial guess, at which
+// the tension must be at least `tension`. From there, Newton's method converges monotonically, as the tension is a
+// convex function of the extension.
 double find_extension(const Lock& lock, double stiffness, double tension, double e) {
   if (tension <= stiffness * lock.onset()) return tension / stiffness;
   for (int k = 0; k < kMaxExtensionIterations; ++k) {
@@ -102,12 +103,13 @@ Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each piece that is beyond its onset at x, or (threads only) by `lag`.
-// block_of(a, b) returns the block of −∂f/∂x for corners a and b, linearised at `lag` if it is not null.
+// Calls body(piece, corner_forces, block_of) for each piece of a thread, and each crossing, that is beyond its onset at
+// x, and for each piece of a thread that is beyond it in `lag`. block_of(a, b) returns the block of −∂f/∂x for corners
+// a and b, linearised at `lag`, or at x if `lag` is null. For `exact` see lock().
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {
-  // Compares squared lengths, because nearly all pieces are below the onset.
+  // Nearly all pieces are below the onset; comparing squared lengths saves their square roots.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
@@ -164,7 +166,7 @@ StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {
   return stress > 0 ? Tangent{stress, stiffness} : Tangent{0, 0};
 }
 
-// The thread is in tension, so the derivative is positive semidefinite.
+// The block is positive semidefinite without clamping, as a lock acts only in tension.
 template <class Body>
 void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
   const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
@@ -226,7 +228,7 @@ void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v,
   const double sine = s_u.dot(s_v), sign = sine < 0 ? -1 : 1;
   const double stress = piece.area * lock.stress(std::abs(sine)),
                stiffness = piece.area * lock.stiffness(std::abs(sine));
-  CornerForces gradient{}, corner_forces{};  // ∂|sine|/∂x_k; stress × that
+  CornerForces gradient{}, corner_forces{};  // ∂|sine|/∂x_k, and `stress` times it
   for (std::size_t k = 0; k < piece.corners; ++k) {
     gradient[k] = sign * (piece.weft[k] * s_v + piece.warp[k] * s_u);
     corner_forces[k] = stress * gradient[k];

@@ -10,9 +10,9 @@
 
 namespace weft::forces {
 
-/// Stress σ as a function of a strain e near its limit; energy() is its integral, stiffness() its derivative:
+/// Stress σ as a function of a strain e near its limit. energy() is the integral of σ, stiffness() the derivative:
 ///
-///     σ = 0                                e ≤ onset = kOnset limit
+///     σ = 0                                e ≤ onset = kOnset · limit
 ///     σ = kTension u³,                     u = (e − onset) / (limit − onset)
 ///     σ = kTension U² (U + 3 (u − U))      u ≥ U = kStraight
 ///
@@ -25,10 +25,10 @@ class Lock {
   /// Stress at the limit [N/m]; at 1.1 times the limit the stress is 9,500 N/m. This suffices for the impact of a ball
   /// at v = 100 m/s: a transverse wave along threads of strain e then causes the tension ρ v² / (2 √e), 3,500 to 9,000
   /// N/m for the densities ρ [kg/m²] of film/scene/fabrics.hpp (Smith, McCrackin & Schiefer, "Stress-Strain
-  /// Relationships in Yarns Subjected to Rapid Impact Loading", 1958). Larger (measured: 2e4, with kStraight = 1):
-  /// Newton's method oscillates near the limit, and takes 1.2 times the iterations.
+  /// Relationships in Yarns Subjected to Rapid Impact Loading", 1958). With larger values, Newton's method oscillates
+  /// near the limit (measured: 2e4 with kStraight = 1 takes 1.2 times the iterations).
   static constexpr double kTension = 4e3;
-  static constexpr double kStraight = 1.5;
+  static constexpr double kStraight = 1.5;  ///< U: from this u on, the stress is linear
 
   explicit Lock(double limit) : onset_(kOnset * limit), span_(limit - onset_) {}
 
@@ -50,23 +50,24 @@ class Lock {
   double onset_, span_;
 };
 
-/// Extensions at which Newton's method linearises the locks of a cloth's threads. At this extension, a piece of a
-/// thread has the tension that the last linearisation predicted: the tension is a dual unknown, as for contacts. If
-/// Newton's method linearised at the iterate, a piece would lose only a third of its excess over the onset per
-/// iteration, because the stress is cubic.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads. At its extension in `extensions`,
+/// each piece of a thread has the tension that the last linearisation predicted: the tension is a dual unknown, as for
+/// contacts. If Newton's method linearised at the iterate, a piece would lose only a third of its excess over the onset
+/// per iteration, because the stress is cubic.
 struct LockLinearisation {
   std::vector<double> extensions;           ///< per piece of a thread
-  std::vector<std::uint32_t> beyond_onset;  ///< pieces beyond the onset, by `extensions` or at the iterate
+  std::vector<std::uint32_t> beyond_onset;  ///< pieces beyond the onset in `extensions` or at the iterate
 };
 
-/// A piece of weft or warp that covers the area A has the energy A · Lock::energy() at its extension ‖s‖ − 1. A cell or
+/// Locks threads near a limit of their extension, and the angle between weft and warp near a limit of the shear. A
+/// piece of weft or warp that covers the area A has the energy A · Lock::energy() at its extension ‖s‖ − 1. A cell or
 /// triangle of area A has the energy A · Lock::energy() at its shear |⟨s_u, s_v⟩|. If both derivatives have unit
-/// length, the shear is the sine of the deviation of weft and warp from a right angle. Pieces, cells, triangles and
-/// their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+/// length, the shear is the sine of the deviation of the angle between weft and warp from 90°. Pieces, cells, triangles
+/// and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
 class StretchLimit final : public Force {
  public:
   /// `stretch`: limit of the extension; `shear`: limit of the shear. Infinite: no limit. `below`: parameters of the
-  /// cloth's Stretch or TriangleMembrane.
+  /// cloth's Stretch or TriangleMembrane, which act at every extension.
   StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
@@ -81,23 +82,23 @@ class StretchLimit final : public Force {
 
   /// Before the first iteration of a step: sets the extensions of `lag` to those at x.
   void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
-  /// Before each linearisation at x: updates `lag`. `first`: whether this is the first iteration of a step; it keeps
-  /// the extensions of begin(), as no tension has been predicted yet.
+  /// Before each linearisation at x: updates `lag`. `first`: whether this is the first iteration of a step; then
+  /// update() keeps the extensions of begin(), as no tension has been predicted yet.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
   /// Replaces exact forces by linearised ones: for the pieces in `lag.beyond_onset`, adds the force at x that is
   /// linearised at `lag`, minus the exact force at x.
   void add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
 
-  /// Copies the current rest shape of `membrane`, the one that the constructor received.
+  /// Copies the current rest shape of `membrane`, which must be the membrane that the constructor received.
   void copy_rest_shape(const TriangleMembrane& membrane);
 
   /// The piece with the largest extension; zero if none is extended.
   struct Worst {
-    double extension = 0;       ///< ‖s‖ − 1
+    double extension = 0;       ///< ‖s‖ − 1, at least 0
     Vec3 place = Vec3::Zero();  ///< position of the piece [m]
   };
   Worst worst(std::span<const Vec3> x) const;
-  double limit() const { return stretch_; }
+  double limit() const { return stretch_; }  ///< of the extension
 
  private:
   static constexpr std::size_t kMaxCorners = 4, kMaxThreadCorners = 3;
@@ -105,7 +106,7 @@ class StretchLimit final : public Force {
   using Weights = std::array<double, kMaxCorners>;  // of the corners, in a derivative [1/m]
   /// A piece of a thread, s = Σ along[k] x_k over its corners.
   struct Thread {
-    std::uint32_t corners;
+    std::uint32_t corners;  // number: 2 or 3
     std::array<Index, kMaxThreadCorners> particles;
     std::array<double, kMaxThreadCorners> along;
     double area;       // covered area [m²]
@@ -113,7 +114,7 @@ class StretchLimit final : public Force {
   };
   /// A crossing of threads, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
   struct Crossing {
-    std::uint32_t corners;
+    std::uint32_t corners;  // number: 3 or 4
     Corners particles;
     Weights weft, warp;
     double area;  // [m²]
@@ -140,9 +141,9 @@ class StretchLimit final : public Force {
   void lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const;
 
   StretchParameters below_;
-  double stretch_, shear_;
-  std::vector<Thread> threads_;
-  std::vector<Crossing> crossings_;  // empty if `shear` is infinite
+  double stretch_, shear_;           // limits; infinite: none
+  std::vector<Thread> threads_;      // empty if stretch_ is infinite
+  std::vector<Crossing> crossings_;  // empty if shear_ is infinite
   Ranges ranges_of_threads_, ranges_of_crossings_;
 };
 

@@ -8,8 +8,8 @@
 namespace weft::forces {
 namespace {
 
-// Fraction of its full strength that a tie has at the scene time t, 0 to 1. If closed < open, the tie starts open,
-// closes and opens again; else it starts closed, opens and closes again.
+// Fraction of its full strength (0 to 1) that a tie has at the scene time t after sewing. If `closed` < `open`, the tie
+// starts open, closes and opens again; else it starts closed, opens and closes again.
 double closed_ratio(const mesh::Tie& tie, double t) {
   const bool reopens = tie.closed < tie.open;
   const bool closed = reopens ? t >= tie.closed && t < tie.open : t < tie.open || t >= tie.closed;

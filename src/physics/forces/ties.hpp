@@ -9,12 +9,14 @@
 namespace weft::forces {
 
 /// The ties of a sheet. If the distance l between both particles of a tie exceeds r = kRest, they pull each other with
-/// the force F min(l/r − 1, 1). At smaller distances only contact acts. F is the strength of the tie [N]. It grows from
+/// the force F min(l/r − 1, 1). At smaller distances only contact acts. F is the strength of the tie [N]. F grows from
 /// zero during sewing, and for the time kClosing after the tie closes. A tie of a tearable seam can tear (State::holds)
-/// once F is the full strength and the pull is less than F. If its pull then reaches F, the tie tears and stays torn.
+/// once F has its full value and the pull is less than F. If the pull reaches F after that, the tie tears and stays
+/// torn.
 class Ties final : public Force {
  public:
-  /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press.
+  /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press the layers
+  /// together.
   static constexpr double kRest = 0.003;
   /// Time from closing to full strength [s].
   static constexpr double kClosing = 0.4;
@@ -24,17 +26,18 @@ class Ties final : public Force {
   /// Sets the strengths for the scene time t [s]. `progress`: of sewing, 0 to 1.
   void set_strengths(double t, double progress);
 
-  /// Whether all ties have the same strength at the scene times t0 and t1 [s], if sewing does not progress.
+  /// Whether each tie has the same strength at the scene time t1 [s] as at t0 [s], if sewing does not progress.
   bool are_constant_between(double t0, double t1) const;
 
   /// At the end of an accepted step, with particles at x [m]: updates which ties of tearable seams hold and which are
   /// torn.
   void accept(std::span<const Vec3> x);
-  /// Total pull of a tearable seam [N], and whether any of its ties has strength now (is closed and not torn).
+  /// Total pull of the ties of a tearable seam [N], and whether any of them has strength now (is closed and not torn).
   struct SeamLoad {
     double load = 0;
     bool holds = false;
   };
+  /// Loads with the particles at x [m], in the order of Sheet::tearing_seams.
   std::vector<SeamLoad> measure_seams(std::span<const Vec3> x) const;
   /// Copies the State of all ties from `there`.
   void copy_state_from(const Ties& there);
@@ -65,7 +68,7 @@ class Ties final : public Force {
   static Mat3 stiffness(const Piece& piece, const Vec3& along);
 
   std::vector<Piece> pieces_;
-  std::size_t tearing_seams_;
+  std::size_t tearing_seams_;  // number
 };
 
 }  // namespace weft::forces

@@ -9,7 +9,7 @@ namespace weft::forces {
 
 namespace {
 
-// Factors of the parts uu, vv and uv of the energy, whose sum over ab contains uv and vu.
+// Factors of the parts uu, vv and uv of the energy: the sum over ab counts uv twice, as uv and vu.
 const Vec3 kMultiplicity(1, 1, 2);
 // Smallest rest curvature, times √area of the triangle (without unit). Smaller values are rounding errors and become 0.
 constexpr double kMinRestCurvature = 1e-9;
@@ -117,7 +117,7 @@ Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) co
   return columns;
 }
 
-// Curvatures of `count` elements, at most four.
+// Curvatures of `count` elements from `first` on; at most four.
 TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::size_t count,
                                                       std::span<const PaddedVec3> x) const {
   std::array<Curvature, 4> of_elements{};
@@ -172,7 +172,7 @@ void TriangleBend::add(const Evaluation& at) const {
     for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
 
     // Moments for s_uu, s_vv and s_uv, and the stiffness of damping. As in Bend, this stiffness contains ‖c‖² I instead
-    // of c cᵀ (measured: the scene catwalk takes no more iterations).
+    // of c cᵀ (measured: the scene catwalk takes no more iterations than with c cᵀ).
     std::array<std::array<PaddedVec3, 4>, 3> moments;
     std::array<Lanes, 3> stiffness{};
     for (std::size_t k = 0; k < 3; ++k) {

@@ -10,8 +10,8 @@ namespace weft::forces {
 /// The plate model of class Bend (for grids), for triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², where ab is uu, vv, uv
 /// and vu. B is the rigidity, A the area, s_ab the curvature vectors of CurvatureStencil, n the triangle's unit normal,
 /// and κ_ab the signed rest curvature, positive if the sheet bends toward its front. If the rest shape is curved, its
-/// s_ab also have in-plane components. The stencil subtracts them as multiples of the triangle's tangents s_u and s_v,
-/// so that they turn with the triangle and the rest shape has no energy.
+/// s_ab also have in-plane components. The stencil subtracts these components as multiples of the triangle's tangents
+/// s_u and s_v. Thus they turn with the triangle, and the rest shape has no energy.
 ///
 /// The part of the energy without κ_ab is quadratic, with a constant and positive semidefinite Jacobian, as for grids.
 /// The part −B A Σ_ab κ_ab n·s_ab of triangles with rest curvature is not quadratic; every evaluation computes its
@@ -35,7 +35,7 @@ class TriangleBend final : public Force {
 
  private:
   struct Element {
-    std::size_t begin, end;    // its range in particles_ and weights_, corners first
+    std::size_t begin, end;    // range of its particles in particles_ and weights_, corners first
     std::size_t pairs;         // index of its first pair, in scalars_ and blocks_; order 01, 02, ... 12, ...
     double area;               // [m²], times Reinforcement::bend
     Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]

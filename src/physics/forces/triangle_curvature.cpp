@@ -30,6 +30,7 @@ struct Slope {
   bool depends_on_pins = false;  ///< a triangle of the patch has three pinned corners: held_ may change the weights
 };
 
+/// Computes the slopes across the edges of a sheet; see curvature_stencils().
 class Slopes {
  public:
   Slopes(const mesh::Sheet& sheet, std::span<const char> pinned, std::span<const char> held)
@@ -42,6 +43,7 @@ class Slopes {
   /// Triangles around an edge, unfolded into the plane of the first one.
   struct Patch {
     std::vector<std::pair<Index, std::array<Point, 3>>> triangles;
+    // The two ends of the edge, the two vertices opposite the edge, then others.
     std::vector<std::pair<Index, Point>> vertices;
     std::size_t last_ring = 0;  // index of the first triangle of the last ring
   };

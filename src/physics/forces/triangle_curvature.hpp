@@ -1,4 +1,4 @@
-// Second derivatives on triangle meshes, as weighted sums of vertices.
+// Second derivatives on triangle meshes, as weighted sums of vertex positions.
 #pragma once
 
 #include <span>
@@ -21,21 +21,21 @@ struct CurvatureStencil {
 ///     s_ab = 1/A Σ_edges l sym(n_a g_b),    g = n ∂s/∂n + t ∂s/∂t at the middle of the edge, a, b = u or v:
 ///
 /// the plate element of Morley ("The Triangular Equilibrium Element in the Solution of Plate Bending Problems", 1968).
-/// Morley's element has the slopes ∂s/∂n across the edges as unknowns. Here they are weighted sums of the vertices
-/// around the edge that are exact for quadratic functions. Therefore s_ab is exact for quadratic functions, too. Both
-/// triangles at an edge use the same slope; therefore a constant moment exerts no force on inner vertices. Both
-/// properties are necessary for the correct plate stiffness on any mesh (measured: a quadratic through each triangle
-/// and its three neighbours has only the first property; it is 33 % too soft on crossed meshes and 6 % on Delaunay
-/// meshes, at every resolution).
+/// Morley's element has the slopes ∂s/∂n across the edges as unknowns. Here, the slope across an edge is a weighted sum
+/// of the positions of nearby vertices, with weights for which it is exact for quadratic functions. Therefore s_ab is
+/// exact for quadratic functions, too. Both triangles at an edge use the same slope; therefore a constant moment exerts
+/// no force on inner vertices. Both properties are necessary for the correct plate stiffness on any mesh (measured: a
+/// quadratic through each triangle and its three neighbours has only the first property; it is 33 % too soft on crossed
+/// meshes and 6 % on Delaunay meshes, at every resolution).
 ///
-/// The slope across a border edge has the value of least energy, at which the moment about the border vanishes. As ν =
-/// 0, the curvature across the border is then 0.
+/// The slope across a border edge has the value of least energy, at which the moment about the border vanishes. As
+/// Poisson's ratio is 0, the curvature across the border is then 0.
 ///
 /// A triangle with three held corners is a clamp: the slope at its edges is that of the triangle's plane. At other
-/// edges near a clamp, the slope is exact for linear functions, and for the function that is 0 in the clamp and the
-/// squared distance from the clamp in front of it. `held`: per vertex, whether it is held now. `pinned`: per vertex,
-/// whether it may be held at any time. Only `pinned` decides which vertices a stencil has; `held` changes only weights.
-/// Empty: no vertex.
+/// edges near a clamp, the slope is exact for linear functions, and for the function that is 0 in the clamp and, in
+/// front of it, the squared distance from the clamp. `held`: per vertex, whether it is held now. `pinned`: per vertex,
+/// whether it may ever be held. Only `pinned` decides which vertices a stencil has; `held` changes only weights. An
+/// empty span means that no vertex is held, or may be.
 std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned = {},
                                                  std::span<const char> held = {});
 

@@ -8,7 +8,7 @@
 namespace weft::integrator {
 namespace {
 
-/// Disjoint sets of diagonal blocks, each identified by its lowest block.
+/// Disjoint sets of diagonal blocks, each identified by the lowest index of its blocks.
 class BlockGroups {
  public:
   explicit BlockGroups(std::span<const solver::DiagonalBlock> blocks)
@@ -35,10 +35,11 @@ class BlockGroups {
  private:
   std::span<const solver::DiagonalBlock> blocks_;
   std::vector<std::size_t> lowest_;
-  std::vector<char> is_free_;  // per group: nothing from outside the group acts on it
+  std::vector<char> is_free_;  // per group: no constraint or obstacle acts on it
 };
 
-// Joins the groups of the particles of a term. If the weights do not sum to zero, the term acts against an obstacle.
+// Joins the groups of the particles of a term. If the weights do not sum to zero, the term acts against an obstacle,
+// which holds the group.
 template <class Term>
 void join_by_term(const Term& term, BlockGroups& groups) {
   double sum = 0;

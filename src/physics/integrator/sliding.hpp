@@ -10,12 +10,12 @@
 
 namespace weft::integrator {
 
-/// Newton's method can end while wrong friction still holds a cloth back, because friction and contacts are stiff until
-/// the cloth slides as a whole: the velocity error then seems small. If friction is near its limit, this class
-/// therefore computes the residual force along the friction, and the friction in excess of what the normal force
-/// allows. (Measured on slopes half a degree too steep for sticking: sheets slide 1.00 to 1.01 of a rigid body's
-/// distance; without this class 0.92 to 0.97.) It uses sums over a diagonal block; with single particles, sphere_drape
-/// takes two to three times the iterations.
+/// Without this class, Newton's method could end while wrong friction still holds a cloth back: friction and contacts
+/// are stiff until the cloth slides as a whole, so the velocity error seems small. (Measured on slopes half a degree
+/// too steep for sticking: sheets slide 1.00 to 1.01 of a rigid body's distance; without this class 0.92 to 0.97.) If
+/// friction is near its limit, the error is the larger one of two forces: the residual along the friction, and the
+/// friction in excess of what the normal force allows. Both are sums over a diagonal block: with errors of single
+/// particles, the scene sphere_drape takes two to three times the iterations.
 class Sliding {
  public:
   /// Evaluates the contact forces of a system at this stage. Returns false if there is no contact.

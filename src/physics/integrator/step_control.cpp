@@ -9,8 +9,8 @@ namespace weft::integrator {
 namespace {
 
 // The proportional-integral controller PI.4.2 (Söderlind, "Digital filters in adaptive time-stepping", ACM TOMS 29,
-// 2003): exponents of the ratio of aimed error to error, of this step and of the last one, to be divided by the order
-// plus one.
+// 2003): exponents of the ratio aimed error / error, for this step and for the accepted step before it. The exponents
+// are to be divided by the order plus one.
 constexpr double kExponentNow = 3.0 / 5, kExponentBefore = -1.0 / 5;
 
 }  // namespace

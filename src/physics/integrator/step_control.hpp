@@ -25,8 +25,8 @@ class StepControl {
   bool accepts(double h, double error) const;
   bool meets(double error) const { return error <= tolerance_; }
 
-  /// Length of the next step [s]. The functions below update it after a step over h [s] that was accepted, too inexact,
-  /// or not solved.
+  /// Length of the next step [s]. The functions below update this length after a step over h [s] that was accepted,
+  /// rejected for its error [m], or not solved.
   double next_step_size() const { return wanted_; }
   void record_accepted_step(double h, double error);
   void record_rejected_step(double h, double error);

@@ -13,7 +13,7 @@
 namespace weft::integrator {
 namespace {
 
-// Lower bound of the allowed position error, in rounding errors of the block's largest coordinate.
+// Lower bound of the allowed position error, in units of the rounding error of the block's largest coordinate.
 constexpr double kMinRoundings = 32;
 
 // The largest coordinate of a block, as absolute value [m].
@@ -105,9 +105,9 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
 
 // Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass.
 // During the time `lasting_time`, this error displaces the block by `tolerance` · max(local error of positions,
-// visibility threshold). If the solver could add this displacement in every step, adaptive step sizes would lose one
-// order. From `slow_after` iterations on, the local velocity error of implicit Euler may raise the bound. The bound
-// never falls below rounding.
+// visibility threshold). With h in place of `lasting_time`, the solver could add this displacement in every step, and
+// adaptive step sizes would lose one order. From `slow_after` iterations on, the local velocity error of implicit Euler
+// may raise the bound. The bound never falls below rounding.
 void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
@@ -136,7 +136,8 @@ void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<
 // Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
 // error. The nonlinear error is known only as a residual, which the preconditioner converts to a displacement that is
 // too small. The ratio of the last solution to its preconditioned right hand side, if above 1, corrects this
-// displacement. If the line search did not take the full step, the residual contains both errors.
+// displacement. If the line search did not take the full step, or the matrix is indefinite, the residual contains both
+// errors.
 void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
                                             std::span<const double> masses) {
   const bool is_full_step = fraction == 1 && solved.definite;
@@ -252,8 +253,8 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
 }
 
 // Expected direction of velocity changes, along which the first linear solve starts: that of the last step or, without
-// a history, that of constant forces. Cloth that falls, slides or drifts uniformly is then exact at any linear
-// tolerance, and flat sheets stay flat.
+// a history, that of constant forces. Thus the motion of cloth that falls, slides or drifts uniformly is exact at any
+// linear tolerance, and flat sheets stay flat.
 std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> masses, const State& now) {
   for_each_particle(masses.size(), [&](std::size_t i) {
     scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
@@ -376,8 +377,8 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
 }
 
 // Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The residual that remains does no
-// work along the velocities of the stage, β v = x − x̂ (`motion_`). With BDF2, it does no work along the displacement
-// of the step either, x − x0 (the sum of `motion_` and `drift_`).
+// work along the displacements β v = x − x̂ of the stage (`motion_`). With BDF2, it does no work along the
+// displacements x − x0 of the step either (the sum of `motion_` and `drift_`).
 solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
   goals_.clear();
   const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.midpoint_tightening : 1;

@@ -35,8 +35,8 @@ std::string_view describe(Verdict verdict);
 
 struct StageTimes {
   StageTime forces;          ///< evaluation of forces and assembly of their matrix
-  StageTime preconditioner;  ///< setup, and application to residuals
-  StageTime linear;
+  StageTime preconditioner;  ///< setup, and applications outside of linear solves
+  StageTime linear;          ///< linear solves
 };
 
 struct StepReport {
@@ -44,10 +44,11 @@ struct StepReport {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double local_error = 0;  ///< estimate of the error of positions that the method adds in this step [m]
-  /// Estimate of the error that the solver adds: the remaining velocity error times `Numerics::Newton::lasting_time`
-  /// [m].
+  /// Estimate of the error of positions that the solver adds: the largest remaining velocity error of a block times
+  /// `Numerics::Newton::lasting_time` [m].
   double solver_error = 0;
-  double left = 0, allowed = 0;  ///< velocity error that remains in the worst block, and its bound [m/s]
+  /// Velocity error that remains in the block with the largest left / allowed, and its bound [m/s].
+  double left = 0, allowed = 0;
   StageTimes times;
 };
 
@@ -59,16 +60,16 @@ struct StepReport {
 ///     midpoint   h/2            x0, v0                                       2 · stage − start
 ///     BDF2       h(1+r)/(1+2r)  ((1+r)² y0 − r² y₋)/(1+2r), r = h/h₋         the stage
 ///
-/// Tests compare each method on x'' = −ω² x with its exact damping and phase (tests/integrator).
+/// Tests compare each method on x'' = −ω² x with the damping and phase that theory gives for it (tests/integrator).
 ///
 /// BDF2 assumes a smooth trajectory. If it integrated impacts like smooth forces, cloth would rebound with up to half
-/// of its energy (measured: 48 % for a sheet that falls on a table). Therefore impacts are integrated as in Euler's
-/// method, and all other forces in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez & Brüls,
-/// Int. J. Numer. Meth. Engng 96, 2013). In the solve of a step, impacts displace particles by δ with A δ = F. F are
-/// the forces of impacts; A is the matrix of the step, but its only contact terms are those of friction in impacts and
-/// of contacts that transmit impacts. Positions keep the displacement δ, but velocities change by δ/h instead of δ/β.
-/// The start velocity in the history also changes by δ/h, so that the trajectory of the next step is smooth. If the
-/// caller changes velocities after the solve, these changes count as impacts, too.
+/// of its energy (measured: 48 % for a sheet that falls on a table). Therefore BDF2 steps integrate impacts as Euler's
+/// method does, and all other forces in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez &
+/// Brüls, Int. J. Numer. Meth. Engng 96, 2013). In the solve of a step, impacts displace particles by δ with A δ = F. F
+/// are the forces of impacts; A is the matrix of the step, but its only contact terms are those of friction in impacts
+/// and of contacts that transmit impacts. Positions keep the displacement δ, but velocities change by δ/h instead of
+/// δ/β. The start velocity in the history also changes by δ/h, so that the trajectory of the next step is smooth. If
+/// the caller changes velocities after the solve, these changes count as impacts, too.
 ///
 /// The local error of positions is estimated from velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of the
 /// mean acceleration from the last step to this one. Then the leading terms of the error are
@@ -78,12 +79,12 @@ struct StepReport {
 ///     BDF2       3/2 h³ (1+r)² / (6 r (1+2r)) x'''  ≈ h² (1+r) / (2 (1+2r)) D
 ///
 /// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
-/// accounts for the following steps: each propagates a third of a change of the error. Steps without a history, and
-/// BDF2 steps beyond longest_step(), use Euler's estimate. For the midpoint rule this is an upper bound. A BDF2 step is
-/// then an Euler step, but the factor 3/2 remains. Errors of velocity are not included; they affect positions only in
-/// later steps. The error of a diagonal block (a cloth, a rope or a rigid body) is the root mean square over its mass,
-/// so that it depends neither on the mesh resolution nor on a single particle in contact. The error of a step is the
-/// largest of all blocks. Held directions have no error.
+/// accounts for the following steps: each adds a third of what the step before it added. Steps without a history, and
+/// BDF2 steps beyond longest_step(), use Euler's estimate. For the midpoint rule, it is an upper bound. Such a BDF2
+/// step is an Euler step, but its estimate keeps the factor 3/2. Errors of velocity are not included; they affect
+/// positions only in later steps. The error of a diagonal block (a cloth, a rope or a rigid body) is the root mean
+/// square over its mass, so that it depends neither on the mesh resolution nor on a single particle in contact. The
+/// error of a step is the largest of all blocks. Held directions have no error.
 class Stepper {
  public:
   /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
@@ -101,8 +102,9 @@ class Stepper {
   enum class Start { unchanged_velocity, next };
 
   /// Computes `next` from `now` over h [s]. Does not change the history: see accept(). `gravity` [m/s²] acts on all
-  /// particles. A step that is not solved after `pause_after` Newton iterations ends with Verdict::unfinished; the
-  /// caller can inspect `next` and continue with Start::next. After other failures, `next` is unspecified.
+  /// particles. A step that is not solved after `pause_after` Newton iterations of this call ends with
+  /// Verdict::unfinished; the caller can inspect `next` and continue with Start::next. After other failures, `next` is
+  /// unspecified.
   StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
                   State& next, Start start = Start::unchanged_velocity,
                   int pause_after = std::numeric_limits<int>::max());
@@ -121,7 +123,7 @@ class Stepper {
   const History& history() const { return history_; }
   void return_to(History history) { history_ = std::move(history); }
 
-  /// Longest step [s] that may follow the last accepted one; infinite if the method has no bound.
+  /// Longest step [s] that may follow the last accepted one; infinite without a history, or if the method has no bound.
   double longest_step() const;
 
   /// Forgets the history: the next BDF2 step is an Euler step. For the first step and after discontinuities.
@@ -148,12 +150,12 @@ class Stepper {
     solver::DiagonalBlock rows;
     double mass = 0;             // [kg]
     double local_error = 0;      // of the method, at the current iterate [m]
-    double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history, or another method
+    double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history, or a different method
     double allowed = 0;          // bound of the remaining velocity error [m/s]
     double left = 0;             // remaining velocity error [m/s]
     double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]
     bool holds_sliding = false;  // a constraint holds it against sliding
-    double sliding_error = 0;    // velocity error of the whole block from wrong friction, if it is about to slide [m/s]
+    double sliding_error = 0;    // velocity error of the whole block from wrong friction [m/s]; 0: not about to slide
 
     double work_error = 0;  // `allowed` before bound_work() reduces it; 0: the residual does not do too much work [m/s]
 

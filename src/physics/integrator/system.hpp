@@ -37,14 +37,15 @@ class System {
   /// Adds the forces of a step that depend neither on positions nor on velocities, excluding the weight [N].
   virtual void constant_forces(std::span<Vec3> force) const = 0;
 
-  /// Adds all other forces at a stage [N]. May update caches of the system, but must not change its results.
+  /// Adds all other forces at a stage [N]. May update caches of the system, but must not change the results of later
+  /// calls.
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As `forces`, but if the last linearise() replaced a force by its tangent, evaluates that tangent. A line search
+  /// As forces(), but if the last linearise() replaced a force by its tangent, evaluates that tangent. A line search
   /// along the solution of the linear system must use these forces.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
-  /// As `linear_forces`, and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the contact
+  /// As linear_forces(), and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the contact
   /// terms. First updates what stays constant between linearisations, such as the normal forces that limit friction.
   /// `iteration`: Newton iteration, from 0 in each solve; it continues to count if a paused solve continues.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
@@ -52,7 +53,7 @@ class System {
   /// Whether translating a diagonal block changes no force except those of contact terms, constraints and air.
   virtual bool is_translation_invariant() const { return false; }
 
-  /// Adds the contact part of `forces` [N] at each particle: `friction`, all other contact forces (`push`), and the
+  /// Adds the contact part of forces() [N] at each particle: `friction`, all other contact forces (`push`), and the
   /// largest friction that the current normal forces allow (`limit`). Returns false, and adds nothing, if there is no
   /// contact.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
@@ -62,8 +63,8 @@ class System {
   }
 
   /// After a solved step: replaces the contact terms of linear_system() by those of impacts, and adds their right hand
-  /// side. The solution is the change δ/h of velocities by impacts [m/s] (see Stepper). Returns false if there is no
-  /// impact.
+  /// side. The solution of this system is the change δ/h of velocities by impacts [m/s] (see Stepper). Returns false if
+  /// there is no impact.
   virtual bool find_impacts(const StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
     (void)at, (void)start, (void)right_side;
     return false;

@@ -10,7 +10,7 @@
 namespace weft::mesh {
 namespace {
 
-/// Largest bevel as a fraction of the smallest size. At 0.5 the flat sides would have no area left.
+/// Largest bevel, relative to the smallest edge length. At 0.5, flat sides would have no area left.
 constexpr double kMaxBevel = 0.49;
 
 /// A box is the hull of eight octants of a small sphere. Each octant is a triangular lattice of points (i, j, k) with i

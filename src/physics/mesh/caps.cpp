@@ -10,7 +10,7 @@
 namespace weft::mesh {
 namespace {
 
-using DirectedEdge = std::array<Index, 2>;  // start and end, in the order in which its triangle traverses it
+using DirectedEdge = std::array<Index, 2>;  // start and end, as the triangle traverses the edge
 
 std::set<DirectedEdge> directed_edges(std::span<const Triangle> triangles) {
   std::set<DirectedEdge> edges;

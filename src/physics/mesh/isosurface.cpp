@@ -79,8 +79,8 @@ class Cutter {
     }
     if (ins == 0 || outs == 0) return;
     const auto v = [&](int a, int b) { return vertex(corner[a], corner[b]); };
-    // The inside corners followed by the outside corners, each in ascending order, are a permutation of 0 1 2 3. If it
-    // is odd, the triangles are reversed.
+    // The inside corners followed by the outside corners, each in ascending order, are a permutation of 0 1 2 3. If the
+    // permutation is odd, the triangles are reversed.
     if (ins == 1) {
       add(v(in[0], out[0]), v(in[0], out[1]), v(in[0], out[2]), in[0] % 2 != 0);
     } else if (outs == 1) {

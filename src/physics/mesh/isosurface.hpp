@@ -7,8 +7,8 @@
 
 namespace weft::mesh {
 
-/// Implicit function [m], negative inside. The length of its gradient must stay below 3 everywhere. Near the zero set,
-/// the gradient must be continuous and its length about 1 (as for a distance) or more.
+/// Implicit function [m], negative inside. The length of its gradient must be below 3 everywhere. Near the zero set,
+/// the gradient must be continuous, with a length of about 1 (as for a distance) or more.
 using Field = std::function<double(const Vec3&)>;
 
 /// Wanted edge length [m] at a point; it should vary slowly.
@@ -26,8 +26,8 @@ Mesh march_half_space(const Field& field, const Box3& box, double cell);
 void remesh(Mesh& surface, const Field& field, const Sizing& edge_length, int rounds);
 
 /// A surface whose border lies in the plane x = 0, joined to its mirror image. Order of vertices: first those of the
-/// border, which are their own images; then the n other vertices of the given half; then their n images. Thus the image
-/// of a vertex v of the second group is v + n.
+/// border, which are their own images; then the n other vertices of `half`; then the n images of these other vertices.
+/// Thus the image of a vertex v of the second group is v + n.
 struct MirroredMesh {
   Mesh mesh;
   std::vector<Index> image;  ///< per vertex, the index of its mirror image

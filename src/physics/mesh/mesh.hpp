@@ -41,7 +41,7 @@ struct Grid {
   /// Rest spacing between columns i and i + 1, or between rows j and j + 1 [m].
   double du(int i) const { return spacing(i, nu, lu, weft_grading); }
   double dv(int j) const { return spacing(j, nv, lv, warp_grading); }
-  /// Width of the sheet that belongs to a column or row: half of the spacing on each side [m].
+  /// Width of the strip of the sheet that belongs to a column or row: half of the spacing on each of its sides [m].
   double width_u(int i) const { return width(i, nu, lu, weft_grading); }
   double width_v(int j) const { return width(j, nv, lv, warp_grading); }
   /// Smallest of all spacings [m].

@@ -1,4 +1,4 @@
-// Binary PLY files, the format of the option --meshes.
+// Writes binary PLY files, the format of the option --meshes of `weft run`.
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@ struct PlyExtras {
   std::string_view values_name = {};                  ///< name of the property that `values` are written as
 };
 
-/// Writes positions in double precision and faces as triangles, in binary little endian, through a TemporaryFile. Of
-/// quad meshes, writes the triangles, because collision uses these. Triangles through which cloth passes come last; a
-/// comment in the header states their number. Pieces of rope, which are triangles (a, b, b), are written as edges.
+/// Writes positions in double precision and faces as triangles, in binary little endian, through a TemporaryFile. A
+/// quad mesh is written as its triangles, because collision uses these. Triangles through which cloth passes come last;
+/// a comment in the header states their number. Pieces of rope, which are triangles (a, b, b), are written as edges.
 /// Texture coordinates are the properties `s` and `t`, before `values`. Throws what write_file() throws.
 void write_ply(const std::filesystem::path& file, std::span<const Vec3> positions,
                std::span<const std::array<Index, 3>> triangles, const PlyExtras& extras = {});

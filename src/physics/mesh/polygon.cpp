@@ -13,7 +13,7 @@ double twice_signed_area(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// Projects the polygon along its normal, so that it is counter-clockwise. The normal is a sum of cross products over
-/// all corners (Newell), and so suits polygons that are not quite flat, too.
+/// all corners (Newell), so that it also suits polygons that are not quite flat.
 std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> positions) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return positions[corners[k % corners.size()]]; };
   const Vec3& origin = corner(0);
@@ -33,7 +33,8 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
 /// Whether corner k of the ring is an ear: it is convex, and its triangle, sides included, contains no other corner.
-/// `flatness`: ratio to the longest side. Corners nearer to a side count as on it; flatter triangles are no ears.
+/// `flatness`: a height, relative to the longest side of the triangle. A corner that is nearer to a side than this
+/// counts as on the side. A triangle with a smaller height is no ear.
 bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vector<Vec2>& flat, double flatness) {
   const std::size_t n = ring.size();
   const Vec2 &a = flat[ring[(k + n - 1) % n]], &b = flat[ring[k]], &c = flat[ring[(k + 1) % n]];
@@ -42,7 +43,7 @@ bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vect
   if (!(twice_signed_area(a, b, c) > slack * std::max({ab, bc, ca}))) return false;
   for (const std::size_t other : ring) {
     const Vec2& p = flat[other];
-    // Skip the corners of the triangle, and copies of them at places where the polygon touches itself.
+    // Skip the corners of the triangle, and other corners at the same places, where the polygon touches itself.
     if (p == a || p == b || p == c) continue;
     if (twice_signed_area(a, b, p) >= -slack * ab && twice_signed_area(b, c, p) >= -slack * bc &&
         twice_signed_area(c, a, p) >= -slack * ca)
@@ -103,7 +104,7 @@ void flip_edges(std::vector<Corners>& triangles, const std::vector<Vec2>& flat) 
   }
 }
 
-/// Cuts a polygon into ears, which index into `flat`. `flatness`: see kMinEarHeightRatios.
+/// Cuts a polygon into ears, whose corners index into `flat`. `flatness`: ratios such as kMinEarHeightRatios.
 std::vector<Corners> clip_ears(const std::vector<Vec2>& flat, std::span<const double> flatness) {
   std::vector<std::size_t> ring(flat.size());
   for (std::size_t k = 0; k < ring.size(); ++k) ring[k] = k;

@@ -14,9 +14,8 @@ namespace weft::mesh {
 void triangulate_polygon(std::span<const Index> corners, std::span<const Vec3> positions,
                          std::vector<Triangle>& triangles);
 
-/// The same for a face from a file, whose coordinates have single precision. Avoids triangles of nearly no area at
-/// corners along a straight side. If needle triangles remain, flips edges inside the polygon until all are locally
-/// Delaunay.
+/// The same for a face from a file with coordinates of single precision. Avoids triangles of nearly no area at corners
+/// along a straight side. If needle triangles remain, flips edges inside the polygon until all are locally Delaunay.
 void triangulate_face(std::span<const Index> corners, std::span<const Vec3> positions,
                       std::vector<Triangle>& triangles);
 

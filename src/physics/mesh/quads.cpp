@@ -5,7 +5,7 @@
 namespace weft::mesh {
 namespace {
 
-/// Whether both triangles face the same way; the diagonal then lies inside the quad.
+/// Whether the two triangles of this split face the same way. If so, the diagonal lies inside the quad.
 bool diagonal_inside(const Quad& q, bool first, std::span<const Vec3> x) {
   const auto [a, b] = split_quad(q, first);
   return area_vector(a, x).dot(area_vector(b, x)) > 0;

@@ -16,8 +16,8 @@ inline std::array<Triangle, 2> split_quad(const Quad& q, bool first_diagonal) {
   return {Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}};
 }
 
-/// Splits each quad along the diagonal that lies inside it. If both or neither do, uses the shorter one; if both are
-/// equally long, the first. Quad q gives triangles 2q and 2q + 1.
+/// Splits each quad along the diagonal that lies inside it. If both diagonals or neither lie inside, uses the shorter
+/// one; if both are equally long, the first. Quad q gives triangles 2q and 2q + 1.
 std::vector<Triangle> split_quads(std::span<const Quad> quads, std::span<const Vec3> positions);
 
 /// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z.

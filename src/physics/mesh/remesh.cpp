@@ -10,7 +10,8 @@
 namespace weft::mesh {
 namespace {
 
-// Edges are split above and collapsed below these ratios of their length to the wanted length (Botsch & Kobbelt 2004).
+// Edges are split if the ratio of their length to the wanted length is above the maximum, and collapsed if it is below
+// the minimum (Botsch & Kobbelt 2004).
 constexpr double kMaxEdgeRatio = 4.0 / 3, kMinEdgeRatio = 4.0 / 5;
 
 std::size_t z(Index i) {
@@ -145,7 +146,8 @@ class Remesher {
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether `v` may move to p: its triangles without `other` turn by at most 60° and get no edge that is too long.
+  /// Whether `v` may move to p: the triangles at `v` that do not contain `other` turn by at most 60°, and get no edge
+  /// that is too long.
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];

@@ -13,11 +13,12 @@ namespace weft::mesh {
 /// Four particles of equal mass that together have the mass, the centre of mass and the moments of inertia of a body.
 /// They are at c + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the standard
 /// deviations of the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine Body
-/// Dynamics", 2022) is a weighted sum of the four particles, so body and particles have exactly the same inertia.
+/// Dynamics", 2022) is a weighted sum of the four particles, so the body and the four particles have exactly the same
+/// inertia.
 class RigidFrame {
  public:
   static constexpr std::size_t kParticles = 4;
-  using Weights = std::array<double, kParticles>;  ///< of the four particles, for one vertex; their sum is 1
+  using Weights = std::array<double, kParticles>;  ///< weights of the particles for one vertex; sum 1
 
   /// Corner k of the regular tetrahedron with coordinates ±1.
   static Vec3 corner(std::size_t k);

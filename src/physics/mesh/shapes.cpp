@@ -49,8 +49,8 @@ std::vector<ProfilePoint> refine(const std::vector<ProfilePoint>& corners, doubl
   return profile;
 }
 
-/// Revolves a profile around the z axis. A profile that runs upward with the axis on its left gives an outward surface.
-/// A point on the axis (radius 0) becomes one vertex. If `closed`, the last point is joined to the first.
+/// Revolves a profile around the z axis. If the profile runs upward with the axis on its left, the surface faces
+/// outward. A point on the axis (radius 0) becomes one vertex. If `closed`, the last point is joined to the first.
 Mesh revolve(const std::vector<ProfilePoint>& profile, int segments, bool closed) {
   Mesh mesh;
   const auto around = static_cast<std::size_t>(segments);
@@ -149,7 +149,8 @@ Mesh make_cylinder(double radius, double height, int segments) {
 
 Mesh make_torus(double radius, double tube_radius, int segments) {
   segments = std::max(segments, kMinSegments);
-  // Quads are about square at the outer equator. A multiple of four puts a ring of vertices at the lowest height.
+  // Quads are about square at the outer equator. With a multiple of four quads around the tube, a ring of vertices lies
+  // at the lowest height.
   const double edge = 2 * kPi * (radius + tube_radius) / segments;
   const int around_tube = 4 * std::max(2, static_cast<int>(std::lround(2 * kPi * tube_radius / edge / 4)));
   std::vector<ProfilePoint> circle;

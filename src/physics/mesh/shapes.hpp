@@ -10,12 +10,13 @@ namespace weft::mesh {
 /// pieces. The six points on the axes are vertices, so the bounding box is that of the sphere.
 Mesh make_sphere(double radius, int segments);
 
-/// Box with edge lengths `size` [m]. Its edges and corners are rounded with the radius `bevel` [m], which is limited to
-/// 0.49 of the smallest edge length; 0: sharp. A quarter turn has segments / 8 faces, at least one.
+/// Box with edge lengths `size` [m]. Its edges and corners are rounded with the radius `bevel` [m], at most 0.49 of the
+/// smallest edge length (larger values are reduced); 0: sharp. A rounded edge has segments / 8 faces across, at least
+/// one.
 Mesh make_box(const Vec3& size, double bevel, int segments);
 
-/// Base at z = -height / 2, tip at z = +height / 2. `segments`: number of edges around the axis, at least 3 (likewise
-/// for torus and cylinder).
+/// Base at z = -height / 2, tip at z = +height / 2. `segments`: number of edges around the axis; smaller values than 3
+/// count as 3 (the same for torus and cylinder).
 Mesh make_cone(double radius, double height, int segments);
 
 /// Ring around the z axis. `radius` is the distance of the tube's centre line from the axis; `tube_radius` < `radius`.
@@ -25,8 +26,8 @@ Mesh make_torus(double radius, double tube_radius, int segments);
 Mesh make_cylinder(double radius, double height, int segments);
 
 /// Lower half of a pipe around the x axis, open upward, with rims at z = 0, from x = -length / 2 to x = +length / 2.
-/// `radius` is the inner radius, `thickness` that of the wall outside of it. The half turn has segments / 2 faces, at
-/// least two.
+/// `radius` is the inner radius; the wall of thickness `thickness` lies outside of it. The half turn has segments / 2
+/// faces, at least two.
 Mesh make_half_pipe(double radius, double length, double thickness, int segments);
 
 /// One quad in the plane z = 0, front toward +z.

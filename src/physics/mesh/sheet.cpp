@@ -10,7 +10,7 @@ namespace weft::mesh {
 namespace {
 
 // Minimum length of the projection of the unit vector x onto a triangle, with which weft follows x (0.1: x at 84° to
-// the triangle). Below, warp follows the projection of y.
+// the triangle). If the projection is shorter, warp follows the projection of y.
 constexpr double kMinProjectedWeft = 0.1;
 
 // Unit directions of weft and warp in a triangle with this normal.

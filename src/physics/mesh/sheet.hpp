@@ -22,8 +22,9 @@ struct Band {
   double allowance = 0;         ///< width of cloth along the band that the triangles do not contain [m]
 };
 
-/// Two vertices that a fastener holds together while it is closed: a button, a tooth of a zip, or a seam that can tear.
-/// `open` and `closed` are the scene times at which the fastener opens and closes [s]; infinite: never.
+/// Two vertices that a fastener holds together while the fastener is closed: a button, a tooth of a zip, or a seam that
+/// can tear. `open` and `closed` are the scene times at which the fastener opens and closes [s]; infinite: never. If
+/// `closed` < `open`, the fastener is closed only between these times; otherwise it is closed at the start.
 struct Tie {
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]
@@ -53,15 +54,15 @@ struct Sheet {
 /// Area of a triangle at rest [m²].
 double rest_area(const Sheet& sheet, std::size_t triangle);
 
-/// Maximum ratio of a cloth's longest edge to its smallest triangle height (on grids: smallest spacing) with which the
-/// cloth may touch obstacles. Measured with sheets that fall on a ball, at default settings. With one row of thin
-/// triangles, eight of nine runs succeeded at a ratio of 71, none at 141. With graded rectangles, all runs succeeded at
-/// a grading of 50, none at 100.
+/// Maximum ratio of a cloth's longest edge to its smallest triangle height (on grids: to its smallest spacing) with
+/// which the cloth may touch obstacles. Measured with sheets that fall on a ball, at default settings. If one row of
+/// triangles was thin, eight of nine runs succeeded at a ratio of 71, none at 141. With graded rectangles, all runs
+/// succeeded at a grading of 50, none at 100.
 inline constexpr double kMaxUnevenness = 80;
 
-/// Triangles of a sheet whose height is below (longest edge of the sheet) / kMaxUnevenness.
+/// Triangles of a sheet whose smallest height is below (longest edge of the sheet) / kMaxUnevenness.
 struct FlatTriangles {
-  std::size_t count = 0, flattest = 0;  ///< number of such triangles; index of the triangle with the smallest height
+  std::size_t count = 0, flattest = 0;  ///< number of them; index of the triangle with the smallest height
   double least_height = 0;              ///< height of triangle `flattest` [m]
   double longest_edge = 0;              ///< [m]
 };

@@ -1,4 +1,4 @@
-// Connectivity of a triangle mesh: edges, and defects of an index list.
+// Connectivity of a triangle mesh: edges, components, and defects of an index list (a list of triangles).
 #pragma once
 
 #include <array>
@@ -46,7 +46,7 @@ struct TopologyReport {
 /// Checks any index list. Triangles that are out of range or degenerate do not contribute edges.
 TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_count);
 
-/// The connected component of each vertex; components are numbered in the order of their first vertices.
+/// The number of the connected component of each vertex. Components are numbered in the order of their first vertices.
 std::vector<Index> components(std::span<const Triangle> triangles, std::size_t vertex_count);
 
 }  // namespace weft::mesh

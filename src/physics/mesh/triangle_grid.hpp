@@ -1,4 +1,4 @@
-// A uniform grid of triangles, to find those that a straight path crosses.
+// A uniform grid of cells that list triangles, to find the triangles that a straight path crosses.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@ namespace weft::mesh {
 
 /// First crossing of a path with the front of a triangle.
 struct Entry {
-  double t = 0;         ///< fraction of the path up to the crossing
+  double t = 0;         ///< fraction of the path up to the crossing; 1 if there is none
   Index triangle = -1;  ///< index into the triangles of the grid; -1: no crossing
 };
 
-/// Finds crossings of straight paths with triangles. `triangles` and `x` must outlive the grid.
+/// Finds crossings of straight paths with triangles. `triangles` and `x` (vertex positions) must outlive the grid.
 class TriangleGrid {
  public:
   /// `cell`: edge length of a cubic cell [m]; enlarged if there would be too many cells.

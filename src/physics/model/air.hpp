@@ -13,7 +13,7 @@ namespace weft::model {
 /// Turbulence, added to the mean velocity of the air (GustField).
 struct Gusts {
   double speed = 0;  ///< root mean square of each component [m/s]; 0: none
-  double size = 1;   ///< integral length, the size of the most energetic eddies [m]
+  double size = 1;   ///< integral length of the turbulence [m]
   int seed = 0;      ///< seed of the random directions and phases of gusts
 };
 
@@ -29,9 +29,9 @@ struct Physics {
   Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
   Gusts gusts;
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
-  std::vector<PhysicsKey> keys;  ///< in place of `gravity` and `wind`; empty: these two are constant
+  std::vector<PhysicsKey> keys;  ///< replace `gravity` and `wind`; empty: both are constant
 
-  /// Largest gravity at any key [m/s²].
+  /// Largest magnitude of gravity at any key or, without keys, of `gravity` [m/s²].
   double largest_gravity() const {
     double largest = keys.empty() ? gravity.norm() : 0;
     for (const PhysicsKey& key : keys) largest = std::max(largest, key.gravity.norm());
@@ -42,7 +42,7 @@ struct Physics {
 struct FanKey {
   double time = 0;                             ///< [s], strictly increasing
   Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; wind direction, of any length but 0
-  double speed = 5;                            ///< of the air on the axis, at the disc [m/s]
+  double speed = 5;                            ///< speed of the air on the axis of the cone, at the disc [m/s]
 };
 
 /// A fan: wind in a cone; see Weather.

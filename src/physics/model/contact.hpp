@@ -12,13 +12,13 @@ enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
 /// Methods of the broad and narrow phase (Etzmuß et al. 2001, "Collision Detection"). They change the speed, not the
-/// result.
+/// result; exceptions: `coherence` and, in rare cases, `bounds`.
 struct Search {
   Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children per node
   int leaf = 8;                   ///< maximum number of triangles per leaf
   bool open_longer_side = false;  ///< of two overlapping nodes, visit only the children of the longer one
-  bool separation_lists = false;  ///< start each traversal at the pairs of nodes where the previous one stopped
+  bool separation_lists = false;  ///< start each traversal at the pairs of nodes where the previous traversal stopped
   bool velocity_cones = false;    ///< keep the bounds of slow nodes while their vertices stay inside
   bool normal_cones = false;      ///< skip regions that cannot touch themselves, because all their normals are similar
   bool coherence = false;         ///< keep closest points of surfaces with little relative motion
@@ -29,7 +29,7 @@ struct Search {
 struct FrictionPair {
   std::string first, second;              ///< names of cloths or obstacles; equal names: a cloth with itself
   double friction = 0.3;                  ///< coefficient of kinetic friction
-  std::optional<double> static_friction;  ///< coefficient of static friction, at least `friction`; absent: equal to it
+  std::optional<double> static_friction;  ///< coefficient of static friction, at least `friction`; absent: `friction`
 };
 
 /// Parameters of all contacts.

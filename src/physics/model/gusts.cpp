@@ -8,8 +8,8 @@ namespace weft::model {
 namespace {
 
 // Shells of wave numbers k around k_e; the wave number of each shell is kRatio times that of the one before.
-// kShellsBelow shells are below k_e. 1 / k ranges from four integral lengths to a thirtieth of one. A tenth of the
-// spectrum's energy is at larger k, which is left out.
+// kShellsBelow shells are below k_e. 1 / k ranges from four integral lengths to a thirtieth of one. Waves with larger
+// k, a tenth of the spectrum's energy, are left out.
 constexpr int kShells = 13;
 constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
@@ -32,7 +32,7 @@ GustField::GustField(const Gusts& gusts, const Vec3& wind) {
   double sum = 0;
   for (int shell = 0; shell < kShells; ++shell) {
     wave_numbers.push_back(std::pow(kRatio, shell - kShellsBelow));
-    // The width of a shell is proportional to its wave number.
+    // The energy of a shell is the spectrum times the width of the shell, which is proportional to its wave number.
     energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());
     sum += energies.back();
   }
@@ -44,7 +44,8 @@ GustField::GustField(const Gusts& gusts, const Vec3& wind) {
     // Spectral density E(k), whose integral over k is 3/2 speed²; the shell has the width k ln(kRatio).
     const double energy = 1.5 * gusts.speed * gusts.speed * energies[shell] / sum / (k * std::log(kRatio));
     const double turnover = std::sqrt(k * k * k * energy);
-    // Three waves along random perpendicular axes, each with its amplitude along the next: isotropic mean square.
+    // Three waves along random perpendicular axes, the amplitude of each along the next axis. Their mean square is
+    // isotropic.
     const double a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random(), c = random();
     const Mat3 axes = Quat(std::sqrt(1 - c) * std::sin(a), std::sqrt(1 - c) * std::cos(a), std::sqrt(c) * std::sin(b),
                            std::sqrt(c) * std::cos(b))

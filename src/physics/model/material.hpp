@@ -19,11 +19,11 @@ struct Material {
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 1e-6;   ///< [N·m·s]
   double bend_friction = 5e-4;    ///< bending moment per width below which the curvature does not change [N]
-  double thickness = 0.002;       ///< contact distance between two layers [m]
-  double friction = 0.3;          ///< Coulomb coefficient; a contact uses the geometric mean of both objects
+  double thickness = 0.002;       ///< contact distance between two sheets of this fabric [m]
+  double friction = 0.3;          ///< Coulomb coefficient; contacts use the geometric mean of both coefficients
   double drag = 1.0;              ///< air resistance coefficient, for motion normal to the cloth; 0: none
 
-  /// Whether cloth of this material resists bending. Without it, bending viscosity and friction have no effect.
+  /// Whether cloth of this material resists bending. If not, bending viscosity and bending friction have no effect.
   bool bends() const { return bend > 0; }
   /// Whether this material has a limit to stretch or shear, at which its threads lock.
   bool locks() const { return max_stretch > 0 || max_shear > 0; }

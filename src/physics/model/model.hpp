@@ -30,21 +30,22 @@ namespace weft::model {
 struct WeightedParticle {
   Index particle = 0;   ///< index within the cloth
   double fraction = 1;  ///< in (0, 1]: factor on the stiffness of a pin or attachment; relative part of a weight
-  bool faded = false;   ///< of a pin: outside of its region, in the fade around it, where `fraction` falls to 0
+  bool faded = false;   ///< of a pin: whether the particle is in the fade, a zone around the pin's region in which
+                        ///< `fraction` falls to 0
 };
 
 /// Particles that are held in place, or moved by keys or with a body.
 struct Pin {
-  std::vector<WeightedParticle> particles;  ///< first those of its region, then those of its fade
-  Vec3 middle{0, 0, 0};                     ///< mean start position of its region [m]
+  std::vector<WeightedParticle> particles;  ///< first those in its region, then those in its fade
+  Vec3 middle{0, 0, 0};                     ///< mean start position of the particles in its region [m]
   motion::PoseTrack motion;                 ///< of `middle`, in the world, if the pin follows no body
   std::optional<std::size_t> body;          ///< number of the body that the pin follows
-  /// If `body` has a vertex for each particle of the pin: index of that of the first particle, for Model::vertex(); the
-  /// others follow in order. Absent: the particles follow the nearest triangles of a deforming body, or the pose of a
-  /// rigid one.
+  /// If `body` has a vertex for each particle of the pin: index of the first particle's vertex, for Model::vertex();
+  /// the vertices of the other particles follow in order. Absent: the particles follow the nearest triangles of `body`
+  /// if it deforms, or its pose if it is rigid.
   std::optional<std::size_t> first_vertex;
   double release = -1;             ///< time of release [s]; negative: never
-  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
+  std::optional<double> strength;  ///< stiffness of the spring of a particle [N/m]; absent: held exactly
 };
 
 /// Additional mass, distributed over particles in proportion to WeightedParticle::fraction.
@@ -62,17 +63,17 @@ struct Cloth {
   bool crossed = false;  ///< four triangles per cell, around its centre; CrossedMembrane then prevents membrane locking
   mesh::Mesh mesh;       ///< rest shape in the world, posed as at the start; uv: along weft and warp from a corner [m]
   /// Smallest distance between neighbouring particles of a grid or rope [m]. For triangles, √2 times the smallest
-  /// height, which gives the same value for the two halves of a square.
+  /// height of a triangle, so that a square of two triangles has the same spacing as a square cell of a grid.
   double spacing = 0;
   Material material;
   std::optional<Rope> rope;
-  std::vector<Vec3> start;        ///< positions of its particles [m]
-  Vec3 velocity{0, 0, 0};         ///< of all particles at the start [m/s]
-  Vec3 spin{0, 0, 0};             ///< added at the start: angular velocity about the centre of mass [rad/s]
-  double put_on = 0;              ///< time since the start of the run, preroll included, at which it is put on [s]
-  double sewing = 0;              ///< time in which the rest shape changes from the sewn start to flat panels [s]
+  std::vector<Vec3> start;  ///< positions of its particles [m]
+  Vec3 velocity{0, 0, 0};   ///< of all particles at the start [m/s]
+  Vec3 spin{0, 0, 0};       ///< angular velocity about the centre of mass, added to `velocity` at the start [rad/s]
+  double put_on = 0;        ///< time at which the cloth is put on, since the start of the run, preroll included [s]
+  double sewing = 0;        ///< duration of the change of the rest shape from the start shape to flat panels [s]
   std::vector<std::string> over;  ///< names of all cloths that are put on before this one and stay inside it
-  bool untangle = false;          ///< whether it is moved off surfaces that it touches or crosses at the start
+  bool untangle = false;          ///< whether to move the cloth off surfaces that it touches or crosses at the start
   Pressure pressure;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
@@ -102,7 +103,7 @@ struct Parent {
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
   std::size_t body = kNone;                             ///< number of the body
   std::shared_ptr<const motion::Track> part = nullptr;  ///< motion of the part, else null
-  motion::Pose start = {};                              ///< of the parent at the start of the run
+  motion::Pose start = {};                              ///< pose of the parent at the start of the run
 
   bool is_any() const { return body != kNone || part; }
 };
@@ -122,10 +123,10 @@ struct Body {
   double friction = 0.3;
   std::vector<Patch> patches;
   std::shared_ptr<const Dynamics> dynamics;  ///< of bodies that forces move; else null
-  std::vector<Index> limbs;                  ///< of deforming bodies: limb of each vertex, from 0; limbs may intersect
+  std::vector<Index> limbs;  ///< of deforming bodies: number of the limb of each vertex; limbs may intersect
   /// If only some parts of the mesh collide: their triangles, and triangles that close the cuts between parts.
   std::vector<mesh::Triangle> colliding;
-  std::string advice;  ///< appended to the error message if the body touches a surface at the start; or empty
+  std::string advice;  ///< appended to the error message if the body touches a surface at the start; empty: none
 
   bool deforms() const { return std::holds_alternative<motion::KeyFrames>(*mover); }
   std::span<const mesh::Triangle> colliding_triangles() const {
@@ -138,8 +139,8 @@ struct Attachment {
   std::string name;
   std::size_t cloth = 0;  ///< number of the cloth whose particles are attached
   std::vector<WeightedParticle> particles;
-  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; one of them is given
-  double stiffness = 10000;                      ///< stiffness of the spring of a particle with share 1 [N/m]
+  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; exactly one is given
+  double stiffness = 10000;                      ///< stiffness of the spring of a particle with the fraction 1 [N/m]
   std::optional<double> length;                  ///< rest length of the springs [m]; absent: the distance at `begin`
   double begin = -1e5, release = -1;             ///< times between which it acts [s]; negative release: until the end
   std::optional<double> breaking_load;           ///< sum of its spring forces above which it breaks [N]; absent: never
@@ -152,7 +153,7 @@ struct Layer {
   std::vector<std::size_t> put_on;  ///< numbers of the cloths of this and all earlier layers, ascending
 };
 
-/// A pose computed for a given time stays valid until set_motion() changes the motion of the body.
+/// Everything that is simulated. The pose of a body at a given time does not change unless set_motion() is called.
 struct Model {
   std::string source;  ///< names the scene in error messages: its file
   Vec3 up{0, 0, 1};
@@ -166,7 +167,7 @@ struct Model {
   std::vector<Attachment> attachments;
   std::vector<Layer> layers;                      ///< of all cloths, from the skin outward; empty: one layer
   std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start, for the error message
-  std::string untangle_advice;                    ///< appended to `start_advice` if one of them is cloth; or empty
+  std::string untangle_advice;  ///< appended to `start_advice` if one of the surfaces is cloth; empty: none
 
   /// Start of the run, preroll included [s].
   double start_time() const { return -time.preroll_frames / time.fps; }
@@ -176,7 +177,7 @@ struct Model {
   bool may_be_untangled() const;
 
   /// A copy with these cloths only; `numbers`: ascending. It shares the motions of bodies. It has no layers, and no
-  /// attachments of or to other cloths.
+  /// attachments of or to cloths that are left out.
   Model with_cloths(std::span<const std::size_t> numbers) const;
 
   /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its mesh. Takes time

@@ -7,11 +7,11 @@
 
 namespace weft::model {
 
-/// The prescribed quantity: the pressure or an amount of air. The other one follows from the volume.
+/// Quantity that the model prescribes: the pressure, or an amount of air from which the pressure follows by the volume.
 enum class PressureControl {
   gauge,  ///< pressure above that of the outside air [Pa]
-  air,    ///< air pumped in after closing, as volume at outside pressure [m³]; negative: out
-  fill,   ///< total air, as its volume at outside pressure relative to the volume enclosed at closing
+  air,    ///< air pumped in after closing, as its volume at outside pressure [m³]; negative: let out
+  fill,   ///< total air: its volume at outside pressure, relative to the volume enclosed at closing [1]
 };
 
 struct PressureKey {

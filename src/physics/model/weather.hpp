@@ -19,8 +19,9 @@ namespace weft::model {
 ///
 /// where s and a are the distances of the point and of the disc from the apex along the axis, and q is the distance
 /// from the axis relative to the radius of the cone at s. A free round jet has an opening angle of about 24 degrees,
-/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² approximates its profile and
-/// falls to 0 with zero slope at the edge of the cone. Behind the disc and outside the cone, the fan adds no velocity.
+/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² approximates the jet's profile
+/// and falls to 0 with zero slope at the edge of the cone. Behind the disc and outside the cone, the fan adds no
+/// velocity.
 class Weather {
  public:
   explicit Weather(const Model& model);

@@ -21,8 +21,8 @@ struct Pose {
 /// the angles 0 if none are given.
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
-/// The rotation R that maximises tr(Rᵀ M), for M = `matrix`. If M is almost a rotation, R is the rotation nearest to M.
-/// If M = Σ (y − ȳ)(x − x̄)ᵀ, R maps the points x to the points y with the least sum of squared errors (Kabsch, Acta
+/// The rotation R that maximises tr(Rᵀ M), for M = `matrix`. It is the rotation nearest to M in the Frobenius norm. If
+/// M = Σ (y − ȳ)(x − x̄)ᵀ, R maps the points x to the points y with the least sum of squared errors (Kabsch, Acta
 /// Cryst. A32, 1976).
 Mat3 best_rotation(const Mat3& matrix);
 

@@ -36,8 +36,8 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
 /// neighbouring keys. `h`, `d`: as in natural_second_derivatives(). If the segments on both sides of a key have slopes
 /// d of different signs, the slope at the key is 0. Otherwise it has their sign, and its magnitude is at most three
 /// times the smaller of their magnitudes (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer.
-/// Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit, an object
-/// moves backward before it begins to move forward.
+/// Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit, an object may
+/// move backward before it begins to move forward.
 template <class Value>
 std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
   const std::size_t n = h.size();

@@ -61,7 +61,7 @@ std::vector<Vec3> rotation_vectors_between(const std::vector<Pose>& poses) {
       continue;
     }
     Vec3 turn = log(poses[i + 1].rotation * poses[i].rotation.conjugate());
-    // The sign of a half turn's axis is rounding noise: use the direction of the turn before.
+    // The sign of a half turn's axis is rounding noise: use the direction of the previous turn.
     if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
       turn -= 2 * kPi * turn.normalized();
     turns.push_back(turn);
@@ -151,8 +151,9 @@ Track::Track(const PoseTrack& track, const Pose& rest)
       rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
-// A time that differs from that of a key only by rounding counts as that of the key. Otherwise a track that ends at
-// this key and one that continues would differ by rounding, which contacts of cloth amplify to millimetres.
+// A time that differs from that of a key only by rounding counts as that of the key. Otherwise a track whose last key
+// this is would differ by rounding from a track with further keys. Contacts of cloth amplify such differences to
+// millimetres.
 PoseSample Track::at(double t) const {
   constexpr double kRounding = 1e-12;  // [s]
   const auto key = std::ranges::lower_bound(times_, t - kRounding);

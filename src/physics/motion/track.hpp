@@ -31,9 +31,9 @@ struct PoseSample {
 PoseSample compose(const PoseSample& parent, const Pose& parent_start, const PoseSample& own);
 
 /// Interpolates rotations through keys. From one key to the next, the object rotates by the smallest possible angle; if
-/// this is half a turn, in the direction of the rotation before. If both keys have Euler angles (see
-/// change_of_angles()) and at most one of the three differs, the object rotates by that difference instead, including
-/// whole turns.
+/// this is half a turn, it rotates in the direction of the rotation before the first of the two keys. If both keys have
+/// Euler angles (change_of_angles() in pose.hpp) and at most one of the three differs, the object rotates by that
+/// difference instead, including whole turns.
 ///
 /// Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions
 /// with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with
@@ -68,8 +68,8 @@ class RotationSpline {
   std::vector<Segment> segments_;
 };
 
-/// The pose of a PoseTrack at any time. Before the first key and from the last one on, it does not change; at the first
-/// key, its velocity is that of the first segment.
+/// The pose of a PoseTrack at any time. Before the first key and from the last key on, the pose does not change. If
+/// there are several keys, the velocity at the first one is that of the first segment.
 class Track {
  public:
   /// `rest`: the pose of a track without keys.

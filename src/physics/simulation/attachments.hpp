@@ -30,8 +30,9 @@ class Attachments {
 
   bool empty() const { return attachments_.empty(); }
 
-  /// Begins a step from t0 to t1 [s] with particles at x [m]: selects the attachments that hold in the step, ties new
-  /// ones, and computes where their points on key-framed bodies are at t1. `masses`: of all particles [kg].
+  /// Begins a step from t0 to t1 [s] with particles at x [m]: selects the attachments that hold in the step, ties those
+  /// that begin, and computes the positions of their points on key-framed bodies at t1. `masses`: of all particles
+  /// [kg].
   void begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses);
   /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies have the same
   /// positions at both times.

@@ -265,8 +265,8 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
 }
 
 // Divides each part into ranges that threads evaluate in parallel. If a part has more ranges than there are threads,
-// their number is a multiple of the number of threads. Both ranges evaluate a force between their particles: a tenth of
-// all forces is evaluated twice if a range has 1,024 particles in 16 rows.
+// the number of its ranges is a multiple of the number of threads. Each range evaluates all forces on its particles, so
+// a force between two ranges is evaluated twice: a tenth of all forces if a range has 1,024 particles in 16 rows.
 void ClothSystem::divide_into_ranges() {
   const Index threads = thread_count();
   for (std::size_t c = 0; c < parts(); ++c) {

@@ -28,8 +28,8 @@ namespace weft::simulation {
 
 /// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
 /// each body that forces move: its frame (mesh::RigidFrame). A part is a cloth or such a frame. Besides their
-/// arguments, forces depend on rest shapes of cloth that is being sewn, rope lengths, enclosed air, and which particles
-/// are held. sew(), inflate() and hold() update these.
+/// arguments, forces depend on state that sew(), inflate() and hold() update: rest shapes of cloth that is being sewn,
+/// rope lengths, ties, enclosed air, and the set of held particles.
 class ClothSystem {
  public:
   explicit ClothSystem(const model::Model& model);
@@ -58,7 +58,7 @@ class ClothSystem {
   };
   /// The ranges of all parts. The division does not change any bit of the forces.
   std::span<const Range> ranges() const { return ranges_; }
-  /// Number of ranges if the number of threads were unlimited.
+  /// Number of ranges with an unlimited number of threads.
   std::size_t largest_range_count() const;
 
   /// Adds the forces on the part with number `cloth`, without its weight. `at` has positions, velocities and forces of
@@ -68,14 +68,14 @@ class ClothSystem {
   /// Per cloth, the linearisation of the forces that limit its extension (thread locks, forces::StretchLimit); empty
   /// for cloths without such a limit.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
-  /// These functions call StretchLimit::begin(), update() and add_linearisation_difference() for all cloths with a
-  /// limit.
+  /// These functions call, in this order, StretchLimit::begin(), update() and add_linearisation_difference(), each for
+  /// all cloths with a limit.
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
 
-  /// Fills `assembly` with rate² M and the part of the stiffness that does not depend on positions. Only hold() and
-  /// sew() change that part.
+  /// Fills `assembly` with rate² M and the stiffness that does not depend on positions. Only hold() and sew() change
+  /// this stiffness.
   void fill_constant(double rate, solver::Assembly& assembly) const;
 
   /// An empty system with the sparsity pattern of these forces.

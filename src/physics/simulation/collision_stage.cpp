@@ -192,7 +192,7 @@ std::vector<IntersectionPlace> CollisionStage::find_intersections(const SystemSt
 }
 
 double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
-  constexpr int kMaxStackHeight = 32;  // maximum number of bodies on top of each other; each round lifts one more
+  constexpr int kMaxStackHeight = 32;  // maximum height of a stack of bodies; each round lifts one more of its bodies
   const std::size_t cloths = model_.cloths.size();
   const collision::Bodies& bodies = engine_.bodies();
   const auto is_free = [&](std::size_t body) {

@@ -17,8 +17,9 @@
 
 namespace weft::simulation {
 
-/// State of all particles and bodies at one time. `x`: positions of the particles, then of the vertices of the bodies
-/// that collide, first of those that forces move (dynamic bodies). `v`: velocities of the particles alone.
+/// State of all particles and bodies at one time. `x`: positions of the particles, then of the vertices of dynamic
+/// bodies (moved by forces), then of those of key-framed bodies; only of bodies that collide. `v`: velocities of the
+/// particles alone.
 struct SystemState : integrator::State {
   double bodies_time = 0;  ///< time at which the key-framed bodies in x are placed [s]
 
@@ -27,7 +28,7 @@ struct SystemState : integrator::State {
 
 class CollisionStage {
  public:
-  /// Whether anything in the model can collide. If not, the caller makes no stage.
+  /// Whether anything in the model can collide. Otherwise, the caller makes no stage.
   static bool needed(const model::Model& model);
 
   /// Appends the vertices of the bodies at start.bodies_time to start.x. The model must outlive the stage.
@@ -40,7 +41,7 @@ class CollisionStage {
   /// Lifts dynamic bodies that touch something at the start, because scenes place a box exactly on its support. A body
   /// that touches an obstacle or cloth rises by 0.2 mm along the unit vector `up`; if two dynamic bodies touch, the
   /// upper one rises. This is repeated at most 33 times. Bodies that keys hold at t [s] stay. Returns the largest lift
-  /// [m]. If surfaces still touch that untangle() does not move, changes nothing and returns 0.
+  /// [m]. If surfaces that untangle() does not move still touch, changes nothing and returns 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
   /// Moves cloth that touches or crosses something at the start, if Cloth::may_be_untangled(). Particles in `held`
@@ -55,7 +56,8 @@ class CollisionStage {
 
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
   /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction.
-  /// If surfaces would touch on the predicted trajectories, moves their ends apart. Returns whether any end was moved.
+  /// With springs, if surfaces would touch on the predicted trajectories, moves particles of `next` apart. Returns
+  /// whether any was moved.
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
                   SystemState& next);
 
@@ -64,8 +66,8 @@ class CollisionStage {
   /// detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
-  /// Whether no key-framed body moves between t0 and t1 [s], the times of `now` and `next`. Bodies that come near
-  /// neither cloth nor dynamic bodies do not count. Places bodies in both states.
+  /// Whether all key-framed bodies have the same positions at t0 and t1 [s], the times of `now` and `next`. Bodies that
+  /// come near neither cloth nor dynamic bodies do not count. Places bodies in both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
   /// Whether all obstacles near cloth move by at most `numerics.contact.margin` detection distances from `now` to
@@ -89,7 +91,8 @@ class CollisionStage {
   }
 
   /// After is_separated() has returned false: adds contacts for the pairs without a plane, and returns how many
-  /// contacts are new. In the next solve, their forces keep these pairs apart; push_apart() moves particles instead.
+  /// contacts are new. The forces of these contacts keep the pairs apart in the next solve; push_apart() would move
+  /// particles instead.
   int add_failing_contacts(const SystemState& now, const SystemState& next) {
     return engine_.add_failing_contacts(now.x, next.x);
   }
@@ -103,8 +106,9 @@ class CollisionStage {
                                         SystemState& next);
   /// After push_apart(): makes the corrected `next` the new start of the step's trajectory, and finds contacts there.
   void continue_from(const SystemState& next);
-  /// Whether each particle of `next` is where it was in the last call of continue_from(). The tolerance is the gap that
-  /// push_apart() restores or, if smaller, the Verlet margin (Numerics::Contact::margin).
+  /// Whether each particle of `next` is where it was in the last call of continue_from() in this step; false without
+  /// such a call. The tolerance is the gap that push_apart() restores or, if smaller, the Verlet margin
+  /// (Numerics::Contact::margin).
   bool restarts_at(const SystemState& next) const;
   /// Adds to obstructed_pins() the pinned particles of cloth triangles between which is_separated() found no plane.
   /// Returns whether obstructed_pins() has any.
@@ -154,7 +158,7 @@ class CollisionStage {
   const model::Model& model_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_
   std::vector<std::size_t> bodies_;  // numbers in the model; dynamic bodies come first, see colliding_bodies()
-  std::vector<double> radii_;  // per body: largest distance of a vertex from its origin [m]; 0: still or deforming
+  std::vector<double> radii_;  // per body: largest distance of a vertex from the origin [m]; 0: still or deforming
   std::vector<Box3> boxes_;    // bounding box of each body in its own coordinates
   std::size_t particles_;
   RigidVertices rigid_;

@@ -12,7 +12,7 @@
 namespace weft::simulation {
 namespace {
 
-// Whether pins alone drive the cloth, and StepWork has all their work.
+// Whether pins alone drive the cloth, and StepWork includes all work of the pins.
 bool is_driven_by_pins_alone(const model::Model& model) {
   const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const model::Cloth& cloth : model.cloths) {

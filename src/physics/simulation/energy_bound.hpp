@@ -23,10 +23,10 @@ class EnergyBound {
   EnergyBound(const model::Model& model, double mass, const FrameReport& start);
 
   /// Checks a frame. Returns warnings, each once in a run. Throws Error(simulation_failed) if the gain exceeds
-  /// `failing_gain`.
+  /// `failing_gain`, unless the run only warns (see above).
   std::vector<std::string> check(const FrameReport& energies);
 
-  /// Ends the checks of gains: call it when something other than pins begins to drive the model.
+  /// Ends the checks of gains. Call this when something other than pins begins to drive the model.
   void exempt_gains() { is_exempt_ = true; }
 
   template <class Archive>

@@ -18,8 +18,8 @@ struct EnclosedAir {
 /// The load of an attachment, or of a seam that can tear.
 struct AttachmentLoad {
   std::string name;
-  double load = 0;  ///< sum of the forces of its springs, at the end of the frame [N]
-  bool holds = false;
+  double load = 0;     ///< sum of the forces of its springs, at the end of the frame [N]
+  bool holds = false;  ///< whether the attachment, or any tie of the seam, is closed and not torn at that time
 };
 
 /// Computation time and counts of one frame, and quantities measured in it.
@@ -38,22 +38,22 @@ struct FrameReport {
   double solver_error = 0;    ///< estimated sum over the steps of the errors of the solver [m]
   int newton_iterations = 0;
   int linear_iterations = 0;
-  /// Number of near pairs of features (within the detection distance) at the predicted end of the last step.
+  /// Number of near pairs of features (within the detection distance) in the last step; see Engine::proximities().
   int proximities = 0;
   int constraints = 0;          ///< number of contacts and held particles in the last step
   double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
-  double max_strain = 0;        ///< largest |length / rest length - 1| of weft and warp, in all steps
-  double stretch_ratio = 0;     ///< largest ratio of extension to material.max_stretch, in all steps
+  double max_strain = 0;        ///< largest |length / rest length - 1| of weft and warp in any step
+  double stretch_ratio = 0;     ///< largest ratio of extension to material.max_stretch in any step
   double kinetic_energy = 0;    ///< [J]
   double potential_energy = 0;  ///< energy of gravity, zero at the origin [J]
-  double elastic_energy = 0;    ///< stretch, shear, bending, attachments [J]
+  double elastic_energy = 0;    ///< stretch, shear, bending, seams, rigid frames, attachments [J]
   double air_energy = 0;        ///< energy of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth since the frame before [J]
   double solver_work = 0;       ///< work of the residual of the equations of motion since the frame before [J]
-  /// Largest number, in a step, of pinched cloth triangles: obstacles leave them no space. Each is counted once per
-  /// limb of an obstacle (model::Body::limbs).
+  /// Largest number, in any step, of pinched cloth triangles: obstacles leave them no space. A triangle counts once for
+  /// each obstacle limb (model::Body::limbs) that pinches it.
   int pinched_pairs = 0;
-  /// Largest number, in a step, of pinned particles that cannot reach their targets.
+  /// Largest number, in any step, of pinned particles that cannot reach their targets.
   int lagging_particles = 0;
   std::vector<EnclosedAir> enclosed;        ///< one per cloth with pressure
   std::vector<AttachmentLoad> attachments;  ///< one per attachment, then one per seam that can tear

@@ -30,10 +30,10 @@ class Inflation {
 
   bool empty() const { return cloths_.empty(); }
 
-  /// Begins a step that ends at time t [s], with particles at x [m]. As long as is_closed(cloth) is false, the cloth
-  /// has no gauge pressure. In the first step in which the cloth is closed, the volume that it encloses at x becomes
-  /// the reference for amounts of air. If it then encloses no volume although the model gives an amount of air, throws
-  /// Error(scene_invalid).
+  /// Begins a step that ends at the scene time t [s], with particles at x [m]. As long as is_closed(cloth) is false,
+  /// the cloth has no gauge pressure. In the first step in which the cloth is closed, the volume that it encloses at x
+  /// becomes the reference for amounts of air. If the cloth then encloses no volume although the model gives an amount
+  /// of air, throws Error(scene_invalid).
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
   /// Whether the model gives the same pressures or amounts of air at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;

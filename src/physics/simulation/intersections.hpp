@@ -13,8 +13,8 @@
 namespace weft::simulation {
 
 /// Groups pairs of triangles that touch or cross into places; the place with most pairs comes first. Pairs of the same
-/// two objects belong to one place if their triangles share vertices. `x`: all vertices [m]; `names`: of all cloths and
-/// bodies.
+/// two objects belong to one place if their triangles share vertices, directly or through other pairs. `x`: all
+/// vertices [m]; `names`: of all cloths and bodies.
 std::vector<IntersectionPlace> group_intersections(std::span<const collision::CornerPair> pairs,
                                                    const collision::Bodies& bodies, std::span<const std::string> names,
                                                    std::span<const Vec3> x);

@@ -31,12 +31,12 @@ class Pins {
   const Info& info(std::size_t pin) const { return groups_[pin].info; }
   /// Index of the pin that has this particle at time t [s]. The particle must belong to a pin at t.
   std::size_t pin_of(Index particle, double t) const { return owner_at(particle, t).pin; }
-  /// Fraction of that pin's strength for this particle, in (0, 1]; 0 for a particle without a pin.
+  /// Fraction of the strength of pin_of() for this particle, in (0, 1]; 0 for a particle without a pin.
   double strength_fraction(Index particle, double t) const { return owner_at(particle, t).fraction; }
 
   /// Fills `held` with the particles of all pins not released before t [s], and their targets at t. Each particle has
-  /// one entry. If pins share a particle, it belongs to the first of them in the model that is not released; pins with
-  /// the particle in their region precede pins with the particle in their fade.
+  /// one entry. If pins share a particle, it belongs to the first of them in the model that is not released; pins that
+  /// have the particle in their region precede pins that have it in their fade (model::WeightedParticle::faded).
   void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].
   bool release_between(double t0, double t1) const;
@@ -66,13 +66,13 @@ class Pins {
     double release = -1;          // [s]; negative: never
     int follow = -1;              // number of the body that the pin follows; −1: it follows `track`
     std::vector<Anchor> anchors;  // in place of `arms`, if the pin follows a deforming body without bones
-    // In place of `arms`, if the pin follows a body with bones: the vertices that represent its particles.
+    // In place of `arms`, if the pin follows a body with bones: the body's vertices that represent the pin's particles.
     std::vector<std::size_t> followed_vertices;
     std::optional<motion::Track> track;  // motion of model::Pin::middle, if the pin follows no body
   };
 
   std::vector<Group> groups_;
-  std::vector<std::vector<Owner>> owners_of_;  // per particle, in the order of their releases
+  std::vector<std::vector<Owner>> owners_of_;  // pins of each particle, in the order of their releases
 };
 
 }  // namespace weft::simulation

@@ -23,7 +23,7 @@ void RigidVertices::add(const mesh::RigidFrame& frame, Index first_of_frame) {
   body_of_vertex_.insert(body_of_vertex_.end(), frame.weights().size(), bodies_.size() - 1);
 }
 
-// Calls visit(particle, weight) for the frame particles of a vertex.
+// Calls visit(particle, weight) for each frame particle of the body of a vertex.
 template <class Visit>
 void RigidVertices::for_each_weight(Index vertex, const Visit& visit) const {
   const Body& body = bodies_[body_of_vertex_[static_cast<std::size_t>(vertex - first_)]];

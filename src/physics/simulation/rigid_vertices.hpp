@@ -29,7 +29,7 @@ class RigidVertices {
   void place(std::span<Vec3> x) const;
   /// force[frame particle] += weight · of_all[vertex], for all vertices.
   void gather(std::span<const Vec3> of_all, std::span<Vec3> force) const;
-  /// The same for bounds of forces, with absolute weights.
+  /// As above for bounds of forces, with the absolute values of the weights.
   void gather(std::span<const double> of_all, std::span<double> limit) const;
   /// Mass of the whole body of a vertex [kg]; `masses`: of the particles. Contacts derive their stiffness from it.
   /// (Measured: with the effective mass of a corner instead, a stack of ten boxes sways for ten seconds.)

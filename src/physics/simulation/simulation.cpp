@@ -45,7 +45,8 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// What to do about these places: the advice of the model, and that of the first body with advice in one of them.
+// What to do about these places: the advice of the model, and that of the first body that has advice and is in one of
+// the places.
 std::string advice_of(const model::Model& model, const std::vector<IntersectionPlace>& places) {
   const auto is_in_one = [&](const auto& object) {
     return std::ranges::any_of(
@@ -136,11 +137,11 @@ void Simulation::Impl::begin_layer(std::size_t number) {
 // Puts on each layer whose first frame is not later than the current one, outside of the cloths that are already on.
 void Simulation::Impl::put_on_next() {
   while (!all_put_on() && model.layers[layer + 1].first_frame <= frame) {
-    const std::unique_ptr<model::Model> inner_part = std::move(put_on_part);  // the step loop refers to it
+    const std::unique_ptr<model::Model> inner_part = std::move(put_on_part);  // `inner` refers to it
     const std::unique_ptr<StepLoop> inner = std::move(steps);
     begin_layer(layer + 1);
     const std::vector<std::size_t>&now = model.layers[layer].put_on, &before = model.layers[layer - 1].put_on;
-    std::vector<std::size_t> numbers;  // number of each cloth dressed before, among those dressed now
+    std::vector<std::size_t> numbers;  // position of each cloth of `before` in `now`
     for (const std::size_t c : before)
       numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
     steps->copy_state_from(*inner, numbers);
@@ -148,7 +149,7 @@ void Simulation::Impl::put_on_next() {
   }
 }
 
-// Untangles cloth at the start of a layer, if the model allows it. For the first layer, lifts bodies before that.
+// Untangles cloth when a layer is put on, if the model allows it. Lifts bodies before, if this is the first layer.
 // Throws Error(scene_invalid) if surfaces still touch or cross.
 void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)

@@ -32,7 +32,7 @@ struct ClothMotion {
 
 /// A place where two objects touch or cross at the start, or one object touches or crosses itself.
 struct IntersectionPlace {
-  std::string a, b;                            ///< the objects
+  std::string a, b;                            ///< names of the objects; equal: one object with itself
   std::size_t pairs = 0;                       ///< number of pairs of triangles
   Vec3 centre = Vec3::Zero();                  ///< [m]
   double size = 0;                             ///< longest side of the bounding box [m]
@@ -43,8 +43,8 @@ struct IntersectionPlace {
 std::string describe(std::span<const IntersectionPlace> places);
 
 /// Finds the places where surfaces touch or cross at the start of the preroll, before bodies are lifted and cloth is
-/// untangled. Checks each layer (model::Layer) against the bodies, not against other layers. Lists the places layer by
-/// layer, in each layer those with most pairs first.
+/// untangled. Checks each layer (model::Layer) against itself and the bodies, not against other layers. Lists the
+/// places layer by layer, in each layer those with most pairs first.
 std::vector<IntersectionPlace> find_start_intersections(const model::Model& model);
 
 /// Size of the matrix of one Newton iteration, without contacts.
@@ -58,7 +58,8 @@ struct MatrixSize {
 class Simulation {
  public:
   /// Builds only what the model needs. At the start, lifts dynamic bodies off what they touch, and untangles cloth if
-  /// the model allows it. Throws Error(scene_invalid) if surfaces still touch or cross.
+  /// the model allows it. Throws Error(scene_invalid) if surfaces still touch or cross; checks each later layer alone
+  /// with the bodies, too.
   explicit Simulation(model::Model model);
   Simulation(Simulation&&) noexcept;
   virtual ~Simulation();
@@ -68,18 +69,19 @@ class Simulation {
   /// Number of the current frame, negative in the preroll, and its time [s].
   int frame() const;
   double time() const;
-  /// Number of changes of the state so far: calls of advance() and restore() that succeeded.
+  /// Number of changes of the state so far: simulated frames, preroll included, and successful calls of restore().
   std::uint64_t changes() const;
 
-  /// Simulates the next frame. If that fails, keeps the state of the current one and throws Error(simulation_failed)
-  /// with the reason, or Error(scene_invalid) if a cloth that is put on or closed in this frame does not fit.
+  /// Simulates the next frame. If that fails, keeps the state of the current frame. Throws Error(simulation_failed)
+  /// with the reason, or Error(scene_invalid) if cloth that is put on now touches other surfaces, or if cloth that is
+  /// closed now encloses no volume.
   FrameReport advance();
 
   /// The report of frame 0. If there is a preroll that run_preroll() has not simulated, the report has the energies and
   /// distances at the start of the preroll.
   FrameReport initial_report() const;
 
-  /// Simulates time.preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
+  /// Simulates the preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
   /// each frame; if `proceed` returns false, stops before that frame and returns false. Throws as advance() does.
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
   std::size_t particles() const;
@@ -101,8 +103,8 @@ class Simulation {
   /// Announces that drive() may move this rigid body (number in the model), which must be `moving`. Only allowed before
   /// the first advance().
   void allow_drive(std::size_t body);
-  /// Moves such a body to `end` at constant velocity during the next frame, in place of its motion in the model. The
-  /// body then stays there.
+  /// Moves a body that allow_drive() has announced to `end` at constant velocity during the next frame, in place of its
+  /// motion in the model. The body then stays there.
   void drive(std::size_t body, const motion::Pose& end);
 
   /// Sets gravity [m/s²] and wind [m/s] from the next frame on, in place of those of the model and their keys. Gusts

@@ -79,14 +79,15 @@ void StepLoop::update_weather(double t, double h) {
 // Solves the step, and checks whether every candidate pair has a separating plane. If a pair has none, pushes particles
 // apart. If the solve was complete and the push adds little energy and strain, accepts the result. Otherwise continues
 // the solve from the pushed positions, with contacts found anew. After `numerics.newton.slow_after` continuations, or
-// if one ends where it began, completes the solve and only pushes.
+// if a continuation ends where it began, completes the solve and only pushes.
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
   bool is_separated = false;
   for (bool is_first = true;; is_first = false, start = Start::next) {
     const bool may_continue = continuations < numerics.newton.slow_after;
-    // If the last iterate was separated, the solve runs to its end; otherwise it pauses early for another check.
+    // If the last iterate was separated, the solve runs to its end. Otherwise it pauses early for another check, unless
+    // no continuation is left.
     const bool check_early = !is_separated && (is_first || may_continue);
     bool solved = false;
     if (Rejection rejection = solve_contacts(attempt, start, is_first, check_early, solved, report)) return rejection;
@@ -96,7 +97,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
     if (!is_separated && !may_continue && solved) return push_apart(attempt);
     if (is_separated || !may_continue) continue;
 
-    // A continued solve has not moved all cloth out of the way of other cloth: pins may press one into the other.
+    // Even a continued solve has left pairs without a separating plane: pins may press cloth into cloth.
     if (continuations > 0 && may_release_pins(attempt) && collisions_->find_pins_between_cloths())
       return "pins press cloth into cloth";
     const double energy_before = solved ? energy(next_) : 0;
@@ -116,7 +117,8 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
 }
 
 // Solves the step with velocity constraints (Etzmuß et al. 2001), if contact.response selects them. After each solve,
-// the response sets and releases constraints; if a pair has no separating plane, it gets contacts.
+// the response sets and releases constraints; pairs without a separating plane get contacts. After
+// `numerics.walls.solves` solves, only pushes particles apart.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;
@@ -164,8 +166,8 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
   return std::nullopt;
 }
 
-// `check_early`: the solve pauses after `numerics.newton.check_after` iterations, so that contacts that it reveals are
-// found early.
+// `check_early`: the solve pauses after `numerics.newton.check_after` iterations, so that contacts on the new
+// trajectory are found early.
 integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, FrameReport& report) {
   stepper_.set_method(method());
   const integrator::StepReport step =
@@ -192,7 +194,8 @@ integrator::Method StepLoop::method() const {
 }
 
 // Pushes particles of `next_` apart without solving again. Rejects the step if some pair cannot be pushed apart. Also
-// rejects it if the push adds much energy, unless this is the last attempt or `max_retries` longer ones were rejected.
+// rejects it if the push adds much energy, unless this is the last attempt or `max_retries` longer attempts were
+// rejected.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double energy_before = energy(next_);
   const bool may_pinch = is_short_enough(attempt);
@@ -208,13 +211,14 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
       ratio);
 }
 
-// Whether pinned particles that find no space may be released. In front of a fast obstacle they may not: a shorter step
-// may find space for them.
+// Whether pinned particles that find no space may be released. If obstacles near cloth move far, only in the last
+// attempt, because a shorter step may find space. Never if push_apart() may move pinned particles.
 bool StepLoop::may_release_pins(const Attempt& attempt) const {
   return !attempt.may_move_pins && (attempt.is_last || collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Whether cloth without space may become pinched: whether a shorter step would not find more space for it.
+// Whether cloth without space may become pinched: in the last attempt, or after `max_retries` rejections if obstacles
+// move so little that a shorter step would not find more space.
 bool StepLoop::is_short_enough(const Attempt& attempt) const {
   return attempt.is_last || (attempt.rejections >= numerics.repair.max_retries &&
                              collisions_->obstacles_move_little(progress_.now, next_));

@@ -165,10 +165,10 @@ bool StepLoop::attempt_resting_frame(double t, double h, FrameReport& report) {
   return true;
 }
 
-// Advances from t to t + h. If the step is rejected or too long after the last one, or if an obstacle turns too far in
-// it, divides it into two halves. `rejections`: number of rejected steps that contain this one. A step that is divided
-// without an attempt, because an earlier rejection still limits the length, counts as rejected. (Measured without this
-// rule: pinched cloth takes 75,202 steps instead of 160.)
+// Advances from t to t + h. If the step is rejected or too long after the last step, or if an obstacle turns too far in
+// it, divides the step into two halves. `rejections`: number of rejected steps that contain this one. A step that is
+// divided without an attempt, because an earlier rejection still limits the length, counts as rejected. (Measured
+// without this rule: pinched cloth takes 75,202 steps instead of 160.)
 void StepLoop::advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report) {
   const bool after_rejection = h > (1 + 1e-9) * progress_.longest;
   const bool too_long = after_rejection || h > (1 + 1e-9) * stepper_.longest_step() || obstacle_turns_too_far(t, h);
@@ -243,9 +243,10 @@ void StepLoop::accept(double h, FrameReport& report) {
   report.solver_error += solver_error_;
 }
 
-// Measures the stretch at the end of the accepted step; the start of the step is in `next_`. Warns when the largest
-// stretch rises above kMaxStretchRatio. If the same cloth was reported before, warns only at kReportAgainRatio times
-// the last report: otherwise a tight waist would be reported with every breath of its wearer.
+// Measures the stretch at the end of the accepted step; the start of the step is in `next_`. Warns if the largest ratio
+// of stretch to limit rises above kMaxStretchRatio in this step, for the first time in the frame. If the same cloth was
+// reported before, warns only at kReportAgainRatio times the last reported ratio: otherwise a tight waist would be
+// reported with every breath of its wearer.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());

@@ -50,7 +50,7 @@ class StepLoop {
   struct Progress {
     SystemState now;
     std::optional<integrator::StepControl> control;  // if the model has a tolerance in place of a step
-    double longest;  // longest step allowed after a rejection [s]; infinite before the first one
+    double longest;  // longest step allowed after a rejection [s]; infinite before the first rejection
   };
   const Progress& progress() const { return progress_; }
   /// State between two frames, to which a simulation returns after a failure.
@@ -86,8 +86,8 @@ class StepLoop {
   /// Lagging pins (YieldingPins) in the frame that has just ended.
   YieldingPins::Lags take_lags() { return pins_.take_lags(); }
 
-  /// Save or restore the state that later frames depend on. Call serialize() first: it handles everything except
-  /// contacts. Then call serialize_contacts(); t: time of the frame [s].
+  /// These functions save or restore the state that later frames depend on. Call serialize() first, which handles
+  /// everything except contacts, then serialize_contacts() with the time t of the frame [s].
   template <class Archive>
   void serialize(Archive& archive);
   template <class Archive>
@@ -155,7 +155,7 @@ class StepLoop {
     std::vector<Vec3> v;  // of all particles [m/s]
     integrator::Stepper::History history;
   };
-  std::optional<BeforeRelease> before_release_;  // start of a step that releases a pin or body, until it is accepted
+  std::optional<BeforeRelease> before_release_;  // if the current step releases a pin or body: its start
   SystemState next_;                             // end of the current step; once the step is accepted, its start
   double local_error_ = 0, solver_error_ = 0;    // of the step to `next_`, estimated [m]
   std::vector<double> reported_overstretch_;     // last reported ratio of stretch to limit, per cloth; 0: none

@@ -199,8 +199,8 @@ bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoi
 // Evaluates forces within the active parts at the positions in the memory; with `assemble`, also their matrix rows.
 void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   const auto ranges = cloth_.ranges();
-  // Loops are counted on one thread, where each part is one range (LoopCounts). Count as many chunks as there are
-  // ranges on many threads.
+  // Loops are counted on one thread, where each part is one range (LoopCounts in core/parallel.hpp). So that the count
+  // holds for many threads, it counts as many chunks as there would be ranges.
   const CountedLoop counted(cloth_.largest_range_count());
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
     const auto& [cloth, begin, end, number] = ranges[r];

@@ -48,7 +48,8 @@ class StepProblem final : public integrator::System {
   /// The cloth must outlive this object.
   explicit StepProblem(ClothSystem& cloth);
 
-  /// Sets the contacts, and the vertices of bodies that forces move, if there are any. Both must outlive the steps.
+  /// Sets the contacts, and the vertices of bodies that forces move; nullptr: no such bodies. Both must outlive the
+  /// steps.
   void use_contacts(const collision::ContactResponse& contacts, const RigidVertices* vertices = nullptr) {
     contacts_ = &contacts;
     vertices_ = vertices;
@@ -64,18 +65,18 @@ class StepProblem final : public integrator::System {
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const PinSpring> pulls = {});
 
-  /// Sets the air velocity at each particle in the step that begins [m/s]. Without this call, the air velocity is
+  /// Sets the air velocity at each particle, until the next call [m/s]. Before the first call, the air velocity is
   /// `Physics::wind` everywhere.
   void set_air_velocity(SolveMemory::PaddedVec3s air);
 
   /// Call it within a step if contacts have changed: discards what is kept per contact. In a step, friction follows the
-  /// normal forces during the first `numerics.newton.slow_after` updates. After this call, it does so for at least half
-  /// as many further updates.
+  /// normal forces during the first `numerics.newton.slow_after` updates. After this call, friction follows them for at
+  /// least half as many further updates.
   void limit_friction_updates() {
     memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.slow_after / 2)};
   }
 
-  /// Call before a step is solved again: friction then uses the normal forces at the start of the step throughout.
+  /// Call before a step is solved again: in that solve, friction uses the normal forces at the start of the step.
   void fix_normal_forces() { memory_.contacts = {{}, {}, {}, numerics.newton.slow_after}; }
 
   const SolveMemory& memory() const { return memory_; }

@@ -14,7 +14,7 @@ integrator::NewtonParameters newton_of(const model::Model& model) {
 std::optional<integrator::StepControl> step_control_of(const model::Model& model) {
   if (!model.time.tolerance) return std::nullopt;
   // The first step has no history, so its error is estimated as that of implicit Euler (BDF2: 3/2 of it). In free fall,
-  // this is ½ h² g; it equals the tolerance for h = `first`.
+  // Euler's estimate is ½ h² g, which equals the tolerance for h = `first`.
   const double first = std::sqrt(2 * *model.time.tolerance / std::max(model.physics.largest_gravity(), 1.0));
   return integrator::StepControl(model.time.integrator, *model.time.tolerance, first);
 }

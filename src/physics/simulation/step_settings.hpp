@@ -34,7 +34,7 @@ bool any_frame_is_released(const model::Model& model, double t, double h);
 /// plus Dynamics::velocity and Dynamics::angular_velocity.
 void release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
 
-/// Whether all dynamic bodies that are held at t0 [s] stay held and do not move until t1 [s].
+/// Whether all dynamic bodies that keys hold at t0 [s] are still held at t1 [s] and have no motion.
 bool frames_are_constant(const model::Model& model, double t0, double t1);
 
 }  // namespace weft::simulation

@@ -37,7 +37,7 @@ bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std:
 void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> put_on,
                               SystemState& start) {
   // Cloths that are already put on (`put_on`) do not move, like obstacles. They come last, so that new cloth is moved
-  // out of bodies first, then out of them.
+  // out of bodies first, then out of the put-on cloths.
   std::vector<std::size_t> order;  // numbers of the engine's bodies
   const std::size_t cloths = model_.cloths.size();
   for (std::size_t c = 0; c < cloths; ++c)

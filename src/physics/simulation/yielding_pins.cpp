@@ -56,7 +56,8 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
   if (any_lagged) pins_.held_at(t, model_, at_start_);
   std::ranges::fill(lags_, std::uint8_t{0});
-  // Particles at their targets are held again. `targets_` lacks particles whose pin is released before t + h.
+  // Particles at their targets are held again. The targets are those at t: `targets_` lacks particles whose pin is
+  // released before t + h.
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);
@@ -90,8 +91,8 @@ bool YieldingPins::are_constant_between(double t0, double t1) {
 }
 
 // Appends the pull on a particle. A pin with a strength is a critically damped spring. A lagging particle gets a
-// damper: the force falls linearly from its maximum on a particle at rest to zero at the velocity `speed`. A smaller
-// opposing force slows the particle but does not stop it.
+// damper: the force falls linearly from its maximum on a particle at rest to zero at the velocity `speed`. An opposing
+// force below the maximum slows the particle but does not stop it.
 void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);

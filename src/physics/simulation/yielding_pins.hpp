@@ -34,7 +34,7 @@ class YieldingPins {
   bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
 
   /// Makes a held particle lag in the current step; begin_step() must be called again. `obstruction`: text that says
-  /// which object is in its way, and where.
+  /// which object is in the particle's way, and where.
   void release_particle(Index particle, const std::string& obstruction);
   /// Accepts the step: particles that lag in it also lag in the next steps, until they reach their targets.
   void accept();
@@ -68,7 +68,8 @@ class YieldingPins {
   std::vector<double> pull_force_;  // per pin: W in the maximum force of Numerics::Pins [N]
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<PinSpring> pulls_;
-  std::vector<std::uint8_t> lagged_, lags_;     // per particle: in the previous step, and in this one
+  std::vector<std::uint8_t> lagged_,
+      lags_;                                    // per particle: lagged in the previous step, lags in this one
   std::vector<std::uint8_t> released_;          // per particle: whether release_particle() was called for this step
   std::vector<std::size_t> lagging_particles_;  // number of particles that lag in this step, per pin
   std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step

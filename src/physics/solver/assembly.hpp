@@ -9,11 +9,12 @@
 
 namespace weft::solver {
 
-/// Assembles a symmetric BlockMatrix of forces that do not change if all particles translate together. Forces add the
-/// block (i, j) of each pair of particles i < j, and the own block of each particle (for the drag of air), which the
-/// diagonal block holds until complete_rows(). Block (j, i) is the transpose of block (i, j). The diagonal block
-/// follows from the condition that each row sums to its particle's own block. Forces between particles therefore add no
-/// diagonal blocks: a triangle adds three blocks instead of nine.
+/// Assembles the symmetric BlockMatrix of the forces and masses of a cloth. Forces between particles do not change if
+/// all particles translate together, so their blocks sum to zero in each row. Therefore such forces add only the block
+/// (i, j) of each pair of particles i < j: a triangle adds three blocks instead of nine. What acts on a single particle
+/// (its mass, the drag of air) adds to the own block of this particle. complete_rows() sets each block (j, i) to the
+/// transpose of block (i, j), and each diagonal block such that its row sums to the own block; until then, the diagonal
+/// block holds the own block without its constant part.
 ///
 /// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {
@@ -27,20 +28,22 @@ class Assembly {
   /// Index of a pair's scalar, in either order.
   Index scalar(Index i, Index j) const;
 
-  /// Sets all scalars to zero, the constant part included.
+  /// Sets all scalars, their constant parts, and the constant parts of all own blocks to zero.
   void clear();
   /// Makes the scalars added so far the constant part.
   void keep_constant();
-  /// Resets the rows [begin, end) to the constant part: their own blocks, and the scalars and blocks of all pairs whose
-  /// smaller index is in this range.
+  /// Resets the rows [begin, end): sets their own blocks, and the blocks of all pairs whose smaller index is in this
+  /// range, to zero, and the scalars of these pairs to their constant part.
   void start(Index begin, Index end, BlockMatrix& matrix);
 
+  /// Adds `value` times the identity to the constant part of a row's own block.
   void add_constant_to_own(Index row, double value) { constant_own_[at(row)] += value; }
   void add_scalar(Index scalar, double value) { scalars_[at(scalar)] += value; }
 
-  /// Once everything is added: completes the blocks of the pairs whose smaller index is in [begin, end).
+  /// Once everything is added: adds the scalars of the pairs whose smaller index is in [begin, end) to their full
+  /// blocks.
   void complete_pairs(Index begin, Index end, BlockMatrix& matrix) const;
-  /// Then, once the pairs of these particles are complete: completes the rows [begin, end).
+  /// After that, once all pairs of the particles [begin, end) are complete: completes the rows of these particles.
   void complete_rows(Index begin, Index end, BlockMatrix& matrix) const;
 
  private:
@@ -51,15 +54,15 @@ class Assembly {
   std::vector<double> scalars_;  // per pair
   std::vector<double> constant_scalars_;
   std::vector<double> constant_own_;        // per row, a multiple of the identity
-  std::vector<Index> scalar_of_pair_;       // of each full block above the diagonal, row by row
+  std::vector<Index> scalar_of_pair_;       // of each full block above the diagonal, row by row: its pair's scalar
   std::vector<Index> pair_of_;              // of each full block below the diagonal, row by row: its transpose
-  std::vector<Index> first_of_row_;         // index into pair_of_
-  std::vector<Index> scalar_of_isotropic_;  // of each isotropic block, row by row
+  std::vector<Index> first_of_row_;         // per row: its first entry in pair_of_
+  std::vector<Index> scalar_of_isotropic_;  // of each isotropic block, row by row: its pair's scalar
 };
 
 /// Adds to the rows [begin, end) of a matrix during its assembly, and to the pairs whose smaller index is in this
-/// range. Ignores values for other rows. If each thread owns a range of rows and adds all elements in the same order,
-/// the sums have the same bits as with one thread. A default-constructed object holds no rows.
+/// range. Ignores values for other rows and pairs. If each thread owns a range of rows and adds all elements in the
+/// same order, the sums have the same bits as with one thread. A default-constructed object holds no rows.
 class AssemblyRows {
  public:
   AssemblyRows() = default;

@@ -50,7 +50,8 @@ inline PackedBlock packed_scalar(double value) {
 
 /// Stores the upper and the lower triangle, so that each row of a product is computed on its own, with the same bits on
 /// any number of threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37
-/// blocks in a garment's row come from bending alone. A product then reads a third of the memory.
+/// blocks in a row of a garment's matrix, which come from bending alone. Thus a product reads a third of the memory
+/// that full blocks would need.
 class BlockMatrix {
  public:
   BlockMatrix() = default;

@@ -27,10 +27,10 @@ class BlockMotions {
   /// Column m: the system (matrix and terms) times motion m, projected on the directions of one diagonal block.
   using Products = Eigen::Matrix<double, kDirections, kMaxMotions>;
 
-  /// Builds and factorises the projected system. `motions`: one entry per row, filtered by the constraints, zero
-  /// outside of the selected diagonal blocks; empty if absent. `row_sums`: per selected diagonal block, the sum of all
-  /// its 3×3 blocks without terms, which is the matrix projected on the translations. `products`: per selected diagonal
-  /// block.
+  /// Builds and factorises the projected system. `motions`: each has one entry per row, filtered by the constraints,
+  /// and zero outside of the selected diagonal blocks; an empty one is absent. `row_sums`: per selected diagonal block,
+  /// the sum of all its 3×3 blocks without terms, which is the matrix projected on the translations. `products`: one
+  /// per selected diagonal block.
   template <class Real>
   void prepare(const LinearSystem& system, std::span<const std::size_t> selected,
                const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,

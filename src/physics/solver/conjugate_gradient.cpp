@@ -15,9 +15,9 @@ namespace {
 // take 361, 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
 constexpr double kMaxSingleStiffness = 1e7;
 
-// Number of AggregateSums::recompute after which ConjugateGradient frees the memory of an unused precision. To allocate
-// it again takes the time of a few iterations. (Measured: if cloth is pulled through a ring, 40 of 356 iterations, in
-// 95 solves, use double precision.)
+// Number of prepare() calls with AggregateSums::recompute after which ConjugateGradient frees the memory of an unused
+// precision. To allocate it again takes the time of a few iterations. (Measured: if cloth is pulled through a ring, 40
+// of 356 iterations, in 95 solves, use double precision.)
 constexpr int kSolvesUnused = 16;
 
 // Whether no particle exceeds kMaxSingleStiffness. False without a mass-weighted norm.

@@ -12,13 +12,12 @@ namespace weft::solver {
 
 struct LinearReport {
   int iterations = 0;
-  std::vector<double> errors = {};  ///< per diagonal block: estimated error, in the mass-weighted norm if there is one
+  std::vector<double> errors = {};  ///< per diagonal block: estimated error, see solve(); 0: not in the solve
   bool converged = false;
   bool definite = true;  ///< false: the iteration ended at a direction without positive curvature
 };
 
-/// Solves A x = b on the directions that the constraints leave free, with the Preconditioner P, which combines the
-/// blocks of particles with multigrid levels.
+/// Solves A x = b on the directions that the constraints leave free, with the Preconditioner P.
 ///
 /// solve() uses single precision if LinearGoal::relative is at least kSmallestSingleGoal, the system has
 /// `norm_weights`, and no particle's relative stiffness exceeds kMaxSingleStiffness (conjugate_gradient.cpp). Single
@@ -26,13 +25,13 @@ struct LinearReport {
 /// errors. If a direction has no positive curvature in single precision, solve() continues in double.
 class ConjugateGradient {
  public:
-  /// Sets the system of the following calls. It must not change until the last of them: the first of them that needs
-  /// the preconditioner prepares it. With AggregateSums::reuse, the preconditioner reuses sums over aggregates that
-  /// have been computed since the last call with AggregateSums::recompute. Frees the memory of a precision that has not
-  /// been used for some time.
+  /// Sets the system that the following calls solve. The system must not change between these calls: the first one that
+  /// needs the preconditioner prepares it. With AggregateSums::reuse, the preconditioner reuses sums over aggregates
+  /// that have been computed since the last call with AggregateSums::recompute. Frees the memory of a precision that
+  /// has not been used for some time.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
-  /// Returns P⁻¹ b, a rough solution that obeys the constraints. Valid until the next call.
+  /// Returns P⁻¹ b, a rough solution of A x = b that obeys the constraints. Valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
 
   /// Iterates from zero (ignores the content of x) until the estimated error meets `goal`, or for `max_iterations`.
@@ -40,10 +39,10 @@ class ConjugateGradient {
   /// The steps of the iteration estimate the error e. A step of length α along a search direction, from the residual r,
   /// reduces ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these
   /// steps (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
-  /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is this
-  /// estimate times q, at most 1. q is the largest ratio of a step's squared mass-weighted norm to its gain, over these
-  /// steps. √(rᵀz) cannot replace the estimate: for smooth motion this root is far below ‖e‖_A, and flat sheets would
-  /// fold in free fall.
+  /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is estimated as
+  /// q times this estimate. q is the largest ratio of a step's squared mass-weighted norm to its gain over these steps,
+  /// at most 1, and 1 if there is no such norm. √(rᵀz) cannot replace the estimate: for smooth motion this root is far
+  /// below ‖e‖_A, and flat sheets would fold in free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});
   /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.
@@ -64,7 +63,7 @@ class ConjugateGradient {
     std::optional<Recurrence<Real>> recurrence;
     bool has_aggregate_sums = false;  // computed since the last AggregateSums::recompute
     bool is_prepared = false;         // for the current system
-    int unused = 0;                   // number of AggregateSums::recompute since its last use
+    int unused = 0;                   // number of prepare() calls with recompute since its last use
     void begin_sums();
   };
   template <class Real>

@@ -19,9 +19,9 @@ struct ParticleConstraint {
   Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
 };
 
-/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring against the sum of the particles' displacements
-/// with the weights w. Contacts change with every step; therefore the sparsity pattern of the matrix does not contain
-/// them.
+/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring against the weighted sum of the particles'
+/// displacements, with the weights w. Contacts change with every step; therefore the sparsity pattern of the matrix
+/// does not contain them.
 struct StencilTerm {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for unused entries

@@ -14,11 +14,11 @@ namespace {
 
 // Maximum number of levels, the coarsest included.
 constexpr std::size_t kMaxLevels = 16;
-// If constraints hold all particles of an aggregate, its residual is zero and its block singular. A shift by this
-// fraction of the block's trace makes it definite. The fraction must be below the ratio of mass part to thread
-// stiffness (measured: with 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m take twenty times the iterations).
+// The block of an aggregate may be singular up to rounding. A shift by this fraction of the block's trace makes it
+// definite. The fraction must be below the ratio of mass part to thread stiffness (measured: with 1e-9 of the mean
+// trace, cells of 0.1 m by 1e-5 m take twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
-// Total weight of the neighbours' aggregates in a member's motion. Values above 1/2 reverse the shortest waves.
+// Total weight of the neighbours' aggregates in a member's motion. Values above 1/2 invert the shortest waves.
 constexpr double kInterpolation = 0.5;
 constexpr double kLevelStiffness = 0.5;  // factor of the stiffness per level; see Preconditioner
 
@@ -330,7 +330,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         coarsest.of_matrix[g];
 }
 
-// Returns zero blocks for particles with contact terms only: contact terms act on few particles of a large cloth.
+// Returns a zero block for each particle with contact terms (few of a large cloth), and none for other particles.
 template <class Real>
 typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::make_blocks_with_terms() const {
   BlocksWithTerms all{std::vector<Index>(has_terms_.size(), -1), {}};

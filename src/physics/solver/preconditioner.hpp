@@ -12,9 +12,9 @@
 
 namespace weft::solver {
 
-/// Whether the sums over aggregates are computed from the current matrix, or reused from an earlier matrix with the
-/// same constraints. Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are current in either
-/// case.
+/// Whether prepare() computes the sums over aggregates from the current matrix, or reuses those of an earlier matrix.
+/// If the constraints have changed, it computes them in either case. Particle blocks and contact terms (StencilTerm,
+/// WideTerm, DiagonalTerm) are current in either case.
 enum class AggregateSums { recompute, reuse };
 
 /// P⁻¹ = S Σ_l T_l A_l⁻¹ T_lᵀ S, where T_l interpolates from level l to particles and S is the projection on the free
@@ -29,17 +29,17 @@ enum class AggregateSums { recompute, reuse };
 /// Ideally A_l is the diagonal of 3×3 blocks of T_lᵀ A T_l, or on the last level all of T_lᵀ A T_l. Both are expensive,
 /// so A_l is built from R_l A R_lᵀ, where R_l sums over each aggregate. R_l A R_lᵀ is the stiffness against motion of
 /// aggregates as wholes, with all strain at their boundaries. Interpolated motion has its strain over the whole width
-/// of the aggregates. This width doubles per level, and strain over twice the width meets half of the stiffness.
-/// Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters A_l with the factor 1/2 per level
-/// (1 in a DiagonalBlock that is_small), and the mass part with the factor 1. Contact terms are not part of the matrix.
-/// Their stiffness at each particle is added to the aggregates from which the particle interpolates, by its weights;
-/// this is an upper bound of the contact part of the diagonal of T_lᵀ A T_l. The last level contains T_lᵀ A T_l of the
-/// contact terms exactly.
+/// of the aggregates. This width doubles per level, and a displacement that is spread over twice the width has half of
+/// the stiffness. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters A_l with the factor
+/// 1/2 per level (1 in a DiagonalBlock that is_small), and the mass part with the factor 1. Contact terms are not part
+/// of the matrix. Their stiffness at each particle is added to the aggregates from which the particle interpolates,
+/// with the weights of this interpolation; this is an upper bound of the contact part of the diagonal of T_lᵀ A T_l.
+/// The last level contains T_lᵀ A T_l of the contact terms exactly.
 ///
 /// If threads are so stiff that the trace of a particle's 3×3 block exceeds `stiff_particle` times the sum of
-/// `norm_weights` over its DiagonalBlock (not tested where is_small), no level interpolates: T_l = R_lᵀ, and the factor
-/// per level is 1. Interpolated motion would stretch threads inside of aggregates where cloth is folded, and R_l A R_lᵀ
-/// contains only the threads across their boundaries.
+/// `norm_weights` over its DiagonalBlock (not tested in a block that is_small), no level interpolates: T_l = R_lᵀ, and
+/// the factor per level is 1. Interpolated motion would stretch threads inside of aggregates where cloth is folded, and
+/// R_l A R_lᵀ contains only the threads that cross the boundaries of aggregates.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>
@@ -57,13 +57,13 @@ class Preconditioner {
     std::vector<Index> aggregate_of;        // per particle
     std::vector<Index> parent;              // per aggregate: its aggregate on the next level
     Weights<Real> interpolation;            // per member (a particle, or an aggregate of the finer level)
-    Weights<Real> restriction;              // per aggregate
+    Weights<Real> restriction;              // per aggregate: its members
     std::vector<RowRange> of_part;          // aggregates of each diagonal block
     RowChunks chunks;                       // of aggregates, in the selected blocks
     std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no contact terms
     std::vector<char> has_terms;            // per aggregate: its `inverse` contains contact terms
     std::vector<PaddedMat3<Real>> inverse;  // per aggregate, with contact terms
-    std::vector<PaddedVec3<Real>> residual, correction;
+    std::vector<PaddedVec3<Real>> residual, correction;  // per aggregate
   };
   bool has_stiff_threads() const;
   void allocate_levels();
@@ -96,7 +96,7 @@ class Preconditioner {
   std::vector<DiagonalBlock> blocks_;              // at the last call of prepare()
   std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
   std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: whether its rows, or its sums, are new
-  std::vector<ParticleConstraint> constraints_;    // when the sums were made
+  std::vector<ParticleConstraint> constraints_;    // at the last call of prepare()
   std::vector<Index> constraint_of_;               // per particle, −1 for none
   struct Filter {
     Index particle;

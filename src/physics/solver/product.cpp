@@ -85,7 +85,7 @@ void DifferenceMatrix::multiply(std::span<const PaddedVec3<float>> x, std::span<
       sum += octets_[s] * repeat_per_column(difference);
       ninth += ninths_[s] * difference;
     }
-    // A row's own block is always full, never isotropic.
+    // The diagonal block is always full, never isotropic.
     for (Index s = isotropic_pattern.start[row]; s < isotropic_pattern.start[row + 1]; ++s)
       isotropic += scalars_[s] * (x[isotropic_pattern.columns[s]] - own);
     const PaddedVec3<float> of_first = __builtin_shufflevector(sum, sum, 0, 1, 2, 3),

@@ -32,7 +32,7 @@ class DifferenceMatrix {
   std::vector<float> ninths_;
   std::vector<Octet> octets_of_sum_;  // D_i of each row
   std::vector<float> ninths_of_sum_;
-  std::vector<float> scalars_;
+  std::vector<float> scalars_;  // of isotropic blocks
 };
 
 /// The product q = S A p, where A is the matrix with all terms but outer products (RankOneTerm), and S is the
@@ -47,7 +47,7 @@ class Product {
   void select(std::span<const std::size_t> blocks);
 
   /// q = S A p on the rows of the selected blocks; returns p·q. Writes Σ norm_weights ‖p‖² of each selected block, in
-  /// their order, into `norms_sq`. p must obey the constraints.
+  /// the order of select(), into `norms_sq` (0 without `norm_weights`). p must obey the constraints.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q, std::span<double> norms_sq) const;
 
   /// Per selected diagonal block: the sum of all its 3×3 blocks, without terms and constraints.
@@ -89,7 +89,7 @@ class Product {
   RowChunks rows_;  // of the selected blocks
   std::vector<Stencil<4>> stencils_;
   std::vector<Stencil<8>> wide_stencils_;
-  std::vector<ParticleBlock> terms_, filters_;
+  std::vector<ParticleBlock> terms_, filters_;  // of DiagonalTerms, and of constraints
 };
 
 extern template class Product<float>;

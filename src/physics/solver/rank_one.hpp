@@ -24,13 +24,13 @@ class RankOneTerms {
 
   /// Restricts the following calls to vectors that are zero outside of these diagonal blocks.
   void select(std::span<const std::size_t> blocks);
-  /// Computes w of the selected terms with `apply`, the preconditioner of the rest of the matrix on their blocks.
+  /// Computes w of the selected terms with `apply`, which applies P⁻¹ on the selected diagonal blocks.
   void prepare_inverses(const Apply& apply);
 
-  /// Adds k d dᵀ p of each selected term to q, where d is filtered; returns the increase of p·q.
+  /// Adds k d dᵀ p of each selected term to q, where d is filtered by the constraints; returns the increase of p·q.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;
 
-  /// Corrects z = P⁻¹ r to the preconditioner of the whole matrix.
+  /// Changes z from P⁻¹ r to the product of r with the preconditioner of the whole matrix.
   void correct(std::span<PaddedVec3<Real>> z) const;
 
   bool empty() const { return terms_.empty(); }

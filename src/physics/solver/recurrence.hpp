@@ -43,8 +43,8 @@ struct Progress {
   /// Error data of one diagonal block.
   struct BlockProgress {
     double energy = 0;  ///< ‖x‖²_A of the solution x without its step along Directions::start
-    std::vector<double> gains,
-        norm_ratios;  ///< per iteration: decrease of ‖e‖²_A; squared mass-weighted norm of the step, divided by it
+    /// Per iteration: decrease of ‖e‖²_A, and the squared mass-weighted norm of the step / this decrease, at most 1.
+    std::vector<double> gains, norm_ratios;
     double error_energy() const;      ///< estimate of ‖e‖²_A, where e is the error
     double error_norm_ratio() const;  ///< largest of the recent `norm_ratios`
 
@@ -62,7 +62,7 @@ enum class End {
   converged,
   out_of_iterations,
   indefinite,    ///< the matrix has a direction without positive curvature
-  needs_double,  ///< single precision only: the caller must continue in double, with a new direction
+  needs_double,  ///< single precision only: the caller must continue in double, with a new search direction
 };
 
 template <class Real>
@@ -75,7 +75,7 @@ class Recurrence {
   std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
 
   /// Solves A x = b on these diagonal blocks; the particles of all others count as held. At the call, x must be zero
-  /// or, if `progress` already has iterations, their result.
+  /// or, if `progress` already has iterations, the result of these iterations.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
             const Directions& directions, std::span<const std::size_t> blocks, Progress& progress);
 
@@ -108,7 +108,7 @@ class Recurrence {
   std::vector<PaddedVec3<Real>> x_, r_, z_, p_, q_;
   std::vector<Vec3> start_;            // filtered by the constraints
   double start_multiple_ = 0;          // the solution is x_ plus this multiple of start_
-  double start_gain_ = 0;              // decrease of ‖e‖²_A by that step
+  double start_gain_ = 0;              // decrease of ‖e‖²_A by the step along start_
   std::vector<double> norms_sq_, rz_;  // per selected block: Σ norm_weights ‖p‖², r·z
 };
 

@@ -24,8 +24,9 @@ struct Weights {
     return result;
   }
   /// Interpolation from aggregates to their members. If a member has n neighbours, the aggregate of each neighbour gets
-  /// the weight `smoothing` / n, and the member's own aggregate 1 − `smoothing`; an aggregate's weights add up. Without
-  /// neighbours, the own aggregate has the weight 1. Replaces `neighbours` of each member by those of each aggregate.
+  /// the weight `smoothing` / n, and the member's own aggregate 1 − `smoothing`. If several of these aggregates are the
+  /// same, their weights add up. Without neighbours, the own aggregate has the weight 1. Replaces `neighbours`, the
+  /// neighbours of each member, by the neighbours of each aggregate.
   static Weights make_interpolation(const Aggregates& aggregates, double smoothing,
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows: the number of columns of this matrix.

@@ -50,9 +50,9 @@ struct CutPoint {
 struct Island {
   std::vector<Index> particles;
   std::set<Index> beside;            // particles of other islands at the other ends of cut edges
-  std::vector<CutPoint> line;        // its line of crossing
+  std::vector<CutPoint> line;        // line of crossing that cuts it off
   std::set<Index> through;           // corners of the crossed triangles
-  std::optional<std::size_t> other;  // the crossed body; none if there are several, or if it is the island's own cloth
+  std::optional<std::size_t> other;  // the crossed body; none if several are crossed, or only the island's own cloth
 };
 
 const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {
@@ -64,8 +64,8 @@ CrossedPair crossed_pair_of(const UntangleInput& input, const Crossing& c) {
           input.bodies.body_of(input.bodies.triangles()[c.triangle][0])};
 }
 
-// Adds to `cut` the edges of a cloth that would cross the other surface if that were extended beyond its border. A
-// particle is on the side given by the plane of the crossed triangle nearest to it.
+// Adds to `cut` the edges of the body `cloth` that would cross the other surface if that surface were extended beyond
+// its border. Side of a particle: its side of the plane of the triangle that is crossed nearest to the particle.
 void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings, std::size_t cloth,
                 std::span<const Vec3> x, std::set<std::array<Index, 2>>& cut) {
   std::vector<CutPoint> line;
@@ -87,9 +87,9 @@ void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings,
   }
 }
 
-// Moves that raise each particle of the island along `up` to `height` above the plane perpendicular to `up` through the
-// nearest point of the line. If the island crosses a single other surface, they also raise each particle along the
-// normal of that surface to `height` above it.
+// Moves that raise the particles of the island along `up` to at least `height` above the plane perpendicular to `up`
+// through the nearest point of the line. If the island crosses a single other surface, the moves also raise the
+// particles along the normal of that surface to at least `height` above it.
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;
@@ -136,8 +136,8 @@ Vec3 direction_of(std::span<const CutPoint> line) {
   return along;
 }
 
-// The cheapest moves to the side of the rest of the cloth: flattened, or folded to one of two sides. A later candidate
-// must cost a tenth less than the best one so far.
+// The cheapest moves to the side of the rest of the cloth: flattened, or folded to one of two sides. Folding must cost
+// a tenth less than the best candidate so far. Empty if no direction is clear.
 std::vector<Move> best_moves(const UntangleInput& input, const Island& island, double height,
                              const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
   Vec3 up = Vec3::Zero();
@@ -300,7 +300,7 @@ void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> cr
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
         raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
     } else {
-      // An edge of the body crosses a triangle of cloth. Raise the crossing point higher than `above`: by the length of
+      // An edge of the body crosses a triangle of cloth. Raise the crossing point higher than `above` by the length of
       // the shorter part of the edge, but at most by half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =

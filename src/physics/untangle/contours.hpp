@@ -26,23 +26,23 @@ std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::spa
 /// (similar to flood filling in Baraff, Witkin & Kass, "Untangling Cloth", 2003). The island is flattened onto that
 /// side, or folded over the line of crossing if folding costs a tenth less (see stretch_cost()). If islands cut each
 /// other off, only the smallest moves. Ignores crossings with solids, floors and layers. `surfaces`: the broad phase,
-/// refitted at x. `above`: height of the moved island over the other surface, per body of cloth [m]. `only`: restricts
-/// the search to this pair. If its two surfaces differ, the other one is extended beyond its border as a plane, so that
-/// a line of crossing that ends at this border still divides the cloth.
+/// refitted at x. `above`: height of the moved island over the crossed surface, per body of cloth [m]. `only`:
+/// restricts the search to this pair. If its two surfaces differ, `only->other` is extended beyond its border as a
+/// plane, so that a line of crossing that ends at this border still divides `only->cloth`.
 std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,
                                                     const std::optional<CrossedPair>& only, std::span<const Vec3> x);
 
-/// Moves each crossing edge and its triangle in opposite directions, so that the line of crossing shortens fastest
-/// (Volino & Magnenat-Thalmann, "Resolving Surface Collisions through Intersection Contour Minimization", 2006). No
-/// particle moves farther than `length` [m]. Ignores crossings with solids, floors and layers.
+/// Moves each crossing edge and the triangle that it crosses in opposite directions, so that the line of crossing
+/// shortens fastest (Volino & Magnenat-Thalmann, "Resolving Surface Collisions through Intersection Contour
+/// Minimization", 2006). No particle moves farther than `length` [m]. Ignores crossings with solids, floors and layers.
 void shorten_contours(const UntangleInput& input, std::span<const Crossing> crossings, double length,
                       std::span<Vec3> x);
 
-/// Pushes edges and triangles of cloth that cross a solid, floor or layer outward; they can cross it even if all their
-/// particles are outside. `above`: minimum height of the crossing points over the solid after the push, per body of
-/// cloth [m].
+/// Pushes edges and triangles of cloth out of each solid, floor or layer that they cross; they can cross it although
+/// all their particles are outside. Raises their crossing points, and the quarter points of edges, to at least the
+/// height `above`, per body of cloth [m].
 void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
                         std::span<const ForbiddenRegion> solids, std::span<const double> above, std::span<Vec3> x);
 

@@ -44,7 +44,7 @@ class CrossingFinder {
 
   const UntangleInput& input_;
   collision::BroadPhase broad_phase_;
-  std::vector<std::array<std::size_t, 2>> wanted_;
+  std::vector<std::array<std::size_t, 2>> wanted_;  // pairs of bodies to test
   collision::CandidatePairs candidates_;
   std::vector<Crossing> crossings_;
   int pairs_ = 0;

@@ -9,8 +9,8 @@
 namespace weft::untangle {
 namespace {
 
-// Offset from a face at which the constructor tests whether its front is inside another shell, relative to the size of
-// the body: below any detail, above rounding.
+// Offset from a face at which the constructor tests whether the front of the face is inside another shell, relative to
+// the size of the body: below any detail, above rounding.
 constexpr double kProbeOffset = 1e-6;
 // Weight of a corner below which the nearest point of a face counts as on the opposite edge.
 constexpr double kMaxZeroWeight = 1e-9;

@@ -6,8 +6,8 @@
 namespace weft::untangle {
 namespace {
 
-// Minimum length of a thread, relative to the smaller of its lengths at the start and at rest. Compressed threads
-// buckle when the run begins.
+// Minimum length of a link, relative to the smaller of its lengths at the start and at rest. It is below 1, because
+// compressed threads buckle when the run begins.
 constexpr double kMinLengthRatio = 0.6;
 
 }  // namespace

@@ -18,7 +18,7 @@ enum class SurfaceKind : std::uint8_t {
   solid,  ///< closed body; cloth may not be inside
   floor,  ///< cloth may not be below it
   open,   ///< any other obstacle; cloth may be on both sides
-  layer,  ///< cloth that does not move, over which other cloth is worn: on its outer side only
+  layer,  ///< cloth that does not move; cloth worn over it may be on its outer side only
 };
 
 /// Constant input: connectivity of surfaces, and allowed lengths of threads. A thread is a link along an edge.

@@ -1,5 +1,5 @@
-// Relaxation: after some particles were moved, moves cloth until links along edges (threads) and across edges (bending)
-// have allowed lengths again.
+// Relaxation: after some particles were moved, moves the cloth so that links along edges (threads) and across edges
+// (bending) return to allowed lengths.
 #pragma once
 
 #include <span>

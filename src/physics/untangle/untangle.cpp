@@ -25,8 +25,8 @@ constexpr int kPatience = 12, kMaxSmoothings = 12;
 // Maximum number of islands of a CrossedPair that are tried one by one.
 constexpr std::size_t kMaxSingleIslands = 12;
 constexpr int kSweepsAfterMove = 120, kSweeps = 8;
-// Maximum displacement that takes a region (InsideRegion) out of a body, relative to the region's size. If it needs
-// more, the region is locked: it has no way out.
+// Maximum displacement that takes a region (InsideRegion) out of a body, relative to the region's size. A region that
+// needs more is locked: it has no way out.
 constexpr double kMaxDisplacementRatio = 1.5;
 // Maximum number of passes over all bodies: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
@@ -123,9 +123,9 @@ class Untangling {
   }
 
   // Separates coincident surfaces, because neither is on a side of the other. Of two cloths, moves the later one in the
-  // model to the front of the earlier one; if some of its particles are held, also moves the earlier one back. If the
-  // later surface cannot move (an obstacle), moves the cloth to the front of it. If that surface has no front (a rope),
-  // moves the cloth back, against its own normal.
+  // model to the front (the side of the normal) of the earlier one; if particles of the later one are held, also moves
+  // the earlier one back. If the second surface cannot move (an obstacle), moves the cloth to the front of that
+  // surface. If that surface has no front (a rope), moves the cloth against its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {

@@ -1,9 +1,10 @@
 // Separates surfaces that touch or cross at the start, before the simulation.
 //
-//   ForbiddenRegion             a region where cloth may not be, such as the inside of an obstacle, and exits from it
+//   ForbiddenRegion   a region where cloth may not be, such as the inside of an obstacle, and exits from it
 //   find_inside       finds connected regions of cloth inside a ForbiddenRegion, and one way out for each
 //   CrossingFinder    finds edges that cross triangles
-//   contours.hpp      cloth through cloth: takes islands to the other side, shortens lines of crossing
+//   contours.hpp      cloth through cloth: moves islands that are cut off, shortens lines of crossing; pushes cloth
+//                     that crosses solids out of them
 //   relax             moves the rest of the cloth so that threads have allowed lengths again
 #pragma once
 
@@ -24,15 +25,15 @@ struct Options {
 
 struct Report {
   int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
-  int rounds = 0;
-  double farthest = 0;               ///< largest displacement of a particle [m]
-  double stretch = 0;                ///< largest strain of a thread, relative to its maximum length
+  int rounds = 0;                         ///< of attempts to reduce the number of crossings
+  double farthest = 0;                    ///< largest displacement of a particle [m]
+  double stretch = 0;                ///< largest excess of a thread over its maximum length, relative to that length
   std::vector<InsideRegion> locked;  ///< regions without a way out; if there are any, nothing was moved
 };
 
-/// Moves particles in x [m] until no triangle of cloth crosses other cloth or an obstacle, and their gaps are at least
-/// a tenth of the larger thickness of the two. If that is not reached within a bounded number of rounds, keeps the
-/// state with the fewest crossings. The result is deterministic.
+/// Moves particles in x [m] until no triangle of cloth crosses cloth or an obstacle, and the gap between two surfaces
+/// is at least a tenth of the larger of their thicknesses. If this is not reached within a bounded number of rounds,
+/// keeps the state with the fewest crossings. If a region is locked, moves nothing. The result is deterministic.
 Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

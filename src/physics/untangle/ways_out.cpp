@@ -15,11 +15,11 @@ constexpr double kBlockedCost = 25;
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
 // Cost of a displacement by the size of the region, so that the shorter of two ways with equal stretch is chosen.
 constexpr double kDisplacementCost = 0.05;
-// Cost of moving a whole mesh, high enough that the region moves alone if it can; and the longest such move, relative
-// to the size of the region.
+// Cost of moving a whole mesh, high enough that the region moves alone if it can; and the longest move of a whole mesh,
+// relative to the size of the region.
 constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
-// Maximum fraction of a mesh's particles that pass through the body's surface in such a move. A move of more would take
-// cloth off a body that wears it.
+// Maximum fraction of a mesh's particles outside of the region that pass through the body's surface when the whole mesh
+// moves. If more did, the move would take cloth off a body that wears it.
 constexpr double kMaxThroughFraction = 0.1;
 
 // The 26 directions from a cell of a cubic grid to its neighbours, nearest first.

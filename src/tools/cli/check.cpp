@@ -60,8 +60,8 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
   }
 }
 
-/// Number of particles of all cloths. Builds all cloths but rectangles to count their particles. Adds errors to
-/// `mistakes`.
+/// Number of particles of all cloths and ropes. Builds all of them but rectangles, to count their particles. Adds
+/// errors to `mistakes`.
 std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
   environment::Wearers wearers(scene);

@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// Simulates a scene, and draws and writes its film at the same time. On SIGINT, SIGTERM or a failure, it ends early
-/// and keeps the finished frames.
+/// Simulates a scene, and draws and writes its film at the same time. On SIGINT, SIGTERM, SIGHUP or a failure, the
+/// command ends early and keeps the finished frames.
 ExitCode run(const RunOptions& options);
 
 /// Simulates into a frame cache.
@@ -19,7 +19,8 @@ ExitCode render(const RenderOptions& options);
 /// Checks scenes. Mistakes go to standard error, valid scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 
-/// Draws one still of each scene: a given frame, the one with the highest saliency (render/saliency.hpp), or the start.
+/// Draws one still of each scene: the given frame, else the frame with the highest saliency (render/saliency.hpp); or
+/// the start.
 ExitCode thumbnail(const ThumbnailOptions& options);
 
 /// Draws evenly spaced frames of a scene into one picture, with their numbers and times.
@@ -41,7 +42,8 @@ ExitCode make_new(const NewOptions& options);
 /// Names of the templates that make_new() accepts.
 std::vector<std::string> template_names();
 
-/// Draws a scene again whenever one of its files changes, until it is interrupted or has made `options.times` drawings.
+/// Draws a scene again whenever one of its files changes, until the command is interrupted or has made `options.times`
+/// drawings.
 ExitCode watch(const WatchOptions& options);
 
 /// Prints processor, libraries and OpenGL of this machine, and tests them.

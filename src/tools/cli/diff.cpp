@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
-// Metadata of heat maps. If a later weft diff compares the folder with the heat maps, it recognises them by this entry.
+// Metadata of heat maps. By this entry, a later weft diff recognises the heat maps in its --heatmap folder, and does
+// not compare them.
 const image::Metadata kHeatMap{{"weft_picture", "heat map of weft diff"}};
 
 FileComparison only_one(const std::string& name, const fs::path& reference, const fs::path& test, Outcome outcome) {
@@ -60,8 +61,8 @@ struct Pair {
   }
 };
 
-// Whether a file is a heat map below the folder of --heatmap. It is not compared: an earlier call with the same options
-// has written it, and this call replaces it.
+// Whether a file is a heat map below the folder of --heatmap. Such a file is not compared: an earlier call with the
+// same options has written it, and this call replaces it.
 bool is_earlier_heat_map(const DiffOptions& options, const fs::path& file) {
   if (options.heatmap.empty()) return false;
   const fs::path inside = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(options.heatmap));
@@ -75,7 +76,7 @@ bool is_earlier_heat_map(const DiffOptions& options, const fs::path& file) {
 
 std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
-  // Takes the machine class of the first picture for all pictures of the folder.
+  // Assumes that one machine drew all pictures of the folder: takes the machine class of the first picture.
   const std::string machine = names.empty() ? "" : compare::machine_class_of(options.test / names.front());
   const std::vector<std::string> references = compare::reference_names(options.reference, machine);
   names.insert(names.end(), references.begin(), references.end());
@@ -109,8 +110,8 @@ std::vector<Pair> all_pairs(const DiffOptions& options) {
   return {{test.filename(), options.reference, test}};
 }
 
-// Exit code of the whole comparison. Unreadable files take precedence over differences, and these over missing
-// references.
+// Exit code of the whole comparison. Unreadable files take precedence over differences; differences take precedence
+// over missing references.
 ExitCode exit_code(const std::vector<FileComparison>& results) {
   ExitCode code = ExitCode::ok;
   for (const FileComparison& result : results) {

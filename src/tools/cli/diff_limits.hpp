@@ -20,10 +20,10 @@ class DiffLimits {
 
   /// `all`: the limits of all pictures, unless `file` changes them. `file`: TOML with tables [[picture]], each with a
   /// name (with wildcards * and ?), and the limits and the mask of the pictures that match; paths of masks are relative
-  /// to this file. Empty: no changes. Throws Error(asset_unreadable) with line and column.
+  /// to this file. If `file` is empty, nothing changes. Throws Error(asset_unreadable) with line and column.
   DiffLimits(const compare::Limits& all, const std::filesystem::path& file);
 
-  /// The rules of a picture. If several tables match, later ones take precedence.
+  /// The rules of a picture. If several tables match, later tables take precedence.
   Rules of(const std::string& name) const;
   /// Throws Error(asset_unreadable) with line and column if a table matches none of these pictures, since its limits
   /// would have no effect.

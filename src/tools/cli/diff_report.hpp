@@ -21,11 +21,11 @@ Json describe_json(const compare::FileComparison& result, const compare::Limits&
                    const std::filesystem::path& heatmap);
 
 /// A workflow annotation of GitHub Actions, attached to the reference, or to the test if there is no reference. The
-/// path is relative to GITHUB_WORKSPACE if it lies inside. `description`: text of the result.
+/// path is relative to GITHUB_WORKSPACE if the file lies inside. `description`: of describe().
 std::string annotation(const compare::FileComparison& result, const std::string& description);
 
-/// JUnit XML with one test case per pair: different or missing pictures are failures, unreadable ones are errors.
-/// `descriptions`: one text per result.
+/// JUnit XML with one test case per pair: different or missing pictures are failures, unreadable files are errors.
+/// `descriptions`: of describe(), one per result.
 std::string junit_xml(const std::vector<compare::FileComparison>& results,
                       const std::vector<std::string>& descriptions);
 

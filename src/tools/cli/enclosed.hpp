@@ -10,7 +10,8 @@
 
 namespace weft::cli {
 
-/// Returns one sentence per cloth and closed, colliding obstacle that contains the cloth in this frame.
+/// Returns one sentence for each pair of a cloth and a closed, colliding obstacle that contains the cloth in
+/// `snapshot`. Does not test ropes and characters.
 std::vector<std::string> find_enclosed(const scene::Scene& scene, const frame::FrameSnapshot& snapshot);
 
 }  // namespace weft::cli

@@ -14,8 +14,8 @@
 namespace weft::cli {
 namespace {
 
-// Limit on words in messages [bytes]. Longer words cannot be paths; they are contents of arguments or files. Messages
-// show only their first kShownWordBytes bytes.
+// Limit on words in messages [bytes]. Longer words cannot be paths; they come from the contents of arguments or files.
+// Messages show only their first kShownWordBytes bytes.
 constexpr std::size_t kMaxWordBytes = 4096, kShownWordBytes = 200;
 
 std::string shorten_words(std::string_view text) {

@@ -26,8 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Factors from the time and memory of a trial to those that tasks request. Frames with contact take longer than the
-// first frames. A task that exceeds its time is resumed later; one that exceeds its memory is killed.
+// Ratios of the time and memory that tasks request to those measured in a trial. Frames with contact take longer than
+// the first frames. A task near its time limit stops and is queued again (scripts/task.sh); a task that exceeds its
+// memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
 constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
@@ -49,8 +50,8 @@ std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folde
   return jobs;
 }
 
-/// Numbers of the Slurm jobs of this folder that wait or run. Adds the number of their tasks in each state to `states`.
-/// Throws Error(output_failed) if jobs were submitted and Slurm does not answer.
+/// Numbers of the Slurm jobs of this folder that wait or run. Adds to `states` the number of tasks of these jobs in
+/// each state. Throws Error(output_failed) if jobs were submitted and Slurm does not answer.
 std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
   std::vector<std::string> numbers;
   for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);

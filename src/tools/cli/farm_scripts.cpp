@@ -142,8 +142,8 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
     after = " --dependency=\"afterok:$unpack\"";
   }
-  // The simulations of up to kMaxArrayTasks runs form one job array. The drawing of a run waits only for its own
-  // element.
+  // The simulations of up to kMaxArrayTasks runs form one job array. The drawing tasks of a run wait only for the
+  // element of the array that simulates this run.
   for (std::size_t at = 0; at < plan.submitted.size();) {
     const std::size_t base = plan.submitted[at];
     std::vector<std::size_t> offsets;

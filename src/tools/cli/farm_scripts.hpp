@@ -1,5 +1,5 @@
-// Files with which `weft farm` distributes the runs of a sweep to machines: a script that performs any one task, a
-// script that submits all tasks to Slurm, and a list of the tasks for other schedulers.
+// Files with which `weft farm` distributes the runs of a sweep to machines: a script that performs the task given by
+// its arguments, a script that submits all tasks to Slurm, and a list of the tasks for other schedulers.
 #pragma once
 
 #include <cstddef>
@@ -28,8 +28,8 @@ struct FarmPlan {
   int parts(std::size_t job) const { return (jobs[job].drawn.count() + part - 1) / part; }
 };
 
-/// Path of the program archive with this fingerprint, relative to the folder of the runs. Without the extension, the
-/// path is that of the folder into which tasks unpack the archive.
+/// Path of the program archive with this fingerprint, relative to the folder of the runs. The same path without the
+/// extension is the folder into which tasks unpack the archive.
 std::string program_tar(const std::string& archive);
 
 /// Text of `farm/task.sh`. Its paths are valid on all machines that share the folder.

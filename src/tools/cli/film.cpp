@@ -14,8 +14,8 @@
 namespace weft::cli {
 namespace {
 
-// Maximum number of frames in a queue. With several frames, a stage can continue while another one processes a slow
-// frame. A picture of 1280×720 pixels takes 2.7 MB.
+// Maximum number of frames in a queue. With several frames in a queue, one stage can continue while the next stage
+// processes a slow frame. A picture of 1280×720 pixels takes 2.7 MB.
 constexpr std::size_t kQueueLength = 4;
 
 struct MadePair {
@@ -76,7 +76,7 @@ class Film {
     }
   }
 
-  /// Makes frames, and hands those that must be drawn to the drawing thread. With `only_show`, passes all frames to the
+  /// Makes frames, and hands the frames to draw to the drawing thread. With `only_show`, passes all frames to the
   /// camera instead.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
@@ -105,8 +105,8 @@ class Film {
     if (parts_.store) parts_.store->keep_last_state();
   }
 
-  /// Hands a frame to the drawing thread, with the previous wanted frame if the painter needs it. Returns false if that
-  /// thread has ended.
+  /// Hands a frame to the drawing thread, with the previous wanted frame if the painter needs it. Returns false if the
+  /// drawing thread has ended.
   bool push_to_drawing(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;
     if (parts_.motion && !before_ && frame >= 0)
@@ -115,7 +115,7 @@ class Film {
   }
 
   /// Makes all frames and passes them to the camera. Then reads the wanted frames from the store, and hands them to the
-  /// drawing thread. If making frames fails, hands over those made so far.
+  /// drawing thread. If making frames fails, hands over the frames made so far.
   void make_then_push(FrameSource& source) {
     std::exception_ptr failure;
     try {
@@ -192,7 +192,7 @@ class Film {
     return source;
   }
 
-  // The next drawn frame; nullopt after the last one. If an earlier stage failed, stores the failure and returns
+  // The next drawn frame; nullopt after the last frame. If an earlier stage failed, stores the failure and returns
   // nullopt, so that the output is finished with the earlier frames.
   std::optional<DrawnFrame> next_picture() {
     try {

@@ -1,5 +1,5 @@
-// The pipeline of a film. Three threads run concurrently: one makes frames (simulates or reads them) and stores them,
-// one draws them, one writes and reports them. Bounded queues between the threads limit memory.
+// The pipeline of a film. Three threads run concurrently: one makes frames (simulates or reads them) and stores them;
+// one draws them; the calling thread writes and reports them. Bounded queues between the threads limit memory.
 #pragma once
 
 #include <atomic>
@@ -34,7 +34,7 @@ struct FilmParts {
   /// until the last frame is made, and the frames to draw come from the store.
   std::optional<render::CameraPath> camera = std::nullopt;
   std::filesystem::path meshes;      ///< folder for meshes; empty: none are written
-  std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already
+  std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already; they are not drawn again
   bool keeps_partial_output = true;  ///< if source or painter fails, finish the output with the earlier frames
   bool motion = false;  ///< whether the painter also gets the previous wanted frame, for motion blur or layers
   std::function<void(const MadeFrame&)> on_frame = {};  ///< called after each frame is made, in order; may be empty
@@ -46,10 +46,11 @@ struct FilmResult {
   std::vector<FrameRecord> frames;  ///< all frames that were made, in order
   /// Number of frames that all stages have completed.
   int written = 0;
-  double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
-  bool interrupted = false;      ///< stopped by request before the last wanted frame
+  double cloth_size = 0;     ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
+  bool interrupted = false;  ///< `stop` became true before the last frame was made or drawn
   std::string painter = "none";  ///< description of the painter
-  /// Exception of the failed stage; if several failed, of that nearest to the output; null if none did.
+  /// Exception of the failed stage; if several stages failed, that of the latest one in the pipeline; null if none
+  /// failed.
   std::exception_ptr failure;
   bool finished_output = false;  ///< the output has its final name; it may have fewer frames than wanted
 };

@@ -22,19 +22,20 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Makes or reads the next frame. Throws if it cannot.
   virtual MadeFrame next() = 0;
-  /// If all frames of the run exist already, passes them to the camera, also those that next() does not yield, and
-  /// returns true. Otherwise returns false.
+  /// If the frames come from a cache, passes all its frames with the current looks to the camera, also those that
+  /// next() does not yield, and returns true. Otherwise returns false.
   virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
   /// Returns a frame that next() does not yield, such as one before the first; null if it is not available.
   virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
 };
 
-/// Frames of a scene: first those that the store has from an earlier run, with the scene's current looks (colours,
-/// cameras, lights), then simulated ones.
+/// Frames of a scene: first those that the store has from an earlier run, drawn with the scene's current looks
+/// (store.hpp); after them, simulated ones.
 class SceneSource : public FrameSource {
  public:
-  /// Opens `store` for new frames. `stop` interrupts the preroll, the frames before frame 0; `progress` shows it.
+  /// Opens `store` for new frames. `stop` interrupts the preroll, the frames before frame 0; `progress` counts its
+  /// frames.
   SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress);
 
   MadeFrame next() override;
@@ -51,7 +52,7 @@ class SceneSource : public FrameSource {
   const std::atomic<bool>& stop_;
   Progress& progress_;
   std::unique_ptr<production::SceneSimulation> simulation_;
-  std::optional<production::Looks> looks_;  // current looks of the scene; set if stored frames have others
+  std::optional<production::Looks> looks_;  // current looks of the scene; set once a stored frame had former looks
   int next_ = 0;
 };
 

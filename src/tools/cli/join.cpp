@@ -120,7 +120,7 @@ std::vector<fs::path> files_of(const fs::path& part) {
   return files;
 }
 
-/// All pieces of a film, ordered by frame. The constructor checks that they fit together.
+/// All pieces of a film, ordered by frame. The constructor checks that the pieces fit together.
 class Film {
  public:
   explicit Film(const std::vector<fs::path>& parts) {
@@ -136,7 +136,7 @@ class Film {
   bool of_videos() const { return is_video(first().file); }
 
   /// The requested frames, or with `partial` those before the first missing one. Throws Error(frames_missing) with the
-  /// numbers of the missing frames.
+  /// numbers of the missing frames. Without `partial`, also throws this error if a file is unreadable.
   FrameRange frames(const JoinOptions& options) const;
 
  private:

@@ -5,8 +5,8 @@
 #if defined(__x86_64__) && defined(__AVX2__)
 
 // Checks the processor before any other initialisation of the program (101 is the first constructor priority that
-// programs may use). The function is compiled for all x86-64 processors, so that on an old one the program prints a
-// message instead of crashing at an unknown instruction.
+// programs may use). The function is compiled for all x86-64 processors, so that on an old processor the program prints
+// a message instead of crashing at an unknown instruction.
 __attribute__((constructor(101), target("arch=x86-64"))) static void check_cpu() {
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return;

@@ -23,17 +23,19 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestIgnoreFile = 1 << 20;  // [bytes]
 
-// Name of the template to which a file belongs: the name of the file without extension, or of its folder.
+// Name of the template to which a file belongs: the first folder of its path or, without a folder, its name without
+// extension.
 std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
 }
 
-// What to write so that a template of several files is added to a folder without replacing files. Missing lines are
-// appended to .gitignore, the README gets another name if one exists, and other existing files stay.
+// What to write so that a template of several files is added to a folder without replacing files. An existing
+// .gitignore gets the missing lines; if a README.md exists, the new one is named PICTURES.md; other existing files
+// stay.
 struct Added {
-  std::vector<std::pair<fs::path, std::string>> files;
-  std::vector<std::string> kept;
-  fs::path readme;
+  std::vector<std::pair<fs::path, std::string>> files;  // paths and contents
+  std::vector<std::string> kept;                        // existing files that stay
+  fs::path readme;                                      // the file that explains the next steps
 };
 
 std::string with_missing_lines(const std::string& text, const std::string& wanted) {
@@ -80,7 +82,8 @@ std::vector<std::string> template_names() {
 }
 
 ExitCode make_new(const NewOptions& options) {
-  // Writes the schema beside the scene. The first line of the scene names it; with it, editors complete and check keys.
+  // Writes the schema beside the scene. The first line of the scene names the schema, with which editors complete and
+  // check keys.
   std::vector<std::pair<fs::path, std::string>> files;
   fs::path scene = options.name;
   bool is_folder = false;

@@ -31,7 +31,7 @@ inline constexpr std::array kQualities{Choice<render::Quality>{"draft", render::
                                        Choice<render::Quality>{"final", render::Quality::final}};
 inline constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";
 
-/// Adds an option with one value, which `read` receives as text.
+/// Adds an option with one value, which `read` receives as text. `value`: placeholder of the value in the help.
 void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,
                std::function<void(const std::string&)> read);
 

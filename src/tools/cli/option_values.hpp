@@ -1,5 +1,5 @@
-// Converts texts of the command line to checked values. All functions that parse or check throw Error(usage), which
-// says what was expected.
+// Converts texts of the command line to checked values. If a text is invalid, the functions that parse or check it
+// throw Error(usage), which says what was expected.
 #pragma once
 
 #include <array>

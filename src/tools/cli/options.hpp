@@ -26,10 +26,10 @@ struct PictureSize {
 /// Options shared by all commands that start from a scene.
 struct SceneOptions {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;      ///< texts `key=value` of --set
-  std::optional<PictureSize> size;         ///< default: that of the scene
-  std::optional<double> fps;               ///< default: that of the scene
-  std::string camera;                      ///< empty: the scene's choice
+  std::vector<std::string> overrides;  ///< texts `key=value` of --set
+  std::optional<PictureSize> size;     ///< default: that of the scene
+  std::optional<double> fps;           ///< default: that of the scene
+  std::string camera;  ///< name; empty: render.camera of the scene, else its first camera, else automatic framing
   std::optional<frame::Stage::Look> look;  ///< default: that of the scene
   std::optional<double> motion_blur;       ///< shutter angle [degrees], 0: none; default: that of the scene
   render::Quality quality = render::Quality::final;
@@ -49,7 +49,7 @@ struct RunOptions {
   bool resume = false;
   int depth = 8;  ///< bits per channel of PNG pictures, 8 or 16
   VideoOptions video;
-  bool error = false, mesh_error = false;  ///< estimate the error of the run; mesh_error: also that of the mesh
+  bool error = false, mesh_error = false;  ///< estimate the error of the run; mesh_error: also that due to the mesh
 };
 
 struct SimulateOptions : RunOptions {
@@ -58,13 +58,13 @@ struct SimulateOptions : RunOptions {
 
 /// `common.scene` is the folder of a cache.
 struct RenderOptions : RunOptions {
-  bool partial = false;  ///< use the frames before the first missing or broken one
+  bool partial = false;  ///< use the frames before the first missing or broken frame
 };
 
 struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> overrides;
-  std::filesystem::path against;  ///< a scene, an effective scene or a cache to compare with; may be empty
+  std::filesystem::path against;  ///< a scene, an effective scene or a cache to compare with; empty: none
   bool plan = false;              ///< also list the parts of the program that the scene uses
   bool estimate = false;          ///< also estimate time and memory of a run
 };
@@ -72,10 +72,11 @@ struct CheckOptions {
 struct ThumbnailOptions {
   SceneOptions common;                        ///< `scene` is set for each scene in turn
   std::vector<std::filesystem::path> scenes;  ///< scenes or caches, at least one
-  /// The picture, or a folder for <scene>.png (with `start`: <scene>.start.png) of each scene. It counts as a folder if
-  /// it has no extension, or if it is an existing folder and there are several scenes. Empty: the folder `output`.
+  /// The picture, or a folder for <scene>.png (with `start`: <scene>.start.png) of each scene. The path counts as a
+  /// folder if it has no extension, or if it is an existing folder and there are several scenes. Empty: the folder
+  /// `output`.
   std::filesystem::path output;
-  std::optional<int> frame;  ///< default: the one with the highest saliency
+  std::optional<int> frame;  ///< default: the frame with the highest saliency
   bool start = false;        ///< draw the start of the scene, even if a run refuses it, instead of a frame
 };
 
@@ -83,7 +84,7 @@ struct SheetOptions {
   SceneOptions common;           ///< `size`: of each picture on the sheet
   std::filesystem::path output;  ///< empty: output/<scene>.sheet.png
   int count = 12;                ///< maximum number of pictures
-  std::optional<int> columns;
+  std::optional<int> columns;    ///< default: 4
 
   SheetOptions() { common.quality = render::Quality::preview; }
 };
@@ -93,17 +94,17 @@ struct JoinOptions {
   std::filesystem::path output;
   VideoOptions video;  ///< used if the parts are pictures
   FrameSelection frames;
-  bool partial = false;  ///< use the frames before the first missing or broken one
+  bool partial = false;  ///< use the frames before the first missing or broken frame
   bool overwrite = false;
 };
 
 struct SweepOptions {
-  std::filesystem::path scene, list;  ///< `list`: file with one row of values per run; may be empty
+  std::filesystem::path scene, list;  ///< `list`: file with the values of each run; empty: none
   std::vector<Axis> axes;
   std::filesystem::path output;        ///< folder
-  std::vector<std::string> passed_on;  ///< checked options that are passed on to each run
+  std::vector<std::string> passed_on;  ///< options of `weft run` and their values, checked; each run gets them
   int jobs = 1;                        ///< number of concurrent runs
-  std::optional<int> frame;            ///< frame shown on the sheet; default: the last
+  std::optional<int> frame;            ///< picture of each video shown on the sheet, from 0; default: the last
   bool gather = false;                 ///< only make the sheet, the table and the page of existing runs
   bool overwrite = false;
 };
@@ -113,9 +114,9 @@ struct FarmOptions {
   Action action = Action::status;
   SweepOptions sweep;  ///< `output`: folder of the runs; `scene`: the scene for `submit`, else the same folder
   FrameSelection frames;
-  int part = 50;                           ///< frames per drawing task
-  int threads = 1;                         ///< number per task
-  int retries = 3;                         ///< number of retries of a task that was killed or found no disk space
+  int part = 50;    ///< frames per drawing task; more if a run would have over 1000 such tasks
+  int threads = 1;  ///< threads per task
+  int retries = 3;  ///< retries per task that was killed, had an internal error, or could not write its output
   std::optional<int> memory, minutes;      ///< limits per task [MB, min]; default: estimated from a trial
   std::vector<std::string> for_scheduler;  ///< options of sbatch
   std::filesystem::path program;  ///< program archive that tasks unpack and run; empty: this program at its own path
@@ -123,7 +124,7 @@ struct FarmOptions {
 };
 
 struct NewOptions {
-  std::string name;            ///< of the scene, with its folder
+  std::string name;  ///< path of the new scene, with or without .toml; for the template `ci`, of the new folder
   std::string kind = "drape";  ///< name of the template
   bool overwrite = false;
 };
@@ -131,9 +132,9 @@ struct NewOptions {
 struct WatchOptions {
   std::filesystem::path scene;
   std::vector<std::string> overrides;  ///< of --set
-  std::vector<std::string> passed_on;  ///< checked options that are passed on to the drawing command
-  bool film = false;                   ///< draw the whole video instead of a still
-  int times = 0;                       ///< number of drawings until the command ends; 0: until it is interrupted
+  std::vector<std::string> passed_on;  ///< options of the drawing command and their values, checked
+  bool film = false;                   ///< draw the whole video (`weft run`) instead of a still (`weft thumbnail`)
+  int times = 0;                       ///< number of drawings after which the command ends; 0: no limit
 };
 
 struct SchemaOptions {
@@ -171,7 +172,7 @@ struct DiffOptions {
   std::filesystem::path limits_file;  ///< limits and masks of single pictures; empty: none
   std::filesystem::path heatmap;      ///< picture or folder; empty: none
   std::filesystem::path junit, html;  ///< files; empty: none
-  bool annotations = false;           ///< print annotations even outside GitHub Actions
+  bool annotations = false;           ///< print annotations (diff_report.hpp) even outside GitHub Actions
   bool overwrite = false;
   bool json = false;
 };
@@ -193,7 +194,7 @@ struct ExportOptions {
   std::filesystem::path cache, output;  ///< folders
   exporter::Format format = exporter::Format::gltf;
   FrameSelection frames;
-  bool partial = false;  ///< use the frames before the first missing or broken one
+  bool partial = false;  ///< use the frames before the first missing or broken frame
   bool overwrite = false;
 };
 
@@ -207,8 +208,8 @@ using Command =
                  SweepOptions, FarmOptions, NewOptions, WatchOptions, SchemaOptions, DoctorOptions, BenchOptions,
                  DiffOptions, AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
 
-/// `arguments`: without the program's name. Throws Error(usage), which says what was expected and, for an unknown name,
-/// names the most similar known one.
+/// `arguments`: without the program's name. Throws Error(usage), which says what was expected. If a name is unknown and
+/// a known one is similar, the message names the latter.
 Command parse_command_line(const std::vector<std::string>& arguments);
 
 /// Parses `1280x720`. Throws Error(usage).

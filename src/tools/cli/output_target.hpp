@@ -28,15 +28,15 @@ video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& opt
 /// A file name with a placeholder for the frame number: `{frame}`, or `{frame:05}` for five digits.
 class FramePattern {
  public:
-  /// Throws Error(usage) if the text has no placeholder or more than one.
+  /// Throws Error(usage) unless the text has exactly one placeholder, with 1 to 10 digits.
   explicit FramePattern(std::string_view text);
   FramePattern(std::string before, int digits, std::string after)
       : before_(std::move(before)), after_(std::move(after)), digits_(digits) {}
 
   std::filesystem::path name(int frame) const;
   std::vector<std::filesystem::path> names(const FrameRange& frames) const;
-  /// Removes files whose name fits this pattern with a frame outside of `frames`, if `is_own` accepts them as outputs
-  /// of an earlier run.
+  /// Removes the files of this pattern whose frame number is not in `frames`, if `is_own` accepts them as outputs of an
+  /// earlier run.
   void remove_others(const FrameRange& frames,
                      const std::function<bool(const std::filesystem::path&, int frame)>& is_own) const;
 
@@ -57,8 +57,8 @@ struct OutputTarget {
   std::vector<std::filesystem::path> files(const FrameRange& frames) const;
 };
 
-/// Parses `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for an unsupported extension, and for a frame number
-/// that is missing in the name of pictures or present in that of a video.
+/// Parses `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) if the extension is not supported, if the name of
+/// pictures lacks the placeholder, or if the name of a video has one.
 OutputTarget parse_output(const std::string& text, const std::string& scene_name);
 
 }  // namespace weft::cli

@@ -1,4 +1,5 @@
-// Recognises files that Weft has written, mostly by metadata. Weft never replaces or removes other files unasked.
+// Recognises files that Weft has written, by their metadata or their first bytes. Weft never replaces or removes other
+// files unasked.
 #pragma once
 
 #include <filesystem>

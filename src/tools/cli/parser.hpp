@@ -26,7 +26,7 @@ struct Parser {
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
-  std::vector<BenchOption> bench_options;  // options given by the user that only some kinds of weft bench accept
+  std::vector<BenchOption> bench_options;  // options on the command line that only some kinds of weft bench accept
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;

@@ -1,5 +1,5 @@
-// Registers all paths that a command reads and writes, so that it does not overwrite its inputs, nor other files unless
-// asked.
+// Registers all paths that a command reads and writes, so that the command never overwrites its inputs, and overwrites
+// other files only if the user allows it.
 #pragma once
 
 #include <filesystem>
@@ -13,8 +13,8 @@
 namespace weft::cli {
 
 /// All paths of one command. The command registers them before any work, inputs first. Functions that register an
-/// output throw Error(usage) if it is an input or another output, lies inside one, or contains one. They resolve
-/// symbolic links, hard links and `..`.
+/// output throw Error(usage) if this output is an input or another output, lies inside one, or contains one. They
+/// resolve symbolic links and `..`, and recognise hard links to inputs.
 class PathLedger {
  public:
   /// Registers an input file. `what` names it in messages, such as "the scene".
@@ -30,12 +30,14 @@ class PathLedger {
   void writes(const std::string& option, const std::filesystem::path& file) { writes(option, file, {file}); }
   /// Registers an output file. An existing file with the same content may be overwritten.
   void writes_content(const std::string& option, const std::filesystem::path& file, const std::string& content);
-  /// Registers a folder that the command uses exclusively. The code that creates the folder checks what it contains.
+  /// Registers a folder that the command uses exclusively. The code that creates the folder checks what the folder
+  /// contains.
   void register_output_folder(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if a folder has its name. If
-  /// `overwrite` is false, files that other processes create after this call are not replaced either. `own`: outputs()
-  /// of the run that is resumed; existing files of these outputs may be replaced if `is_own` returns true.
+  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if there is a folder of this
+  /// name. If `overwrite` is false, the command does not replace files that other processes create after this call
+  /// either. `own`: outputs() of the run that is resumed; existing files of these outputs may be replaced if `is_own`
+  /// returns true.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.
@@ -51,7 +53,7 @@ class PathLedger {
   struct Output {
     std::string name;  // option and place
     std::vector<std::filesystem::path> files;
-    std::string content;  // an existing file with this content may be overwritten; empty: none may
+    std::string content;  // an existing file with this content may be overwritten; empty: no existing file may
   };
   using FileId = std::pair<unsigned long, unsigned long>;  // device and inode
 

@@ -92,8 +92,8 @@ ExitCode become_tools(const Command& /*command*/, char** argv) {
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
     prepare_streams_and_signals();
-    // The dynamic loader starts a program from an archive. Without this call, the process would have the name of the
-    // loader.
+    // If the program comes from an archive, the dynamic loader starts it. Without this call, the process would have the
+    // name of the loader.
     if (const Installation own = own_installation(); !own.libraries.empty())
       ::prctl(PR_SET_NAME, own.code.filename().c_str());
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);

@@ -6,8 +6,8 @@
 
 namespace weft::cli {
 
-/// The constructor reads and checks the whole archive, so that weft farm refuses a truncated archive, or one of another
-/// program, before any task starts.
+/// The archive, compressed with zstd. The constructor reads and checks all of it, so that weft farm refuses a truncated
+/// archive, or one of another program, before any task starts.
 class ProgramArchive {
  public:
   /// Throws Error(asset_unreadable) with the defect.

@@ -37,7 +37,7 @@ struct FilmPlan {
   FrameRange made;            ///< frames that are simulated, or read from a cache
   FrameRange wanted;          ///< subset of `made` that is drawn, or written as meshes
   int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
-  bool finds_camera = false;  ///< whether the camera is computed from all frames before the first one is drawn
+  bool finds_camera = false;  ///< whether the camera path must be computed from all frames before drawing begins
   OutputTarget target;
   render::Settings settings;
   std::vector<std::string> objects;  ///< names of all objects

@@ -17,7 +17,7 @@ namespace weft::cli {
 /// The outcome of one frame.
 struct FrameRecord {
   simulation::FrameReport report;
-  bool written = false;  ///< all stages have completed the frame; set back to false if the video cannot be finished
+  bool written = false;  ///< all stages have completed the frame; false again if the video cannot be finished
   StageTime render, encode, meshes;
 };
 
@@ -32,19 +32,19 @@ struct RunReport {
   std::size_t particles = 0;
   double cloth_size = 0;  ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
   int threads = 0;
-  std::string gl;
+  std::string gl;             ///< description of OpenGL; "none" if nothing is drawn
   int width = 0, height = 0;  ///< [pixels]; 0 if nothing is drawn
   double fps = 0;
   std::string output;               ///< path as the user typed it, or the default
   std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
   bool replayed = false;            ///< whether frames were read from a cache instead of simulated
-  FrameRange wanted;
+  FrameRange wanted;                ///< frames to draw
   std::vector<FrameRecord> frames;  ///< simulated or read frames
   int written = 0;                  ///< number of frames with FrameRecord::written
   StageTime cache;                  ///< time for storing frames and states
   std::uintmax_t cache_bytes = 0;   ///< written to the cache
   StageTime setup;               ///< time for reading the scene and building the simulation, or for opening the cache
-  double wall_s = 0, cpu_s = 0;  ///< of the whole process, all threads
+  double wall_s = 0, cpu_s = 0;  ///< of the whole process; cpu_s: sum over all threads
   std::int64_t peak_memory = 0;  ///< [bytes]
   std::vector<std::string> warnings;
   /// Remarks that need no action, such as that a body surface was moved to make space for cloth.

@@ -14,7 +14,7 @@
 namespace weft::cli {
 
 /// Reads the scene and applies the changes that the command line asks for. Throws Error(scene_invalid) with all
-/// mistakes, one per line, and Error(usage) if the scene does not have the camera.
+/// mistakes, one per line, and Error(usage) if the scene lacks the camera that `options` names.
 scene::Scene load_scene(const SceneOptions& options);
 
 /// Registers the scene file and all files that it names.
@@ -26,7 +26,7 @@ std::string mistakes_text(const scene::LoadResult& loaded);
 /// Throws Error(usage) with the most similar name if `camera` is not in `names`.
 void check_camera(const std::vector<std::string>& names, const std::string& camera);
 
-/// The settings for drawing. `size` and `camera` are used if `options` sets none.
+/// The settings for drawing. `size` and `camera` are the defaults where `options` sets none.
 render::Settings render_settings(const PictureSize& size, const std::string& camera, const SceneOptions& options);
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
 

@@ -20,7 +20,7 @@ namespace weft::cli {
 namespace {
 
 bool shows_single_color(const image::Image& image) {
-  // If each pixel equals the next one, all are equal.
+  // If each pixel equals the next pixel, all pixels are equal.
   return image.rgb.size() > 3 && std::equal(image.rgb.begin() + 3, image.rgb.end(), image.rgb.begin());
 }
 

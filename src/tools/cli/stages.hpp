@@ -30,13 +30,13 @@ class FramePainter {
   virtual ~FramePainter() = default;
   /// Sets the camera path. Without it, a computed camera depends only on the first drawn frame.
   virtual void set_camera_path(render::CameraPath) {}
-  /// `before`: the previous wanted frame, for motion blur and layers; null if there is none or it is not needed.
+  /// `before`: the previous frame to draw, for motion blur and layers; null if it does not exist or is not needed.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;
 };
 
-/// Writes pictures. If the object is destroyed without finish(), it must leave no incomplete file.
+/// Writes pictures. If a writer is destroyed without finish(), it must leave no incomplete file.
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;

@@ -23,7 +23,7 @@ constexpr std::size_t kCloseUps = 5;
 constexpr double kCloseUpAngle = 30;  // vertical field of view [degrees]
 // Height of the region that a close-up shows: minimum [m], and ratio to the size of the place.
 constexpr double kMinCloseUpHeight = 0.1, kCloseUpHeightRatio = 1.6;
-// A later camera must show more by this factor to replace an earlier one.
+// A later camera replaces an earlier one only if its visible_fraction() is more than this times as large.
 constexpr double kMinVisibilityGain = 1.25;
 constexpr double kMarkWidth = 1.5 / 360;  // width of the outline, as a fraction of the picture height
 constexpr std::array<std::uint8_t, 3> kMark{225, 20, 40};
@@ -32,8 +32,9 @@ Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
 }
 
-// Fraction of the picture that shows triangles of a place. saliency_of() measures how much cloth is visible, so these
-// triangles are the only cloth. They are drawn first, so that they hide the original surface, which has the same depth.
+// Fraction of the picture that shows the triangles of a place. saliency_of() measures how much cloth is visible, so
+// only these triangles are marked as cloth. They are drawn first, so that they hide the original surface, which has the
+// same depth.
 double visible_fraction(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                         const frame::Camera& camera, double aspect) {
   auto marks = std::make_shared<frame::Surface>();
@@ -56,8 +57,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
   return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
 }
 
-// Of 32 cameras around a place, the one that shows most of it. The factor kMinVisibilityGain prefers the first cameras,
-// which look from the front and from above.
+// Of 32 cameras around a place, the camera that shows most of the place. The factor kMinVisibilityGain prefers the
+// first cameras, which look from the front and from above.
 frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                                    double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);

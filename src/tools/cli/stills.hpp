@@ -29,12 +29,12 @@ class Stills {
   const std::vector<int>& frames() const { return frames_; }
 
   virtual void add_inputs(PathLedger& paths) const = 0;
-  /// Number of frames to simulate, with the preroll, until frame `last` is available.
+  /// Number of frames to simulate, with the preroll, until frame `last` is available; 0 for a cache.
   virtual int cost(int last) const = 0;
   /// Returns a frame. Call it with ascending frame numbers. Throws Error(interrupted) after a stop signal.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
-  /// The camera path, computed from all frames of the cache or from those simulated so far. Call it after at() for all
-  /// frames to draw.
+  /// The camera path, computed from the frames of the cache that have the current looks, or from those simulated so
+  /// far. Call it after at() for all frames to draw.
   render::CameraPath camera();
   /// Whether a stop signal has arrived.
   bool is_stopped() const { return signals_.requested(); }
@@ -55,8 +55,9 @@ class Stills {
 /// Opens `options.scene`: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.
 std::unique_ptr<Stills> open_stills(const SceneOptions& options);
 
-/// Returns `output`; if it is empty, output/<default_name>. Throws Error(usage) if this is not a PNG file or an input,
-/// and Error(output_failed) if it cannot be written, or exists and `overwrite` is false.
+/// Returns `output`; if it is empty, output/<default_name>. Throws Error(usage) if this name does not end in .png, or
+/// if it is an input. Throws Error(output_failed) if the file cannot be written, or if it exists and `overwrite` is
+/// false.
 std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
                                  const std::string& default_name, bool overwrite);
 

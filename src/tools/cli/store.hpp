@@ -1,4 +1,5 @@
-// The frame cache that a run fills while it simulates, and from which --resume continues.
+// The frame cache that a run fills while it simulates, and from which --resume continues. The *looks* of a scene are
+// its colours, cameras and lights; its motion does not depend on them.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +21,8 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;                                       ///< not in the cache yet, or there with former looks
-  const production::SceneSimulation* simulation = nullptr;  ///< with the state of this frame; null if it was read
+  bool fresh = false;  ///< not in the cache yet, or stored there with looks that have changed since
+  const production::SceneSimulation* simulation = nullptr;  ///< in the state of this frame; null if `snapshot` was read
 };
 
 class Store {
@@ -33,7 +34,7 @@ class Store {
 
   /// Locks `folder` against other writers. Throws Error(output_failed).
   Store(std::filesystem::path folder, Need need, cache::Manifest manifest, std::string scene_text);
-  /// Removes the folder if nothing was written.
+  /// Removes the folder if it is empty.
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
@@ -43,8 +44,8 @@ class Store {
   bool has_leftover() const { return cache::is_cache(lock_.folder()); }
 
   /// Finds the frame from which the earlier run can be resumed. If files are damaged, reports them; the run then starts
-  /// at the beginning. Throws Error(output_failed) if the scene of the earlier run differs in more than looks, or if
-  /// another build of the program made the cache.
+  /// at the beginning. Throws Error(output_failed) if the scene has changed in more than its looks since the earlier
+  /// run, or if another build of the program made the cache.
   void find_start();
   /// Whether find_start() found a state to resume from.
   bool resumes() const { return reader_ != nullptr; }
@@ -55,12 +56,12 @@ class Store {
   std::set<std::string> outputs() const;
   /// Whether a file is the effective scene of the resumed run, unchanged since that run wrote it.
   bool holds_scene(const std::filesystem::path& file) const;
-  /// Adds to outputs().
+  /// Adds these outputs to outputs(), in a file of the cache.
   void note_outputs(std::set<std::string> outputs) const;
 
   /// The cache of the earlier run; call it only if resumes().
   const cache::Reader& earlier() const { return *reader_; }
-  /// Whether the cache has this frame and all earlier ones with the current looks; call it only if resumes().
+  /// Whether the earlier run stored this frame and all before it with the current looks; call it only if resumes().
   bool holds(int frame) const;
   /// The stored state, from which the simulation continues; call it only if resumes().
   const cache::SolverState& start() const { return start_; }
@@ -72,7 +73,7 @@ class Store {
   void keep(const MadeFrame& frame);
   /// Reads a frame that this run or an earlier one has stored.
   frame::SnapshotPtr stored(int frame);
-  /// Saves the state of the last frame. If this fails, an earlier state remains.
+  /// Saves the state of the last kept frame if it was simulated. If saving fails, an earlier state remains.
   void keep_last_state();
   /// Saves the state of the simulation if this run has saved none yet, or if the last save took at most 1 % of the wall
   /// time since then.

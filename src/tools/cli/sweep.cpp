@@ -36,7 +36,8 @@ struct Job : SweepJob {
 
   fs::path log() const { return folder / "run.log"; }
 
-  /// Exit code of the run according to its statistics; frames_missing if they have none.
+  /// Returns `ok` if the run is done, else the exit code of its failure from the statistics. Returns frames_missing if
+  /// the statistics name no failure: they or the video are missing, or they belong to another scene.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
     const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
@@ -75,8 +76,8 @@ class Sweep {
   }
 
  private:
-  /// Removes the statistics of all runs, by which a sweep recognises finished runs. If this sweep is stopped, the next
-  /// one then repeats the remaining runs, which may have had other options.
+  /// Removes the statistics of all runs, by which a sweep recognises finished runs. Without this, if the sweep is
+  /// stopped, the next sweep would accept results that were made with earlier options.
   void forget_results() const {
     std::error_code none;
     for (const Job& job : jobs_) fs::remove(job.stats(), none);
@@ -103,8 +104,8 @@ class Sweep {
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
-        // A terminal signals the whole process group, but other senders may signal this process alone. So it passes the
-        // signal on to the runs.
+        // A terminal signals the whole process group, but other senders may signal this process alone. So each run gets
+        // SIGTERM from here.
         if (!std::exchange(told, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }
@@ -165,7 +166,7 @@ class Sweep {
                             results.size(), options_.overwrite ? "starts again" : "continues"));
       return ExitCode::interrupted;
     }
-    std::vector<std::string> made;  // a file may be missing: there is no sheet if no run has a picture
+    std::vector<std::string> made;  // files that exist; if no run has a picture, there is no sheet
     for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
       if (fs::is_regular_file(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));

@@ -24,7 +24,7 @@ struct SweepJob {
   std::string scene = {};       ///< its name
   int frame_count = 1;          ///< of the scene
   bool may_find_camera = true;  ///< drawing may need all frames, as the scene has no camera or a computed one
-  FrameRange drawn = {};        ///< frames to draw: all; in a farm the requested ones
+  FrameRange drawn = {};        ///< frames to draw: all; in a farm, those of --frames
 
   std::filesystem::path video() const { return folder / (scene + ".mp4"); }
   std::filesystem::path stats() const { return folder / (scene + ".json"); }
@@ -37,13 +37,13 @@ struct SweepJob {
 };
 
 /// Reads and checks the scenes of all runs. If any scene has mistakes, throws Error(scene_invalid) with the mistakes of
-/// all scenes. Also throws Error(usage) and Error(asset_unreadable). Registers in `paths` the file with the list of
-/// runs, if there is one, and the input files of the first run's scene.
+/// all scenes. Also throws as read_list() and plan_sweep() do. Registers in `paths` the file with the list of runs, if
+/// there is one, and the input files of the first run's scene.
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
 /// Registers the output folder in `paths`. Throws Error(output_failed) unless the folder is new, empty, or that of a
-/// sweep with the same `passed_on` options; with `overwrite`, of any sweep. Also throws if the review page in the
-/// folder cannot be replaced.
+/// sweep with the same `passed_on` options; with `overwrite`, of any sweep. Also throws if the review page `page` in
+/// the folder cannot be replaced.
 void check_sweep_folder(const SweepOptions& options, PathLedger& paths);
 
 /// Writes the index file (review::kSweepName), which also marks the folder as that of a sweep.

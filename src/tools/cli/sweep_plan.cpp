@@ -147,7 +147,7 @@ std::vector<Changes> read_toml(const fs::path& file, const std::string& text) {
   }
 }
 
-// The last `parts` parts of a key: "a.b.bend" gives "bend", "b.bend" or itself.
+// The last `parts` parts of a key: "a.b.bend" gives "bend" for 1, "b.bend" for 2, itself from 3 on.
 std::string ending(const std::string& key, std::size_t parts) {
   std::size_t start = key.size();
   for (; parts > 0 && start != std::string::npos; --parts)

@@ -26,7 +26,7 @@ Axis parse_axis(const std::string& text);
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
 /// Reads a list of runs: CSV with the keys in its first line and one run per row, or TOML with a table [[run]] for each
-/// run. Throws Error(asset_unreadable) with the line.
+/// run. Throws Error(asset_unreadable), for a syntax error with the line.
 std::vector<Changes> read_list(const std::filesystem::path& file);
 
 /// Parses the text of a list; the extension of `file` selects the format.
@@ -34,8 +34,9 @@ std::vector<Changes> parse_list(const std::filesystem::path& file, const std::st
 
 struct SweepRun {
   Changes changes;     ///< all changes of the scene
-  std::string name;    ///< name of the run's folder, made of the values that differ between runs
-  Changes difference;  ///< the changes that differ between runs; keys are shortened to their shortest unique endings
+  std::string name;    ///< name of the run's folder, made from `difference`
+  Changes difference;  ///< the changes that differ between runs (all, if there is one run); keys are shortened to
+                       ///< unique endings
 };
 
 /// Combines each row of the list with each combination of the values of all axes; the last axis varies fastest. Removes

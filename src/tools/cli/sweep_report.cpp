@@ -48,7 +48,7 @@ std::string largest(const Json& stats, const char* key) {
   return most ? fmt::format("{:.4g}", *most) : "";
 }
 
-/// Whether the error is comparable with that of another run: "yes" or "no"; empty without --error.
+/// Whether the estimated error can be compared with that of other runs: "yes" or "no"; empty without --error.
 std::string comparable_of(const Json& stats) {
   const Json comparable = at(stats, {"error", "comparable"});
   if (!comparable.is_boolean()) return "";
@@ -92,8 +92,9 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   }
 }
 
-/// Number of columns of the sheet. If 2 to kMaxSheetColumns runs have the same values of the first keys, they form a
-/// row, along which the other keys vary. Otherwise the sheet is about square, with at most kMaxSheetColumns columns.
+/// Number of columns of the sheet. If the first n runs (2 <= n <= kMaxSheetColumns) have the same values of the first
+/// keys, a row has n pictures, along which the other keys vary. Otherwise the sheet is about square, with at most
+/// kMaxSheetColumns columns.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {

@@ -15,23 +15,24 @@ namespace weft::cli {
 
 struct SweepResult {
   SweepRun run;
-  std::filesystem::path video;   ///< of this run or, if the scenes are the same, of the earlier one (SweepJob::twin)
+  std::filesystem::path video;   ///< of this run or, if it has a twin (SweepJob::twin), of the twin
   nlohmann::ordered_json stats;  ///< null if the run wrote none
   ExitCode code = ExitCode::ok;
 };
 
-/// A heading and one row per run: the values of the run, then the columns that scenes/data.md describes. If the
-/// statistics have no value, the cell is empty.
+/// A heading and one row per run: the values that differ between runs, then the columns that scenes/data.md describes.
+/// If the statistics lack a value, the cell of this value is empty.
 bench::Table sweep_table(const std::vector<SweepResult>& results);
 
 /// Writes a sheet with one picture per run, captioned with its values and with the CPU times of simulation and drawing
 /// or, if the run failed, with the exit code. The picture is the one with index `frame` in the video; if `frame` is
-/// missing or too large, the last one. It is grey if the run has none, or one of another size than the first. Writes
-/// nothing if no run has a picture. If a PNG cannot hold all runs, the sheet shows the first ones, and a note says so.
+/// missing or too large, the last one. A grey picture stands for a run without a picture, and for a picture whose size
+/// differs from that of the first run with a picture. Writes nothing if no run has a picture. If a PNG cannot hold all
+/// runs, the sheet shows the first ones, and a note says so.
 void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
                        const std::string& heading, std::optional<int> frame);
 
-/// The values that differ from other runs: "bend=1e-6 wind=[8,2,0]"; "as it is" if none does.
+/// The values that differ from other runs: "bend=1e-6  wind=[8,2,0]"; "as it is" if no value differs.
 std::string label_of(const SweepRun& run);
 
 }  // namespace weft::cli

@@ -68,7 +68,7 @@ bool is_folder(const ThumbnailOptions& options) {
   return !options.output.empty() && (!options.output.has_extension() || may_exist);
 }
 
-/// If there are several scenes, throws Error(interrupted) if a stop signal arrived while this one was drawn.
+/// Throws Error(interrupted) if there are several scenes and a stop signal arrived while this scene was drawn.
 void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
   if (stills.is_stopped() && options.scenes.size() > 1)
     throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
@@ -125,7 +125,7 @@ void draw_thumbnail(const ThumbnailOptions& options) {
   check_stopped(options, *stills);
 }
 
-/// Draws one picture per scene into a folder. If a scene fails, continues with the next one.
+/// Draws one picture per scene into a folder. If a scene fails, continues with the next scene.
 class Batch {
  public:
   explicit Batch(const ThumbnailOptions& options)

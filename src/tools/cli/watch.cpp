@@ -52,7 +52,7 @@ class Watch {
                   output.string(), scene);
   }
 
-  /// If the number of drawings is limited, returns the exit code of the last one.
+  /// Returns the exit code of the last drawing if the number of drawings is limited, and `ok` after a stop request.
   ExitCode draw_repeatedly() {
     for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {
       // If the scene is invalid, its list of files is incomplete, so the scene file is always added.
@@ -71,7 +71,7 @@ class Watch {
   bool changed() const { return stamps_of(files_) != drawn_; }
 
   /// Draws in a separate process, which reports its own errors. Kills this process if a file changes or a stop is
-  /// requested. Returns its exit code.
+  /// requested. Returns the exit code of the process; if it was killed here, ExitCode::interrupted.
   ExitCode draw() const {
     std::vector<std::string> words{own_program().string(),
                                    options_.film ? "run" : "thumbnail",

@@ -17,7 +17,8 @@ namespace fs = std::filesystem;
 // Whether an output has the expected metadata; the OpenGL implementation may differ.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
-  // These entries exist only if their option is given. If it is not given now, the output must not have the entry.
+  // The metadata have such an entry only if the run was given the option. If the current run was not, the output must
+  // not have the entry.
   for (const char* option : {"camera", "look", "motion_blur"})
     if (found.contains(option) && !expected.contains(option)) return false;
   return std::ranges::all_of(expected, [&](const auto& entry) {

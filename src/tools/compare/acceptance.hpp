@@ -1,4 +1,4 @@
-// Replaces references (accepted pictures and videos that new ones are compared with), and logs the reasons.
+// Replaces references, which are accepted pictures and videos with which new files are compared, and logs the reasons.
 #pragma once
 
 #include <filesystem>
@@ -9,18 +9,20 @@ namespace weft::compare {
 /// A planned replacement of a reference.
 struct Acceptance {
   std::filesystem::path test, reference;  ///< `test` replaces `reference`, which may not exist yet
-  std::filesystem::path log;              ///< accepted.md
+  std::filesystem::path log;              ///< accepted.md in the folder of the references
   std::string reason, user;
 
-  /// Plans the replacement; changes no file. `reference`: a file, or a folder in which `find_reference` looks up
-  /// `name`. If it finds nothing, `test` becomes a new reference. Throws Error(usage) if `test` is neither picture nor
-  /// video or the extensions differ, and Error(asset_unreadable) if `test` is not complete.
+  /// Plans the replacement; changes no file. `reference`: a file, or a folder in which `find_reference`
+  /// (references.hpp) looks up `name`. If there is no such reference, `test` becomes a new one. The caller sets
+  /// `reason` and `user`. Throws Error(usage) if `test` is neither picture nor video, or if `reference` is a file with
+  /// a different extension, and Error(asset_unreadable) if `test` is not complete.
   static Acceptance plan(const std::filesystem::path& reference, const std::filesystem::path& test,
                          const std::string& name);
 
-  /// Adds a line to the log, then replaces the reference, so that the log names every replacement. Replaces both files
-  /// atomically, and locks the folder of the log against other calls in any process. If test and reference are equal in
-  /// every pixel, changes nothing and returns false. Throws Error(output_failed).
+  /// Adds a line to the log, then replaces the reference, so that the log names every replacement. Replaces the log and
+  /// the reference, each atomically, and locks the folder of the log against other calls in any process. If the test
+  /// and an existing reference are equal in every pixel, changes nothing and returns false. Throws
+  /// Error(output_failed).
   bool carry_out() const;
 };
 

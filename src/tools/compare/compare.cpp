@@ -81,7 +81,8 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
     result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
     if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
-    // FLIP filters the images, so a difference near the border of the mask also changes the map outside.
+    // FLIP filters the images, so a difference near the border of the mask also changes the FLIP map outside of the
+    // mask.
     for (std::size_t i = 0; i < mask->values.size(); ++i)
       if (mask->values[i] == 0) result.flip.values[i] = 0;
     read_flip(result);

@@ -11,8 +11,8 @@
 namespace weft::compare {
 
 /// Limits beyond which two images count as different. The defaults tolerate differences between CPU types and Mesa
-/// versions: single pixels at the edges of cloth, shadows and printed patterns (README.md, Decisions). They reject
-/// differences that a viewer sees if the images alternate.
+/// versions: single pixels at the edges of cloth, shadows and printed patterns (README.md, Decisions). The defaults
+/// reject differences that a viewer sees if the images alternate.
 struct Limits {
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
   /// Fraction of the pixels that may differ by more than pixel_tolerance. The default value has two more rules: a pixel
@@ -22,14 +22,15 @@ struct Limits {
   /// difference of one level at 2 % of the pixels. `for_size` raises the default for small pictures.
   double flip = 5e-4;
   /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget allows: a spot of
-  /// 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels. It tolerates a pixel with one of its four
-  /// samples on the wrong side of an edge, whose FLIP value is up to 0.25.
+  /// 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels. It tolerates a pixel of which one of the
+  /// four samples falls on the wrong side of an edge: its FLIP value is up to 0.25.
   double spot = 0.3;
 };
 
-/// Widens default limits for lossy videos: the encoder amplifies small differences where it divides gradients into
-/// coding blocks. Measured between H.264 videos at crf 18 from two CPU types: up to 1.35 % of the pixels over the
-/// tolerance, mean FLIP 0.011, largest FLIP 0.28. The wider limits are twice the first two values, and 0.4.
+/// Widens those limits that have their default values, for lossy videos: the encoder amplifies small differences where
+/// it divides gradients into coding blocks. Measured between H.264 videos at crf 18 from two CPU types: up to 1.35 % of
+/// the pixels over the tolerance, mean FLIP 0.011, largest FLIP 0.28. The wider limits are twice the first two values,
+/// and 0.4 for the largest FLIP.
 Limits with_encoder_noise(Limits limits);
 
 /// Selects the pixels that are compared: those whose value is not 0.
@@ -41,8 +42,8 @@ struct Figures {
   std::int64_t pixels = 0;           ///< pixels that were compared: all, or those of the mask
   std::int64_t pixels_changed = 0;   ///< pixels that differ at all
   std::int64_t pixels_over = 0;      ///< pixels that differ by more than the tolerance
-  std::int64_t pixels_at_edges = 0;  ///< of pixels_over, those in small groups at edges: see `count_at_edges`
-  int largest = 0;                   ///< largest difference of any channel of a pixel [levels of 255]
+  std::int64_t pixels_at_edges = 0;  ///< those of pixels_over that `count_at_edges` (edges.hpp) counts
+  int largest = 0;                   ///< largest difference of any channel of any pixel [levels of 255]
   int largest_x = 0, largest_y = 0;  ///< first pixel with this difference, row by row from the top left
   double ssim = 1;                   ///< mean structural similarity, 1 if equal
   double flip = 0;                   ///< mean of the FLIP map over the compared pixels, 0 if equal
@@ -63,7 +64,7 @@ struct Comparison {
 };
 
 /// Compares two images. Pixels outside `mask` count as equal (null: there is no mask). Throws Error(internal) if images
-/// or mask differ in size or have no pixels.
+/// or mask differ in size, or if there are no pixels to compare.
 Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance,
                    const Mask* mask = nullptr);
 
@@ -78,10 +79,10 @@ double allowed_pixels(const Figures& figures, const Limits& limits);
 
 Verdict verdict(const Figures& figures, const Limits& limits);
 
-/// Whether frame k of a lossy video, whose verdict is `differs`, is spill: it differs only since the encoder predicted
-/// it from a changed frame nearby. Conditions: the counted pixels and the mean FLIP are at most twice their limits,
-/// `spot` is within its limit, and the mean FLIP is at most a third of the largest one of the frames at most 12 frames
-/// away. `frames`: all frames of the video, in order.
+/// Whether frame k of a lossy video is spill: the frame differs only because the encoder predicted it from a changed
+/// frame nearby. Call it for frames with the verdict `differs`. Conditions: the counted pixels and the mean FLIP are at
+/// most twice their limits, `spot` is within its limit, and the mean FLIP is at most a third of the largest mean FLIP
+/// of the frames up to 12 frames away. `frames`: all frames of the video, in order.
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits);
 
 /// The FLIP map in the colours of `image::heat_color`, with dark blue for 0. The position on the colour scale is the

@@ -1,5 +1,5 @@
-// Counts differing pixels at edges. With another CPU type or Mesa version, a sample near an edge can fall on the other
-// side of it.
+// Counts differing pixels at edges. With another CPU type or Mesa version, a sample of a pixel can fall on the other
+// side of an edge.
 #pragma once
 
 #include <cstdint>

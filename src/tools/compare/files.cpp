@@ -57,7 +57,7 @@ Figures add_frame(FileComparison& result, image::Image&& reference, image::Image
   return figures;
 }
 
-// Counts the frames that exceed a limit again, those of spill (see is_spill()) separately.
+// Recounts the frames that exceed a limit; counts those with spill, see is_spill(), separately.
 void count_spill(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
   result.frames_differing = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {

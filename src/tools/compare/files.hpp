@@ -31,14 +31,13 @@ struct FileComparison {
   std::filesystem::path reference, test;
   Outcome outcome = Outcome::same;
   std::string problem;       ///< what is wrong, for the outcomes from `size` on; else empty
-  bool video = false;        ///< else a picture, which counts as one frame
+  bool video = false;        ///< whether both files are videos; a picture counts as one frame
   int frames = 0;            ///< number of compared frames
   int frames_differing = 0;  ///< number of frames that exceed a limit, without spill
   int frames_of_spill = 0;   ///< number of frames that exceed a limit only by spill; see is_spill()
-  int first_differing =
-      0;  ///< index, from 0, of the first frame that exceeds a limit, without spill; undefined if none does
-  int worst_frame = 0;  ///< index of the frame with the largest mean FLIP, of those that exceed a limit if any does
-  Comparison worst;     ///< of the worst frame; empty if none was compared
+  int first_differing = 0;   ///< index, from 0, of the first frame that frames_differing counts; undefined if it is 0
+  int worst_frame = 0;       ///< frame with the largest mean FLIP; of those that exceed a limit, if there are any
+  Comparison worst;          ///< of the worst frame; empty if none was compared
   /// The worst frame as read from both files; empty if none was compared.
   image::Image reference_picture, test_picture;
 

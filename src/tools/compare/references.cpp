@@ -71,7 +71,7 @@ std::vector<std::string> reference_names(const fs::path& folder, const std::stri
 std::vector<std::string> comparable_names(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  // Linked folders are followed; a cycle of links ends with an error.
+  // Follows links to folders; a cycle of links causes an error.
   fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     // Weft writes to a hidden file and renames it when it is complete.

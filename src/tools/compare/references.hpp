@@ -1,6 +1,6 @@
 // Folders of reference pictures. Pictures depend slightly on the version of Mesa and on the vector width of the
-// processor. These two define the machine class. If the differences exceed the limits of the comparison, a machine
-// class has references of its own. The first of these files that exists is used:
+// processor. These two define the machine class. A machine class has references of its own if its pictures differ by
+// more than the limits. Of these files, the first one that exists is used:
 //
 //     references/mesa-22.3-256bit/name.png   only for this machine class
 //     references/default/name.png

@@ -59,7 +59,7 @@ Json pictures_json(const frame::Surface& surface) {
   return result;
 }
 
-// Linear colour of the back of each material of cloth, if it differs from the front.
+// Linear colour of the back of each material of cloth, if it differs from the front and the back shows no picture.
 Json backs_json(const frame::Surface& surface) {
   Json result = Json::object();
   if (surface.kind != frame::ObjectKind::cloth) return result;

@@ -46,7 +46,8 @@ int wrap_number(frame::Paint::Wrap wrap) {
   return kRepeat;
 }
 
-// Duplicates places (CutSurface) on creases, so that each has one normal group (NormalGroups). Returns these groups.
+// Duplicates places (CutSurface) on creases, so that each place has one normal group (NormalGroups). Returns the group
+// of each place; -1 for a place that no triangle uses.
 std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
   std::vector<Index> group_of(cut.vertex_of.size(), -1);
   std::map<std::pair<Index, Index>, Index> copies;  // by place and group

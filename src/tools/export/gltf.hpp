@@ -15,15 +15,15 @@
 namespace weft::exporter {
 
 /// Each object is a mesh with the vertices of the first frame, and one morph target per later frame. At the time of a
-/// later frame, the weight of its target is 1 and those of all others are 0; between frames, weights and thus positions
+/// later frame, the weight of its target is 1, and all other weights are 0; between frames, weights and thus positions
 /// are interpolated linearly. Morph targets are the only way of the standard to move vertices independently; assimp,
 /// Blender and three.js read them. Objects that never move have no targets.
 ///
 /// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. Normals have targets as
-/// well, since the normals of the first frame would be wrong in all others. Texture coordinates are (weft, 1 − warp)
-/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If a picture is
-/// mapped in another way, a second set of texture coordinates maps it. A mesh has one primitive per material; all
-/// primitives share its vertices.
+/// well, since the normals of the first frame would be wrong in later frames. Texture coordinates are (weft, 1 − warp)
+/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If these
+/// coordinates do not map the picture, a second set of texture coordinates does. A mesh has one primitive per material;
+/// all primitives share its vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.
@@ -36,8 +36,8 @@ class GltfFile {
   /// they keep that of the first frame.
   void add_views(const std::vector<View>& views);
 
-  /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed the
-  /// limit of the format.
+  /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed 4
+  /// GiB, the limit of the format.
   void write(const std::filesystem::path& file, const std::string& animation_name, double aspect);
 
  private:

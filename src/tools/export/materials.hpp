@@ -11,8 +11,8 @@
 namespace weft::exporter {
 
 /// A picture beside or inside the exported files. Other programs cannot combine it with a colour, so its pixels already
-/// include the surface's colour: multiplied by the picture or, with Alpha::over_color, behind its transparent parts and
-/// around it.
+/// include the surface's colour: multiplied by the picture or, with Alpha::over_color, shown through transparent parts
+/// of the picture and around it.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
@@ -27,22 +27,22 @@ struct PictureFile {
 
 struct Material {
   static constexpr std::size_t kNoPicture = static_cast<std::size_t>(-1);
-  std::string name;  ///< letters, digits, - and _
-  Vec3 color;        ///< linear; if there is a picture, its pixels already include this colour
-  double roughness = 0, metal = 0;
+  std::string name;                  ///< letters, digits, - and _
+  Vec3 color;                        ///< linear; if there is a picture, its pixels already include this colour
+  double roughness = 0, metal = 0;   ///< 0 to 1
   std::size_t picture = kNoPicture;  ///< index in Materials::pictures
   frame::Paint::Wrap wrap_u = frame::Paint::Wrap::repeat, wrap_v = frame::Paint::Wrap::repeat;  ///< never Wrap::once
-  bool cutout = false;
+  bool cutout = false;  ///< whether the alpha of the picture cuts holes
   /// Maps (u, v, 1) of the surface to the picture: 0 to 1 from left to right and from bottom to top.
   Eigen::Matrix<double, 2, 3> picture_from_uv = Eigen::Matrix<double, 2, 3>::Identity();
-  std::size_t alike = 0;  ///< index of the first material with the same look
+  std::size_t alike = 0;  ///< index in Materials::all of the first material with the same look
 
   bool has_picture() const { return picture != kNoPicture; }
 };
 
 /// Materials of a surface. Both sides of cloth have the materials of the front.
 struct Materials {
-  std::vector<Material> all;  ///< that of the surface itself, then one per element of Surface::parts
+  std::vector<Material> all;  ///< the material of the surface itself, then one material per element of Surface::parts
   std::vector<PictureFile> pictures;
 
   /// Index in `all` of the material of a triangle.

@@ -20,7 +20,7 @@
 namespace weft::exporter {
 
 /// Blender's modifier ignores the field "frames between samples", so there is a sample for every frame of the scene.
-/// Those between two added frames are interpolated linearly.
+/// Samples between two added frames are interpolated linearly.
 class PointCache {
  public:
   /// `given`: number of frames that will be added, `step` apart. All functions throw Error(output_failed).

@@ -232,8 +232,8 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    }\n";
 }
 
-// Writes the texture coordinates that map the pictures as `st`. If they differ from weft and warp, writes these as
-// `weft_warp`.
+// Writes the texture coordinates that map the pictures as `st`. If they differ from weft and warp, also writes weft and
+// warp as `weft_warp`.
 void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
   const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
   if (cut.uv.empty()) return;

@@ -32,7 +32,8 @@ class UsdFile {
   /// Values of an attribute over time.
   class Samples {
    public:
-    /// Adds the value of a frame. Returns whether it differs from that of the previous frame; true for the first frame.
+    /// Adds the value of a frame. Returns whether the value differs from that of the previous frame; true for the first
+    /// frame.
     bool add(int frame, std::string value);
     /// Writes the attribute; `name` includes its type, such as `point3f[] points`; `metadata` may be empty.
     void write(std::ostream& out, std::string_view name, std::string_view metadata = "") const;
@@ -43,7 +44,7 @@ class UsdFile {
   };
   struct Object {
     std::size_t surface = 0;
-    std::string prim = {};                // its name in the file, and that of its material
+    std::string prim = {};                // name of the object in the file, and of its material
     std::vector<std::string> parts = {};  // names of the materials of its parts, unique in the file
     NormalGroups groups = {};
     bool smooth = false;  // one normal per vertex, else one per corner

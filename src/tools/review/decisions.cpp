@@ -70,12 +70,12 @@ const Decisions::File& Decisions::read(const fs::path& folder) {
 }
 
 Json Decisions::of(RunFiles& run) {
-  // Folders up to `run.folder`, each with the path of the run from there: for "stiff/band", "band" in stiff/, then
-  // "stiff/band".
+  // The folders above the run up to `run.folder`, each with the path from it to the run. For the run "stiff/band":
+  // stiff/ with "band", then `run.folder` with "stiff/band".
   const fs::path name = run.key;
   std::vector<std::pair<fs::path, std::string>> places;
   // Pictures such as band/00000.png are the run "band". A page that was made for the folder band/ alone calls this run
-  // "band" too, so its file is in band/.
+  // "band" too, and its review.json is in band/.
   if (!run.pictures.empty() && run.pictures.front().parent_path() == run.folder / name)
     places.emplace_back(name, name.filename().string());
   std::string key = name.filename().string();

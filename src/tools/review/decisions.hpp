@@ -21,14 +21,14 @@ namespace weft::review {
 class Decisions {
  public:
   /// Returns the entry of a run; null if there is none. Reads the files in the folder of the run and in its parents, up
-  /// to `run.folder`. Returns the valid entry with the latest date; of equal or missing dates, that of the folder
-  /// nearest to the run. Adds unusable files and entries to `run.problems`.
+  /// to `run.folder`. Returns the valid entry with the latest date; if dates are equal or missing, the entry from the
+  /// folder nearest to the run. Adds unusable files and entries to `run.problems`.
   Json of(RunFiles& run);
 
  private:
   struct File {
     Json runs = Json::object();
-    std::string problem;  ///< why it cannot be used; empty if it is valid or does not exist
+    std::string problem;  ///< why the file cannot be used; empty if the file is valid or does not exist
   };
   const File& read(const std::filesystem::path& folder);
 

@@ -72,8 +72,8 @@ bool is_object_entry(const Json& entry) {
   return entry.is_object() && text("name") && text("kind") && count("vertices") && count("faces");
 }
 
-/// Removes values of the statistics that the page cannot show, and adds them to `problems`, so that the page can show
-/// the rest.
+/// Removes values of the statistics that the page cannot show, and adds their names to `problems`, so that the page can
+/// show the other values.
 void drop_invalid_values(Json& stats, const std::string& file, std::vector<std::string>& problems) {
   const auto drop = [&](const char* key, const char* expected, const auto& fits) {
     const auto found = stats.find(key);
@@ -179,7 +179,8 @@ class Search {
     try {
       run.stats_json = parse_json(read_file(file, kMaxTextBytes));
     } catch (const std::exception& error) {
-      // Other programs may write JSON here, so the defect is reported only if a video of this name exists.
+      // Other programs may write JSON here, so the defect becomes a problem of a run only if a video of this name
+      // exists.
       unusable_[run.name] = fmt::format("{}: not readable as JSON: {}", file.filename().string(), error.what());
       return;
     }
@@ -226,7 +227,8 @@ class Search {
     return true;
   }
 
-  // Whether a video has these pictures: a farm draws those of a run into a subfolder, then joins them to a video.
+  // Whether these pictures are in a subfolder of a sweep's run that has a video. A farm draws the pictures of a run
+  // there, and joins them to the video.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {

@@ -15,11 +15,11 @@ using Json = nlohmann::ordered_json;
 struct RunFiles {
   std::filesystem::path folder;  ///< folder that was searched
   std::string key;               ///< path below `folder` without extension, such as "stiff/falling_band"
-  std::string name;              ///< the key; if several folders are searched, preceded by the name of the folder
-  std::filesystem::path video;   ///< MP4
+  std::string name;  ///< `key`; if several folders are searched, with the name of `folder` and a slash before it
+  std::filesystem::path video;                  ///< MP4
   std::vector<std::filesystem::path> pictures;  ///< numbered PNG files in order, if there is no video
-  std::filesystem::path stats;
-  Json stats_json;                    ///< content of `stats`
+  std::filesystem::path stats;                  ///< JSON file of --stats
+  Json stats_json;                    ///< content of `stats`, without invalid values; null if there is no such file
   std::filesystem::path effective;    ///< effective scene: the scene with all defaults and changes
   std::vector<std::string> problems;  ///< unusable files, each with the reason
   Json values;                        ///< for a sweep: changed values by key; otherwise null
@@ -33,20 +33,20 @@ inline constexpr const char* kSweepName = "sweep.json";
 /// review pages. Throws Error(asset_unreadable) if `folder` is not a folder or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
-/// Returns whether `run.stats_json` is the statistics of a run. Removes values that the page cannot show, and adds
-/// their names to `run.problems`.
+/// Returns whether `run.stats_json` has the form of statistics of a run. If so, removes the values that the page cannot
+/// show, and adds their names to `run.problems`.
 bool take_statistics(RunFiles& run);
 
 /// The file with decisions about runs; see decisions.hpp.
 inline constexpr const char* kDecisionsName = "review.json";
 
-/// The number at the end of the file name without extension: 12 for band_00012.png; -1 if there is none.
+/// The number at the end of the file name without extension: 12 for band_00012.png; -1 if the name ends in no number.
 long long picture_number(const std::filesystem::path& picture);
 
 /// Whether `weft review` wrote the page in `folder`.
 bool is_review_page(const std::filesystem::path& folder);
 
-/// Text in index.html that marks it as a page of Weft.
+/// Text that index.html of every review page contains.
 inline constexpr const char* kPageMark = "name=\"generator\" content=\"weft review";
 
 }  // namespace weft::review

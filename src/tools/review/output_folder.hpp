@@ -8,8 +8,8 @@
 
 namespace weft::review {
 
-/// Name of the file that lists the files of a page, one per line. A page that replaces this one may remove only these
-/// files.
+/// Name of the file that lists the files of a page, one per line. A later page that replaces this page may remove only
+/// these files.
 inline constexpr const char* kFileList = "files.txt";
 
 /// Throws Error(output_failed) unless `folder` is new, empty, or a page that may be replaced: `overwrite` is set, and
@@ -24,8 +24,8 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return temporary_->path(); }
 
-  /// Flushes everything to disk and gives the folder its final name. An existing page is exchanged with it (atomically,
-  /// if the file system supports this), then removed. Throws Error(output_failed).
+  /// Flushes everything to disk and gives the folder its final name. If a page with this name exists, exchanges the two
+  /// folders (atomically, if the file system supports it), and removes the old page. Throws Error(output_failed).
   void commit();
 
  private:

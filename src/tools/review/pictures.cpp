@@ -68,8 +68,8 @@ Survey survey(const RunFiles& run) {
   Survey found;
   Reader reader(run);
   found.fps = reader.fps();
-  // Keeps every stride-th picture. Doubles the stride at kMaxTiles tiles, since the number of pictures is not known in
-  // advance.
+  // Keeps every stride-th picture. Doubles the stride when there are kMaxTiles tiles, since the number of pictures is
+  // not known in advance.
   long long stride = 1;
   while (const std::optional<image::Image> image = reader.next()) {
     if (found.count == 0) {
@@ -102,7 +102,7 @@ std::vector<PairComparison> compare_with_reference(const RunFiles& run, const Pi
   long long last = -1;
   for (const long long picture : at) {
     const long long other = index_at_same_time(picture, times, reference_times);
-    if (other <= last) continue;  // before the start of the reference, or already compared
+    if (other <= last) continue;  // `other` is before the start of the reference, or already compared
     last = other;
     const std::optional<image::Image> b = theirs.skip_to(other), a = b ? ours.skip_to(picture) : std::nullopt;
     if (!a) break;

@@ -19,32 +19,32 @@ struct Tile {
 
 /// Result of one pass over the pictures of a run.
 struct Survey {
-  std::vector<Tile> tiles;  ///< evenly spaced: all pictures if there are fewer than 16, else 8 to 15
-  long long count = 0;      ///< number of readable pictures
-  double fps = 0;           ///< frame rate of a video [1/s]; 0 if the file does not state it, and for stills
-  int width = 0, height = 0;
+  std::vector<Tile> tiles;    ///< evenly spaced: all pictures if there are fewer than 16, else 8 to 15
+  long long count = 0;        ///< number of readable pictures
+  double fps = 0;             ///< frame rate of a video [1/s]; 0 if the file does not state it, and for stills
+  int width = 0, height = 0;  ///< of the first picture [pixels]; 0 if there is none
 };
 
 /// Reads all pictures of a run. Throws Error(asset_unreadable) if any picture cannot be read.
 Survey survey(const RunFiles& run);
 
-/// Comparison of one picture with the picture of the reference at the same time.
+/// Comparison of a picture of a run with the picture of its reference at the same time.
 struct PairComparison {
   long long picture = 0, reference = 0;  ///< indices, from 0
   compare::Figures figures;
   compare::Verdict verdict = compare::Verdict::same;
-  image::Image heat;  ///< FLIP map; empty if the pictures are equal
+  image::Image heat;  ///< FLIP map in colours, at most 640 pixels wide; empty if the pictures are equal
 };
 
 /// Compares the pictures whose indices are in `at` (ascending) with those of the reference at the same times. Skips a
-/// picture if the reference has none at its time, or if the previous picture was compared with the same one. Throws
-/// Error(asset_unreadable) if pictures cannot be read or differ in size.
+/// picture if the reference has no picture at this time, or if that reference picture was already compared with an
+/// earlier picture. Throws Error(asset_unreadable) if pictures cannot be read or differ in size.
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at);
 
-/// Index of the picture of `to` that is closest in time to picture k of `from`; it may be negative or beyond the last
-/// picture of `to`. Returns k if a frame rate is unknown.
+/// Index of the picture of `to` that is closest in time to picture k of `from`; the index may be negative or beyond the
+/// last picture of `to`. Returns k if either frame rate is unknown.
 long long index_at_same_time(long long k, const PictureTimes& from, const PictureTimes& to);
 
 }  // namespace weft::review

@@ -48,8 +48,8 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference whose name is `run.name`, else `run.key`. If there is none, the only reference whose name has the same
-// last part after a slash; null if there is none or several.
+// The reference with the name `run.name`, else with the name `run.key`. If there is neither, the reference whose name
+// has the same part after the last slash; null if no reference or several have it.
 const RunFiles* find_reference(const std::vector<RunFiles>& references, const RunFiles& run) {
   for (const std::string& name : {run.name, run.key}) {
     const auto same = std::ranges::find(references, name, &RunFiles::name);
@@ -217,7 +217,8 @@ class Page {
     entry.json["pictures"]["files"] = std::move(files);
   }
 
-  // Adds the contact sheet and its middle tile as poster. Takes the number and the rate of the pictures from the files.
+  // Adds the contact sheet and its middle tile as poster. Takes number and rate of the pictures from the picture files
+  // instead of the statistics.
   void add_tiles(Entry& entry) const {
     if (entry.json["pictures"]["kind"] == "none") return;
     const Survey found = survey(*entry.run);

@@ -13,7 +13,8 @@
 namespace weft::review {
 namespace {
 
-// Rounds a number to six significant digits. A plot cannot show more, and the file has half the size.
+// Rounds a number to six significant digits. A plot cannot show more digits, and rounding halves the size of the data
+// file of the page.
 Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();

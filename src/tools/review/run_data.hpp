@@ -9,7 +9,8 @@
 namespace weft::review {
 
 /// The frames of a run's statistics as one array per quantity: {"frame": [0, 1], "max_strain": [0, 0.01]}. Missing
-/// values, and those that are neither numbers nor booleans, become null. Numbers keep six significant digits.
+/// values, and those that are neither numbers nor booleans, become null. Floating-point numbers keep six significant
+/// digits.
 Json frame_columns(const Json& frames);
 
 /// Summary of the numbers in each column: {"count", "min", "min_frame", "max", "max_frame", "last", "sum"}. Columns
@@ -22,15 +23,16 @@ struct PictureTimes {
   double fps = 0;  ///< pictures per second; 0 if unknown
 };
 
-/// Derives the times from the names of the pictures; if there are none, from the statistics.
+/// Takes `first`, `step` and `count` from the names of the numbered pictures or, if there are none, from the frames of
+/// the statistics; takes `fps` from the statistics.
 PictureTimes picture_times(const RunFiles& run);
 
 /// Each value of an effective scene by its path, as in --set: {"cloth.band.material.stretch": "1000000.0"}. Throws
 /// Error(asset_unreadable) if the text is not TOML.
 Json scene_values(const std::string& toml, const std::string& file);
 
-/// All data of a run except its pictures. Missing files are named in "problems". "columns" and "effective" are large;
-/// only the page of this run needs them, not the overview.
+/// All data of a run except its pictures. "problems" names missing files; missing statistics only if there is no other
+/// problem. "columns" and "effective" are large; only the page of this run needs them, not the overview.
 Json run_data(const RunFiles& run);
 
 }  // namespace weft::review

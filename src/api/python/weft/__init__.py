@@ -15,6 +15,6 @@ def _repr(self):
 
 for _class in vars(_weft).values():
     if isinstance(_class, type):
-        _class.__module__ = "weft"  # the name under which programs know it
+        _class.__module__ = "weft"  # the module that programs import
         if _class.__repr__ is _weft.Scene.__base__.__repr__:
             _class.__repr__ = _repr

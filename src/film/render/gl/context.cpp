@@ -27,10 +27,11 @@ void use_own_mesa() {
   setenv("LIBGL_DRIVERS_PATH", (libraries / "dri").c_str(), 1);
 }
 
-/// Mesa reads these variables once, when the process makes its first context.
+/// Sets environment variables that Mesa reads once, when the process makes its first context.
 void set_rasteriser_environment(int threads) {
   use_own_mesa();
-  // Without this, EGL may use a graphics card. Its pictures differ slightly, and it has no llvmpipe threads to measure.
+  // Without this variable, EGL may use a graphics card, whose pictures differ slightly. It also has no llvmpipe
+  // threads, whose time rasteriser_cpu_seconds() measures.
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
   // llvmpipe of Mesa 22.3 crashes with 512-bit vectors and 4x multisampling. Its default width always works.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");

@@ -24,7 +24,7 @@ class Context {
   virtual void release() = 0;
 
   const Gl& gl() const { return gl_; }
-  /// The backend, such as "OSMesa (libOSMesa.so.8)"; then the driver's vendor, renderer and version of OpenGL.
+  /// The backend, such as "OSMesa (libOSMesa.so.8)", followed by the driver's vendor, renderer and version of OpenGL.
   const std::string& description() const { return description_; }
 
  protected:
@@ -40,8 +40,8 @@ class Context {
 
 /// Makes a context and binds it to the calling thread. `automatic`: OSMesa, or EGL if OSMesa fails. `threads`: number
 /// of threads of the software rasteriser (0: its default). The driver reads this number only for the first context of
-/// the process. Throws Error(usage) if a library is absent, Error(internal) if a call fails. If neither library works
-/// for `automatic`, throws Error(usage) with the error of each.
+/// the process. Throws Error(usage) if the library is absent or lacks OpenGL 4.5, Error(internal) if a call fails. If
+/// both libraries fail for `automatic`, throws Error(usage) with both errors.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
 /// CPU seconds that the threads of llvmpipe have used so far in all contexts; 0 for other drivers.

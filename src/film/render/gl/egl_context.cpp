@@ -10,7 +10,8 @@ namespace {
 
 constexpr const char* kEgl = "libEGL.so.1";
 
-// The few EGL 1.5 names that this file uses, so that the build needs no EGL headers. Values: Khronos registry, egl.xml.
+// Declares the few EGL 1.5 names that this file uses. The build thus needs no EGL headers. Values: Khronos registry,
+// egl.xml.
 using EglHandle = void*;
 using EglInt = int;
 using EglBoolean = unsigned;

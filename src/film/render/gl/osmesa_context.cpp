@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kOsMesa = "libOSMesa.so.8";
 
-// The OSMesa 8 names that this file uses, so that the build needs no OSMesa headers. Values: GL/osmesa.h.
+// Declares the OSMesa 8 names that this file uses. The build thus needs no OSMesa headers. Values: GL/osmesa.h.
 using OsmesaHandle = void*;
 constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaProfile = 0x33, kOsmesaCoreProfile = 0x34;
 constexpr int kOsmesaMajorVersion = 0x36, kOsmesaMinorVersion = 0x37;

@@ -17,7 +17,7 @@ class Program {
           const std::vector<std::string>& defines = {});
 
   void use() const { gl_->UseProgram(program_.name()); }
-  /// Location of a uniform; -1 if the compiler removed it as unused, which GL then ignores.
+  /// Location of a uniform; -1 if the compiler removed it as unused. OpenGL ignores values set at -1.
   GLint uniform(const char* name) const { return gl_->GetUniformLocation(program_.name(), name); }
 
  private:

@@ -8,7 +8,7 @@ namespace weft::render {
 /// The library stays open until the process ends, because a software rasteriser keeps threads and LLVM state.
 class SharedLibrary {
  public:
-  /// Throws Error(usage), as for a missing package, with the dynamic loader's message.
+  /// Throws Error(usage) with the dynamic loader's message if the library cannot be opened.
   explicit SharedLibrary(const std::string& file);
 
   /// Address of a function; throws Error(usage) if the library lacks it.

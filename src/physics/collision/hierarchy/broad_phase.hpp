@@ -24,14 +24,15 @@
 
 namespace weft::collision {
 
-/// Effect on the time of the search in the scenes of tests/bench/README.md, "Collision heuristics": 8 triangles per
-/// leaf instead of 1 make it 2 to 3 times as fast, and 8 children instead of 2 save 6 to 26 %. Separation lists save at
-/// most a tenth. Velocity and normal cones cost at least as much as they save. 18 directions instead of 6 list about a
-/// quarter fewer candidates but refit more slowly: broad and narrow phase together take 1.0 to 1.1 times as long, or
-/// 0.8 times if layers are slanted to the axes. 26 directions (Etzmuß et al. 2001) list the fewest candidates.
+/// Effect of the options on the time of the search, in the scenes of tests/bench/README.md, "Collision heuristics": 8
+/// triangles per leaf instead of 1 make it 2 to 3 times as fast, and 8 children instead of 2 save 6 to 26 %. Separation
+/// lists save at most a tenth. Velocity and normal cones cost at least as much as they save. 18 directions instead of 6
+/// list about a quarter fewer candidates but refit more slowly: broad and narrow phase together take 1.0 to 1.1 times
+/// as long, or 0.8 times if layers are slanted to the axes. 26 directions (Etzmuß et al. 2001) list the fewest
+/// candidates.
 struct BroadPhaseOptions {
-  /// Directions of the bounds: 6 (boxes), 18 or 26. More directions cost more and list only a part of the pairs of
-  /// boxes.
+  /// Directions of the bounds: 6 (boxes), 18 or 26. More directions cost more and list only a part of the pairs that
+  /// boxes list.
   int directions = 6;
   /// Children per node, 2 to 8. Changes only the order of the pairs.
   int children = 8;
@@ -62,8 +63,8 @@ class BroadPhase {
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
   /// As Tree::refit, or with `velocity_cones` as Tree::refit_lazily; `margin` in [m]. The pairs then include all
-  /// triangles that meet on any motion whose starts and ends differ from these by at most the margin: in Euclidean
-  /// distance or, with 6 directions, along each axis.
+  /// triangles that meet on any motion whose starts and ends differ from those of `motion` by at most the margin: in
+  /// Euclidean distance or, with 6 directions, along each axis.
   void refit(std::size_t surface, const Motion& motion, double margin);
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);

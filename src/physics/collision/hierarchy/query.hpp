@@ -21,8 +21,8 @@ inline constexpr double kNearestTolerance = 1e-6;
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 
-/// Replaces `out` by the triangles whose bounds overlap the box from `low` to `high` [m], sorted by number. Their
-/// bounds are boxes over the whole motion of the last refit, with its margin.
+/// Replaces `out` by the triangles whose boxes overlap the box from `low` to `high` [m], sorted by number. The box of a
+/// triangle contains its whole motion of the last refit, enlarged by the margin of that refit.
 template <int K>
 void triangles_in_box(const Tree<K>& tree, const Vec3& low, const Vec3& high, std::vector<Index>& out);
 

@@ -85,7 +85,7 @@ class Traverser {
   void resume() {
     SeparationList& list = *how_.list;
     if (list.size() + list.self_leaves.size() + list.closed.size() == 0) return from_roots();
-    // Keep the old entries, which this traversal resumes, apart from those that it adds.
+    // Keep the old entries, where this traversal resumes, apart from those that this traversal adds.
     SeparationList before;
     std::swap(before.missed, list.missed);
     std::swap(before.leaf_pairs, list.leaf_pairs);

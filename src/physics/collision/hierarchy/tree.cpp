@@ -12,8 +12,8 @@ namespace weft::collision {
 
 namespace {
 
-/// Deeper sets are split into halves of equal size. A split at the centre may separate only one triangle, which would
-/// allow a depth as large as the number of triangles.
+/// Sets of triangles deeper in the tree than this are split into halves of equal size. A split at the centre may
+/// separate only one triangle, so without this limit the depth could be as large as the number of triangles.
 constexpr int kMaxCentreSplits = 64;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
@@ -32,8 +32,8 @@ void check(const Surface& surface, std::size_t positions, const TreeShape& shape
 }
 
 // Slack of lazy refits: enough for kSlackSteps steps at the present speed, plus a fraction of the margin against
-// jitter. A vertex gets no slack if this exceeds kMaxSlackFraction of the margin: the additional pairs would cost more
-// in the narrow phase than the lazy refit saves.
+// jitter. If this sum exceeds kMaxSlackFraction of the margin, the vertex gets no slack: the additional pairs would
+// cost more in the narrow phase than the lazy refit saves.
 constexpr double kSlackSteps = 8;
 constexpr double kMinSlackFraction = 1.0 / 64;
 constexpr double kMaxSlackFraction = 1.0 / 8;
@@ -188,8 +188,8 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
   if (vertex_slack.slack >= 0 && to_one_place && (p - vertex_slack.place).squaredNorm() <= slack_sq &&
       (low - vertex_slack.place).squaredNorm() <= slack_sq)
     return false;
-  // The bound covers the ball of radius `slack` around the end of this step. The ball contains the start, too. If this
-  // needs too much slack, the bound is as tight as after refit.
+  // The bound covers the ball of radius `slack` around the end of this step. The ball contains the start, too. If
+  // `slack` is too large, the bound is as tight as after refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
     vertex_slack = {low, slack};

@@ -53,7 +53,7 @@ inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, con
   return beyond(b1, e2.squaredNorm()) || beyond(b2, e1.squaredNorm()) || beyond(b0, (e2 - e1).squaredNorm());
 }
 
-/// As is_surely_farther, for two edges by the distance of their lines; false for nearly parallel edges.
+/// As is_surely_farther, but for two edges. Lower bound: the distance of their lines. False for nearly parallel edges.
 inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0;

@@ -50,7 +50,7 @@ class ProximityFinder::Gathering {
         min_fold_(static_cast<float>(parameters.min_fold)) {}
 
   /// Tests all owned features of each pair of triangles against each other. Tests their boxes first, for eight pairs at
-  /// once and without branches, because branches would be mispredicted (measured: 3 times as fast).
+  /// once and without branches, because branches would be mispredicted (with branches, it takes three times as long).
   void test_pairs(std::span<const TrianglePair> pairs) {
     for (; pairs.size() >= 8; pairs = pairs.subspan(8)) test_eight_pairs(pairs.first<8>(), 8);
     if (pairs.empty()) return;

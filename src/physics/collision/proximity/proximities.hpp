@@ -20,9 +20,10 @@ namespace weft::collision {
 struct Proximity : FeaturePair {
   /// Sine of the angle by which the contact direction, between the closest points, leaves the wedge of a feature. The
   /// wedge of a vertex or edge consists of the directions (of an edge: perpendicular to it) in which no adjacent face
-  /// is closer than the vertex or edge itself. Edge pair: one value for each edge, negative inside its wedge.
-  /// Vertex-face pair: first the value of the vertex, but 0 inside its wedge or if the closest point is inside the
-  /// face; then 0. If a value is above 0, a neighbouring pair is closer, so the response may skip this one.
+  /// is closer than the vertex or edge itself. Edge pair: values of edge a and edge b, negative inside the wedge.
+  /// Vertex-face pair: the first value is that of the vertex, or 0 inside its wedge or if the closest point is inside
+  /// the face; the second is 0. If a value is above 0, a neighbouring pair is closer, so the response may skip this
+  /// one.
   std::array<double, 2> outside_wedge{};
 };
 
@@ -45,23 +46,24 @@ class ProximityFinder {
   /// `triangles`: of all surfaces in their global numbering; must outlive this object.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
-  /// Gathers all pairs of features closer than `radius` [m] at x [m], and some others. The candidates must include
-  /// every pair of triangles closer than `radius`, except pairs with a common edge, which gather() adds for each
-  /// surface of `deformable`. Skips an edge pair if the sines of half the fold angles along both edges add up to less
-  /// than `min_fold`: between two smooth layers, four of five pairs are edge pairs, but vertex-face pairs suffice.
+  /// Gathers all pairs of features closer than `radius` [m] at x [m], and some that are farther apart. The candidates
+  /// must include every pair of triangles closer than `radius`, except pairs with a common edge, which gather() adds
+  /// for each surface of `deformable`. Skips an edge pair if the sines of half the fold angles along both edges add up
+  /// to less than `min_fold`: between two smooth layers, four of five pairs are edge pairs, but vertex-face pairs
+  /// suffice.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
               double radius, double min_fold = 0);
   /// Appends those of the pairs [begin, end) of a list that are candidates. Several threads call it.
   using AppendPairs = std::function<void(std::size_t begin, std::size_t end, PairList& pairs)>;
-  /// As above, with candidates from a list of `count` pairs without a common vertex. Adds the pairs with one or two
-  /// common vertices, except of `clear` triangles (found by Separation::find_clear_triangles for the distance
-  /// `radius`).
+  /// As the first gather(), with candidates from a list of `count` pairs without a common vertex. Adds the pairs of
+  /// `deformable` with one or two common vertices, except pairs with a `clear` triangle (found by
+  /// Separation::find_clear_triangles for the distance `radius`).
   void gather(std::size_t count, const AppendPairs& append_apart, std::span<const Surface> deformable,
               std::span<const Vec3> x, double radius, double min_fold, std::span<const std::uint8_t> clear);
 
-  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m] and not represented by others,
-  /// sorted by kind and by the numbers of their vertices. The list is complete if no vertex is farther than (radius −
-  /// detection_distance) / 2 from its position in gather().
+  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m] and not represented by other
+  /// pairs (see above), sorted by kind and by the numbers of their vertices. The list is complete if no vertex is
+  /// farther than (radius − detection_distance) / 2 from its position in gather(), with its `radius`.
   void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
   void find(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,

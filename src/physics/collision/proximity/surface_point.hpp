@@ -31,7 +31,7 @@ using CountsFace = std::function<bool(const Triangle& face)>;
 /// Nearest point of a surface of the broad phase at positions x [m], which must be inside the bounds of its last refit.
 /// Gives the same bits as a search over all faces that take part, unless some thousand faces are equally near up to
 /// rounding. `counts`: if given, faces for which it is false do not take part. `towards`: unit or zero; if it is not
-/// zero and some of these faces have a normal within 60 degrees of it, only those take part.
+/// zero, and if some of the faces have a normal within 60 degrees of it, only these faces take part.
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
 
@@ -41,13 +41,13 @@ SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::si
 bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
                std::span<const Vec3> x);
 
-/// Triangles of a surface of the broad phase, in their order, whose boxes are closer than `distance` [m] to that of
-/// `triangle`. x [m] must be inside the bounds of the last refit.
+/// Triangles of a surface of the broad phase, in their order, whose boxes are closer than `distance` [m] along each
+/// axis to the box of `triangle`. x [m] must be inside the bounds of the last refit.
 std::vector<Triangle> triangles_near(const Triangle& triangle, const BroadPhase& broad_phase, std::size_t surface,
                                      std::span<const Vec3> x, double distance);
 
-/// Where two triangles cross: weights of the corners of `a`, averaged over the points where an edge of one goes through
-/// the other. Empty if they do not cross.
+/// Where two triangles cross: weights of the corners of `a`, averaged over the points where an edge of one triangle
+/// goes through the other triangle. Nullopt if they do not cross.
 std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Triangle& b, std::span<const Vec3> x);
 
 /// Unit normal of the front; zero if the triangle has no area.

@@ -19,11 +19,11 @@ struct RigidMotion {
   bool moves() const { return turns() || shift != Vec3::Zero(); }
 };
 
-/// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates`).
-/// In the frame of the obstacle, the obstacle rests. This class therefore applies the motion of the obstacle to the
-/// start positions of all particles. From these "carried" starts, a plane fixed to the obstacle can separate
-/// trajectories for the whole step. A particle that ends at its carried start keeps its distance from the obstacle, so
-/// it does not meet this obstacle.
+/// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates` in
+/// separating_plane.hpp). In the frame of the obstacle, the obstacle rests. This class therefore applies the motion of
+/// the obstacle to the start positions of all particles. From these "carried" starts, a plane fixed to the obstacle can
+/// separate trajectories for the whole step. A particle that ends at its carried start keeps its distance from the
+/// obstacle, so it does not meet this obstacle.
 class CarriedStarts {
  public:
   CarriedStarts() = default;

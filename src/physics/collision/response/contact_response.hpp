@@ -16,8 +16,9 @@ namespace weft::collision {
 enum class ResponseForm { springs, velocity_constraints };
 
 /// The contacts of one step in the form that the solver uses. With velocity constraints, a contact between an obstacle
-/// and a single particle in front of it is a wall (see VelocityConstraints): revise() sets and releases walls between
-/// the solves of a step. All other contacts are springs.
+/// and a single particle in front of it (at a positive distance along the contact normal at the start of the step) is a
+/// wall (see VelocityConstraints): revise() sets and releases walls between the solves of a step. All other contacts
+/// are springs.
 class ContactResponse {
  public:
   /// `masses`: of the particles [kg]. `stick_speed`: as in ContactSet::set_step() [m/s].
@@ -28,19 +29,20 @@ class ContactResponse {
   /// Call before adding the contacts of a step over h [s].
   void begin_step(double h);
   void add(const Contact& contact, std::span<const Vec3> x_t0);
-  /// Adds a wall for a corner of a triangle without a separating plane from an obstacle, if the corner is in front of
-  /// the obstacle. Only with velocity constraints.
+  /// Adds the contact as a wall if it has a single particle and this is in front of an obstacle; ignores it otherwise.
+  /// Call only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
   /// As VelocityConstraints::predict_wall_contacts; false with springs.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
     return walls_ && walls_->predict_wall_contacts(x_t1, by, predicted);
   }
-  /// Call before the first solve, when its contacts are added. Chooses the walls that hold in this solve.
+  /// Call before the first solve, after the contacts have been added. Chooses the walls that hold in this solve.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Particles that the walls constrain in the next solve.
   std::span<const PrescribedParticle> prescribed() const;
-  /// After a solve that led to x_end: sets and releases walls. Returns how many particles need another solve.
+  /// After a solve that led to x_end: sets and releases walls. Returns how many particles need another solve; 0 with
+  /// springs.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const VelocityConstraints::ForceOn& force_on);
   /// Keeps the state of the walls for the next step. Call when the step is accepted.
   void accept();
@@ -64,7 +66,7 @@ class ContactResponse {
   /// Whether there is no contact of either form.
   bool empty() const { return springs_.contacts().empty() && (!walls_ || walls_->empty()); }
 
-  /// Saves what accept() has kept. Reading throws std::runtime_error if the data do not fit these particles.
+  /// Saves or restores what accept() keeps. Throws std::runtime_error if restored data do not fit these particles.
   template <class Archive>
   void serialize(Archive& archive) {
     if (walls_) return walls_->serialize(archive);

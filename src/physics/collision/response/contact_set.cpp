@@ -58,8 +58,9 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
 }
 
 // Friction / (normal force · slip), for a slip in units of the stick slip: μ (2 − slip) if slip < 1, else μ / slip. The
-// coefficient μ is that of static friction up to a slip of 1 and falls to that of sliding friction beyond. If both are
-// equal, friction is continuously differentiable.
+// coefficient μ is that of static friction up to a slip of 1; from there it falls to that of sliding friction, which it
+// reaches at a slip of Numerics::Contact::slide_velocity. If both coefficients are equal, friction is continuously
+// differentiable.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
   const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));

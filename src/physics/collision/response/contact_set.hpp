@@ -16,7 +16,7 @@ namespace weft::collision {
 /// A contact does not change until contacts are searched again.
 struct Contact {
   std::array<Index, 4> particles{0, 0, 0, 0};
-  std::array<double, 4> weights{0, 0, 0, 0};  ///< of the particles; zero for vertices of obstacles
+  std::array<double, 4> weights{0, 0, 0, 0};  ///< > 0 for point a, < 0 for point b; 0 for vertices of obstacles
   Vec3 obstacle_end = Vec3::Zero();  ///< contribution of the obstacle's vertices to a − b at the end of the step [m]
   Vec3 obstacle_start = Vec3::Zero();  ///< the same at the start of the step [m]
   bool against_obstacle = false;       ///< one side belongs to an obstacle
@@ -34,13 +34,13 @@ struct Contact {
 struct FrictionLag {
   Vec3 relative_friction = Vec3::Zero();  ///< w = −friction / normal force, an unknown besides the positions
   Vec3 slip = Vec3::Zero();               ///< at the last update, divided by the stick slip ε (see ContactSet)
-  bool sticks = false;   ///< true: friction is linearised at the slip that belongs to w; false: at `slip`
-  int slide_starts = 0;  ///< how often the contact began to slide in this step
+  bool sticks = false;   ///< friction is linearised at the slip that belongs to w; false: at that of the iterate
+  int slide_starts = 0;  ///< how often the contact changed from sticking to sliding in this step
 };
 
 /// State of the contacts of a step between Newton iterations, with one entry per contact.
 struct ContactLag {
-  std::vector<double> depths;          ///< f⁻¹(λ): depths at which the normal forces are linearised [m]
+  std::vector<double> depths;  ///< f⁻¹(λ): depths at which the normal forces f (see ContactSet) are linearised [m]
   std::vector<double> normal_forces;   ///< λ that limits friction [N]; constant between updates
   std::vector<FrictionLag> frictions;  ///< initially from the first iterate; zero for contacts found later
   int updates = 0;                     ///< number of calls of ContactSet::update() in this step
@@ -58,8 +58,9 @@ Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 /// the gap is closed, but a sheet that hangs on the tip of a cone presses with its weight of 1 N.
 ///
 /// Friction opposes the slip u, the displacement of a relative to b in the tangent plane since the start of the step.
-/// It grows smoothly with u up to its maximum, friction coefficient times normal force, at the stick slip ε =
-/// `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+/// It grows smoothly with u up to its maximum, static friction coefficient times normal force, at the stick slip ε =
+/// `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5). At larger slips, the coefficient
+/// falls to that of sliding.
 class ContactSet {
  public:
   void clear() { contacts_.clear(); }
@@ -72,20 +73,23 @@ class ContactSet {
   /// Call before each linearisation, with the particles at the last iterate. The normal force λ is an unknown besides
   /// the depth d; the solution satisfies f⁻¹(λ) = d (a primal-dual method). λ starts as f(`depth`). The linear system
   /// contains the tangent of f at the depth f⁻¹(λ). Along this tangent, update() moves λ, but never below zero. (With
-  /// the tangent at the depth of the iterate, sphere_drape takes 1.25 times the iterations.) Friction uses a constant λ
-  /// within an iteration, and after Numerics::Newton::slow_after updates, so that it has a potential, too.
+  /// the tangent at the depth of the iterate, sphere_drape takes 1.25 times the iterations.) The λ that limits friction
+  /// is constant within an iteration and, after Numerics::Newton::slow_after updates, until the end of the step, so
+  /// that friction has a potential, too.
   ///
-  /// Up to that number of updates, update() also moves w of a sticking contact with an obstacle along its tangent. The
-  /// contact starts to slide if w then exceeds static friction. It sticks again if the slip is less than the stick
-  /// slip, or if the slip has reversed (at most Numerics::Contact::max_resticks times). For other contacts
-  /// this brings no gain, so w stays.
+  /// Up to that number of updates, update() also moves w (FrictionLag::relative_friction) of a sticking contact with an
+  /// obstacle along the tangent of w. The contact starts to slide if w then exceeds static friction. It sticks again if
+  /// the slip is less than the stick slip, or if the slip has reversed (at most Numerics::Contact::max_resticks times).
+  /// After that number of updates, no contact sticks. For contacts without an obstacle, moving w brings no gain: their
+  /// w is constant, and they never count as sticking.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
   /// Adds contact forces to `force` [N], with the particles at x_end. During the first Numerics::Newton::slow_after
   /// updates, friction uses the normal forces at x_end, so that the residual contains the error of the constant normal
   /// forces of the linear system. (Otherwise a sheet that lands on an incline loses the friction of the impact.)
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
-  /// As add_forces, with the tangents of normal force and friction in place of these.
+  /// As add_forces, but with the tangents of normal force and friction that linearise() uses, instead of their exact
+  /// values.
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
   /// As add_forces, but adds normal forces to `push` and friction to `friction`. Adds the maximum friction to `limit`
@@ -93,11 +97,12 @@ class ContactSet {
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
                                       std::span<Vec3> friction, std::span<double> limit) const;
 
-  /// Adds the velocity jumps due to impacts, in a step that ends at x_end, as a linear system whose unknowns are the
-  /// jumps: adds to `system` and to `right_side` [N/s]. Returns false if there is no impact. A contact that closes at
-  /// Numerics::Contact::impact_velocity or faster is a full impact; one that closes more slowly counts proportionally.
-  /// The closing velocity is the smallest of three estimates: from the velocity at the start of the step; from this
-  /// velocity and the last acceleration (for motion along curved obstacles); from the last displacement (zero at rest).
+  /// Adds the contacts to the linear system whose unknowns are the velocity jumps due to impacts in a step that ends at
+  /// x_end: to the matrix in `system` and to `right_side` [N/s]. Returns false if there is no impact; adds nothing
+  /// then. A contact that closes at Numerics::Contact::impact_velocity or faster is a full impact; one that closes more
+  /// slowly counts proportionally. The closing velocity is the smallest of three estimates: from the velocity at the
+  /// start of the step; from this velocity and the last acceleration (for motion along curved obstacles); from the last
+  /// displacement (zero at rest). In the first step, only the first estimate exists.
   ///
   /// The normal force of an impact enters `right_side`. Friction does not enter as a force, because a slip of 1e-7 m
   /// would change it completely; a stiff term keeps the tangential velocity jump of the step instead. Contacts without
@@ -110,9 +115,9 @@ class ContactSet {
   /// matrix of friction is approximated so that it is positive semidefinite. Friction −λ w at a slip u = ψ(‖u‖) w is
   /// linearised with w as an unknown besides u (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total
   /// Variation-Based Image Restoration", 1999). If the contact sticks, the matrix is the tangent at the slip that
-  /// belongs to w. If it slides, w is that of unchanged velocity, or the one with which sliding began. The matrix is
-  /// then the exact tangent while cloth keeps sliding in one direction, else the secant, force over slip, or stiffer.
-  /// (On an incline: 1.05 iterations per step; with secants only, 2.3.)
+  /// belongs to w. If it slides, w is that of unchanged velocity, or the one with which sliding began. While the
+  /// contact keeps sliding in one direction, the matrix is then the exact tangent; otherwise it is closer to the secant
+  /// (friction over slip), or stiffer. (On an incline: 1.05 iterations per step; with secants only, 2.3.)
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 

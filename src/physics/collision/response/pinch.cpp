@@ -30,7 +30,8 @@ bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::spa
   });
 }
 
-// Whether no obstacle contains `place`, the exit. For example, a hip blocks the exit from a hand inside the hip.
+// Whether no obstacle contains `place`, the exit. Example: if a hand is inside the hip, the hip blocks the exit from
+// the hand.
 bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
                                  std::span<const Vec3> x) const {
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface)

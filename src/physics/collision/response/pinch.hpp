@@ -19,10 +19,11 @@ namespace weft::collision {
 
 /// The exempted cloth triangles. Each is exempt from one limb of an obstacle (an obstacle without limbs counts as one):
 /// it may intersect the limb, and no separating plane is required. A triangle stays in the set until it is apart from
-/// the limb and back on its original side. Triangles that share a particle with one of the set are exempt, too, so that
-/// a limb that moves along the cloth does not drag the cloth with it. renew() adds such a neighbour to the set if it
-/// meets the limb or is on its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it, and
-/// rests on the other. When the limb that reached it retreats, the cloth returns to the side from which it came.
+/// the limb and back on its original side of the limb. Triangles that share a particle with one of the set are exempt,
+/// too, so that a limb that moves along the cloth does not drag the cloth with it. renew() adds such a neighbour to the
+/// set if it meets the limb or is on its wrong side. If two limbs overlap, the cloth is exempt from the limb that
+/// reached it, and rests on the other. When the limb that reached it retreats, the cloth returns to the side from which
+/// it came.
 class PinchedPairs {
  public:
   struct Key {
@@ -34,14 +35,15 @@ class PinchedPairs {
 
   /// How the limb reached the cloth.
   struct Origin {
-    int side = 0;  ///< of the cloth then: +1: outside the limb; −1: inside, or behind an open surface; 0: unknown
+    int side = 0;  ///< +1: the cloth was outside the limb; −1: inside, or behind an open surface; 0: not recorded
     std::vector<Triangle> faces;  ///< faces of the limb that reached the cloth
   };
 
-  /// Two points for a contact that pushes a particle, or a point of a triangle, back to its side.
+  /// Two points for a contact that pushes a particle, or a point of a triangle, back to its side. `exit_pair` has the
+  /// vertices of a particle and a face of the limb, or of a cloth triangle and one corner of the face that it crosses.
   struct Push {
     FeaturePair exit_pair;
-    bool is_exit_clear = false;  ///< no obstacle contains the exit, the place where the cloth would be back on its side
+    bool is_exit_clear = false;  ///< no obstacle contains the exit, to which the push leads on the original side
   };
 
   PinchedPairs() = default;
@@ -67,21 +69,23 @@ class PinchedPairs {
     list_particles();
   }
 
-  // In the functions below, `surfaces` contains all bodies, by number. Positions must be inside the bounds of its last
-  // refit.
+  // In the functions below, `surfaces` contains all bodies, by number. Positions must be inside the bounds of the last
+  // refit of `surfaces`.
 
-  /// Completes the origin of triangles that were just exempted: records their side at x_t0 [m].
+  /// Completes the origin of triangles that add(pair) has exempted: records their side at x_t0 [m].
   void note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0);
 
-  /// Removes triangles that at x [m] are apart from their limb and back on their side. Adds neighbouring triangles of
-  /// which this is not true. `triangles`: of all surfaces, cloth first.
+  /// Removes triangles that at x [m] are apart from their limb and back on their side. Adds triangles that share a
+  /// particle with one of the set, unless they, too, are apart from that limb and on that side. `triangles`: of all
+  /// surfaces, cloth first.
   void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
 
   /// Finds how pinched cloth returns to its side at x [m]. Lists each corner of an exempted triangle with a height
   /// below `max_height` [m], with the nearest point of the limb. (Height: signed distance from the limb, negative on
-  /// the wrong side.) For a corner on the wrong side, faces that point the same way as those that reached it take
-  /// precedence. If all corners of a triangle are on the right side but it crosses a face, lists the middle of that
-  /// crossing, with the normal of the face. Side a is the cloth; the normal points to the side where the cloth belongs.
+  /// the wrong side.) For a corner on the wrong side, faces take precedence whose normal is within 60° of that of the
+  /// faces that reached the cloth. If all corners of a triangle are on the right side but it crosses a face, lists the
+  /// middle of that crossing, with the normal of the face. Side a of each pair is the cloth; the normal points to the
+  /// side where the cloth belongs.
   std::vector<Push> find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x, double max_height) const;
 
   bool empty() const { return origins_.empty(); }

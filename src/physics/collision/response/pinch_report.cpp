@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kNoFaces = std::numeric_limits<double>::infinity();
 
-// Distance [m] from `place` to the faces of the obstacle with a normal within 60° of `direction`. If there are none,
-// the distance to the nearest face, or infinite if that face points the other way.
+// Distance [m] from `place` to the nearest face of the obstacle with a normal within 60° of `direction`. If there is no
+// such face: the distance to the nearest face of all, or infinite if that face points away from `direction`.
 double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhase& surfaces, std::size_t obstacle,
                        std::span<const Vec3> x) {
   const SurfacePoint point = nearest_point(place, surfaces, obstacle, x, direction);

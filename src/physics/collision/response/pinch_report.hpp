@@ -11,19 +11,20 @@
 
 namespace weft::collision {
 
-/// A cloth that intersects an obstacle because there is no space for it.
+/// A cloth that intersects an obstacle because there is no space for it. `pressing_obstacle`: the nearest other
+/// obstacle, or `obstacle` if two parts of it pinch the cloth; nullopt if there is no other obstacle.
 struct Pinch {
-  std::size_t cloth = 0, obstacle = 0;           ///< bodies
-  std::optional<std::size_t> pressing_obstacle;  ///< obstacle that presses; `obstacle` if two of its own parts pinch
-  Vec3 place;                                    ///< position of a pinched particle [m]
+  std::size_t cloth = 0, obstacle = 0;  ///< numbers of the bodies
+  std::optional<std::size_t> pressing_obstacle;
+  Vec3 place;  ///< position of a pinched particle [m]
 };
 
-/// One entry for each pair of a cloth and an obstacle, with `place` at its first pinched triangle at x [m].
+/// One entry for each pair of a cloth and an obstacle, with `place` at a corner of its first pinched triangle at x [m].
 std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
                                 std::span<const Vec3> x);
 
-/// A pair in `pinched` whose obstacle does not pinch that cloth in `before`, as the triangle of cloth and an arbitrary
-/// face of the obstacle; nullopt if there is none.
+/// A pair in `pinched` whose obstacle does not pinch that cloth in `before`, as the triangle of cloth and the first
+/// face of the obstacle; nullopt if there is no such pair.
 std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
                                          const BroadPhase& surfaces);
 

@@ -48,8 +48,9 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   };
   Triangles8 a = gather(false), b = gather(true);
   // Bound of rounding errors. Coordinates are rounded twice by 2^-24 of themselves, and dot products by a few times as
-  // much, while the distance of the triangles does not exceed the largest coordinate. Half of the least gap is added
-  // for the error of the length of n. Only coordinates of the pair enter, so other bodies do not affect the result.
+  // much, while the distance of the triangles does not exceed the largest coordinate. The least gap that separates()
+  // requires is added, and half of it for the error of the length of n. Only coordinates of the pair enter, so other
+  // bodies do not affect the result.
   Lanes8 rounding = a.corner[0].axis[0];
   for (const Triangles8* side : {&a, &b})
     for (const Points8& corner : side->corner)

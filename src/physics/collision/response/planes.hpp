@@ -18,9 +18,10 @@ namespace weft::collision {
 
 /// Stores for each pair of a list of candidate pairs (the watched pairs) a direction, and the gap along it at the
 /// reference positions, those of the last watch(). The gap shrinks by at most the sum of the motions of both triangles
-/// since then. While that sum is less than the gap, the pair is separated without a test, so cloth that rests on cloth
-/// costs one comparison per pair and step. A pair is also separated without a test if no corner has moved since its
-/// last successful test. This saves time when pairs are pushed apart, because each round moves few vertices.
+/// since the last watch(). While that sum is less than the gap, the pair counts as separated without a test, so cloth
+/// that rests on cloth costs one comparison per pair and step. A pair also counts as separated without a test if no
+/// corner has moved since its last successful test. This saves time when pairs are pushed apart, because each round
+/// moves few vertices.
 class Planes {
  public:
   Planes() = default;
@@ -39,28 +40,28 @@ class Planes {
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
   /// As above, for the pairs received by exchange().
   void watch(std::span<const Vec3> x);
-  /// Swaps the list of watched pairs for another, so that only one copy exists. Call watch() afterwards.
+  /// Swaps the list of watched pairs with `pairs`, so that no list is copied. Call watch(x) afterwards.
   void exchange(PairList& pairs) { std::swap(pairs_, pairs); }
 
   /// Number of watched pairs.
   std::size_t size() const { return pairs_.size(); }
   /// Sets how far the vertices have `moved` from the reference [m], for append_closer(). find_failing() overwrites it.
   void set_moved(std::span<const float> moved);
-  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m]: the gap along any direction
-  /// is a lower bound of the distance.
+  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m] after the motion of
+  /// set_moved(): a gap along any direction is a lower bound of the distance.
   void append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const;
 
   /// Appends the pairs without a separating plane on the trajectory from x_t0 to x_t1. `reference`: positions of the
   /// last watch() [m]. `moved`: per vertex, a bound of its distance from the reference at both times [m]. `changed`:
-  /// per vertex, whether x_t0 or x_t1 differs from the last call. `carried`: start positions of pairs with an obstacle
-  /// that turns; these pairs are always tested.
+  /// per vertex, whether x_t0 or x_t1 differs from that of the last call. `carried`: start positions of pairs with an
+  /// obstacle that turns; these pairs are always tested. `which`: see kinds_of().
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                     std::span<const float> moved, std::span<const std::uint8_t> changed,
                     std::vector<CornerPair>& failing, const CarriedStarts* carried = nullptr,
                     PlaneKinds which = PlaneKinds::all);
 
-  /// Saves the planes that differ from those that watch() would find now. A new object that watches the same pairs at
-  /// the same reference needs nothing else.
+  /// Saves or restores the planes that differ from those that watch() finds at the `reference`. Before restoring, watch
+  /// the same pairs at the same reference.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> reference);
 
@@ -86,8 +87,8 @@ class Planes {
   std::vector<Plane> planes_;
   std::vector<Lanes4> rounded_;             // positions in float, for the search in watch()
   std::vector<float> moved_;                // per triangle: bound of the distances of its corners from the reference
-  std::vector<std::uint8_t> changed_;       // per triangle
-  std::vector<std::uint8_t> is_separated_;  // per pair: found so at its last test with starts at x_t0
+  std::vector<std::uint8_t> changed_;       // per triangle: a corner has changed since the last call
+  std::vector<std::uint8_t> is_separated_;  // per pair: its last test, from x_t0 (no carried start), found a plane
 };
 
 }  // namespace weft::collision

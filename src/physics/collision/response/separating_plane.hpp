@@ -37,7 +37,8 @@ enum class PlaneKinds { constant, turning, all };
 ///      the start (for neighbours in one plane);
 ///   2. the same directions, turning from start to end;
 ///   3. the line between the closest points, constant, then turning;
-///   4. all again in each half of the trajectory, which is halved at most Numerics::Repair::max_retries times.
+///   4. all again in each half of the trajectory; halves are halved again, at most Numerics::Repair::max_retries times
+///      in all.
 ///
 /// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, with t from 0 to 1. Let δ(t) be the difference of two
 /// linearly moving corners. Then n·δ is quadratic in t, with Bernstein coefficients n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁,

@@ -130,11 +130,11 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   return below;
 }
 
-// Returns the direction along which to push a pair apart: of `closest`, between the closest points at the start, and
-// the normals of faces that do not move and separate the pair at the start, the one along which the ends overlap least.
-// If cloth slides towards a facet ahead of it, a push along `closest` would move it back by as much as it has slid.
-// Normals of moving faces are not used: with them, a fast body leaves cloth beside it that it has not struck yet, and
-// stretches threads threefold.
+// Returns the direction along which to push a pair apart. Candidates are `closest`, the direction between the closest
+// points at the start, and the normals of faces that do not move, if they separate the pair at the start. Returns the
+// candidate along which the ends overlap least. If cloth slides towards a facet ahead of it, a push along `closest`
+// would move it back by as much as it has slid. Normals of moving faces are not used: with them, the strain of cloth
+// that a cylinder strikes at 38 m/s grows from 0.29 to 0.69.
 Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, const Step& step) const {
   const std::span<const Vec3> start = step.start_of(pair), end = step.x_t1;
   Vec3 best = closest;
@@ -228,8 +228,8 @@ const Vec3& Separation::backtrack_target(Index v, const Step& step) const {
 
 // Chooses where the free vertices of a failing pair are backtracked to. If the pair has an obstacle that moves rigidly,
 // this obstacle carries them. In a pair without an obstacle, an obstacle that carries one of them carries all. If a
-// vertex would be carried to two places, it (in a pair without an obstacle: all free ones) stays at its start from then
-// on. Returns true if something changed; each vertex changes at most twice.
+// vertex would be carried to two places, it stays at its start from then on; in a pair without an obstacle, all free
+// vertices do. Returns true if something changed; each vertex changes at most twice.
 bool Separation::choose_backtrack_targets(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
@@ -269,9 +269,9 @@ bool Separation::has_carried_vertex(const CornerPair& pair) const {
   return std::ranges::any_of(pair.a, is_carried) || std::ranges::any_of(pair.b, is_carried);
 }
 
-// Backtracks a pair, entirely or half of the way, each vertex at most once per round; a pair with a carried vertex
-// always entirely, because halfway it may still meet. Returns false if every free vertex is at its target and no target
-// has changed.
+// Backtracks the vertices of a pair, entirely or half of the way, each at most once per round. If a vertex is carried,
+// backtracks entirely, because the pair may still meet halfway. Returns false if every free vertex is at its target and
+// no target has changed.
 bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
   bool changed = choose_backtrack_targets(pair, step);
   const double fraction = all_the_way || has_carried_vertex(pair) ? 1 : 0.5;
@@ -307,8 +307,8 @@ bool Separation::backtrack_all(Step& step) const {
   return moved;
 }
 
-// Whether all vertices of a pair are at their start, or are all carried by one obstacle: by its own obstacle if it has
-// one. Such a pair does not meet, however close it is, because it does not meet at the start.
+// Whether all vertices of a pair are at their start, or all at the start carried by one obstacle (if the pair has an
+// obstacle: by this one). Such a pair does not meet, however close it is, because it does not meet at the start.
 bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const {
   const auto ends_at = [&](std::span<const Vec3> x) {
     const auto is_there = [&](Index v) { return step.x_t1[v] == x[v]; };

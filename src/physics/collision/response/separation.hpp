@@ -27,7 +27,7 @@ struct ObstructedPin {
 
 struct SeparationReport {
   bool separated = false;                      ///< each pair has a separating plane, is exempt, or is fully backtracked
-  int corrected_pairs = 0;                     ///< pairs that needed a correction
+  int corrected_pairs = 0;                     ///< number of pairs that failed before the correction
   double largest_push = 0;                     ///< longest single push or backtrack [m]
   std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that had to move
   CornerPair unseparated_pair{};               ///< if not `separated`: a pair that is not
@@ -36,19 +36,20 @@ struct SeparationReport {
 /// Vertices that move only together: those of a rigid body, and the particles that carry it (mesh::RigidFrame).
 struct RigidGroup {
   Index first, count;        ///< its surface vertices: the first, and their number
-  Index frame, frame_count;  ///< these particles: the first, and their number
+  Index frame, frame_count;  ///< the particles that carry it: the first, and their number
   double mass;               ///< [kg]
 };
 
 /// Keeps triangles apart on the linear motion from x_t0 to x_t1, by separating planes (separating_plane.hpp). Pairs
-/// without a common vertex are tested one by one. Pairs of a surface with one common vertex are tested by vertex stars.
-/// Triangles with a common edge are not tested: they meet only if they are folded exactly onto each other.
+/// without a common vertex are tested one by one. Pairs of triangles of one surface with one common vertex are tested
+/// by vertex stars (VertexStars). Triangles with a common edge are not tested: they meet only if they are folded
+/// exactly onto each other.
 ///
 /// If a pair has no separating plane, enforce() corrects the ends x_t1 of its vertices:
 ///   1. It pushes them apart along a direction n until a gap remains. n is the direction between the closest points at
-///      the start or, if the push along it is shorter, the normal of a face that does not move. It repeats this for the
-///      moved vertices until no pair fails. It never pushes fixed vertices, and pinned ones only if there is no other
-///      way.
+///      the start, or the normal of a face that does not move if the push along this normal is shorter. It repeats this
+///      for the moved vertices until no pair fails. It never pushes fixed vertices, and pinned ones only if there is no
+///      other way.
 ///   2. It backtracks particles that keep failing: moves them back towards their start, finally all the way. Particles
 ///      that fail with an obstacle that moves rigidly go to their carried start instead (CarriedStarts). No pair meets
 ///      at the start. So two triangles do not meet if all their vertices end at their start, or if one obstacle carries
@@ -56,8 +57,8 @@ struct RigidGroup {
 ///   3. A pair that still fails is forced together by fixed vertices that move differently. Cloth can then be exempted
 ///      from the obstacle.
 ///
-/// Cloth is pushed by a rigid body as by an obstacle. Rigid bodies are translated away from obstacles and from each
-/// other, the lighter one farther.
+/// A rigid body pushes cloth as an obstacle does: it does not move itself. Rigid bodies are translated away from
+/// obstacles and from each other, the lighter one farther.
 class Separation {
  public:
   Separation() = default;
@@ -82,31 +83,31 @@ class Separation {
   std::size_t pair_count() const { return planes_.size(); }
   /// Measures how far the vertices at x [m] are from the reference, for append_closer(). Testing pairs overwrites it.
   void measure_motion(std::span<const Vec3> x);
-  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m] at that x.
+  /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m] at the x of measure_motion().
   void append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const {
     planes_.append_closer(radius, begin, end, out);
   }
 
   /// Flags clear triangles by 1: at x [m], their features are farther than `distance` [m] from those of all triangles
-  /// with a common vertex. Pairs of features with a common vertex do not count. May miss clear triangles.
+  /// that share a vertex with them. Pairs of features with a common vertex do not count. May miss clear triangles.
   std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1. Changes no positions. x_t0 must
-  /// be free of intersections, except those of `pinched`, which are skipped. A pair with an obstacle that turns is
-  /// tested in the frame of that obstacle (`carried`). `which`: kinds of planes that are sought. Does not test pairs
-  /// again that the last call found separated and whose vertices have not moved since, whatever `which` was then.
+  /// be free of intersections, except of pairs that `pinched` exempts; these are skipped. A pair with an obstacle that
+  /// turns is tested in the frame of that obstacle (`carried`). `which`: kinds of planes that are sought. Does not test
+  /// pairs again that the last call found separated and whose vertices have not moved since, whatever `which` was then.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
   /// Changes x_t1 of movable vertices until no pair fails (see SeparationReport). If that is impossible, adds pairs of
   /// cloth and obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last
-  /// call; each vertex then remains carried by the same obstacle.
+  /// call, so each vertex keeps the obstacle to whose carried start it is backtracked.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false, PlaneKinds which = PlaneKinds::all);
 
-  /// Saves the planes found since watch(), for an object that watches the same pairs from the same positions.
+  /// Saves or restores the planes found since watch(). Before restoring, watch the same pairs at the same positions.
   template <class Archive>
   void serialize(Archive& archive) {
     planes_.serialize(archive, reference_);
@@ -157,7 +158,7 @@ class Separation {
   std::vector<RigidGroup> groups_;
   std::vector<int> group_of_;  // per vertex: index in groups_, −1: none; empty if there are no groups
   std::vector<int> carriers_;  // per vertex: obstacle whose carried start is its backtrack target, or a constant below
-  static constexpr int kAtStart = -1, kAlwaysAtStart = -2;
+  static constexpr int kAtStart = -1, kAlwaysAtStart = -2;  // the target is x_t0; kAlwaysAtStart: until the step ends
   int round_ = 0;
   std::vector<CornerPair> failing_;
 };

@@ -9,7 +9,8 @@
 namespace weft::collision {
 namespace {
 
-// Walls that push a particle still hold it if it passes them when moved against the push by this distance [m].
+// A wall that pushes a particle still holds it if the particle, moved by this distance [m] against the push, passes the
+// wall.
 double probe_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }

@@ -54,17 +54,17 @@ class VelocityConstraints {
   void begin_step(double h);
 
   /// Adds a wall for a particle at `distance` [m] from a point of an obstacle. `normal` points from there to the
-  /// particle. The point moves by `motion` [m] in the step. `d_min`: activation distance [m]. `friction`,
-  /// `static_friction`: Coulomb coefficients while sliding and while sticking, where the latter is raised to the former
-  /// if less.
+  /// particle. The point moves by `motion` [m] in the step. `d_min`: activation distance [m]. `friction`: Coulomb
+  /// coefficient while sliding. `static_friction`: that while sticking, at least `friction` (a smaller value is
+  /// raised).
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
   /// Finds the particles that walls held at the end of the last step and that have no wall yet in this step. So far,
   /// walls were found for near pairs at the start of the step, and for corners of triangles that would meet an obstacle
   /// on the way to x_t1, the expected end of the step. Without a wall, the first solve would release the particles. If
-  /// there are any, returns true and sets `predicted` to x_t1, with these particles moved by `by` [m] towards their
-  /// former walls, so that a second search finds walls for them.
+  /// there are such particles, returns true and sets `predicted` to x_t1, with these particles moved by `by` [m]
+  /// towards their former walls, so that a second search finds walls for them.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that a particle would pass on the way from x_t0, the start
@@ -157,9 +157,9 @@ class VelocityConstraints {
   double step_ = 0;  // h [s]
   std::vector<Wall> walls_;
   std::vector<TouchingParticle> touched_;
-  std::vector<int> touched_of_;  // per particle: index in touched_, or −1
-  std::vector<Memory> memory_;   // per particle, from the last accepted step
-  std::vector<Index> remembered_;
+  std::vector<int> touched_of_;    // per particle: index in touched_, or −1
+  std::vector<Memory> memory_;     // per particle, from the last accepted step
+  std::vector<Index> remembered_;  // particles that walls held at the end of the last step
   std::vector<PrescribedParticle> prescribed_;
 };
 

@@ -40,7 +40,7 @@ class VertexStars {
   void forget_tests();
 
   /// Sets the flag in `vertices` to 1 for centres of clear stars: in such a star, features without a common vertex are
-  /// farther apart than `distance` [m] at x [m]. If x is empty, at the reference. A star is clear if all altitudes of
+  /// farther apart than `distance` [m] at x [m] (at the reference if x is empty). A star is clear if all altitudes of
   /// its triangles, projected along its axis, exceed `distance`. Proof: in the projection, the closest points of two
   /// such features of two triangles are a vertex and a point of the other triangle. If this vertex is the centre, the
   /// segment between them leads from the centre to an opposite edge. If it is another vertex, the segment crosses a
@@ -49,7 +49,7 @@ class VertexStars {
 
   /// Appends the pairs of an edge and a triangle without a separating plane on the trajectory from x_t0 to x_t1.
   /// `moved`: per vertex, a bound of its distance from the reference at both times [m]. `changed`: per vertex, whether
-  /// x_t0 or x_t1 differs from the last call.
+  /// x_t0 or x_t1 differs from that of the last call.
   void find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
                     std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing,
                     PlaneKinds which = PlaneKinds::all);

@@ -15,9 +15,9 @@
 //   - the kept closest points of two features, with unchanged weights, are at least as far apart as the features, and
 //     at most 2 R farther;
 //   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (At the search,
-//     they were within D + R, and the listed pair that represented them was no farther; see ProximityFinder.)
+//     they were within D + R, and the listed pair that represented them was no farther apart; see ProximityFinder.)
 //
-// A pair of surfaces is searched as a whole, because a near pair may represent others in neighbouring groups.
+// A pair of surfaces is searched as a whole, because a near pair may represent pairs in neighbouring groups.
 #pragma once
 
 #include <cstddef>
@@ -74,7 +74,7 @@ class CoherentDetection {
     Vec3 low, high;
     VelocityCone cone;
   };
-  /// Kept result for one wanted pair of surfaces, and the state of their groups at its search.
+  /// Kept result for one pair of surfaces, and the state of their groups at its search.
   struct KeptResult {
     bool valid = false;
     CandidatePairs candidates;
@@ -93,7 +93,7 @@ class CoherentDetection {
   std::vector<Surface> surfaces_;
   std::vector<SurfacePair> surface_pairs_;
   CoherenceParameters parameters_;
-  std::vector<KeptResult> kept_;            // by wanted pair
+  std::vector<KeptResult> kept_;            // by pair of surfaces
   std::vector<std::vector<Group>> groups_;  // by surface
   int updates_ = 0;
   std::vector<Vec3> reference_t0_, reference_t1_;

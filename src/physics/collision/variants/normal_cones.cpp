@@ -150,7 +150,8 @@ NormalCones<K>::NormalCones(const Tree<K>& tree) {
 template <int K>
 void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0,
                               std::span<const Vec3> x_t1, Cone& cone) const {
-  // During the step, the normal of a triangle is a quadratic function of time. These are its Bernstein coefficients.
+  // During the step, the normal of a triangle is a quadratic function of time. `normals`: its Bernstein coefficients,
+  // per lane.
   std::array<std::array<Vec3, 3>, kLanes> normals;
   Vec3 sum = Vec3::Zero();
   cone.altitude = 1e300;

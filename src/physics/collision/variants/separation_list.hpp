@@ -17,8 +17,9 @@ class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree
 
-  /// Subtree `query` of one tree does not overlap some children of the inner node `node` of the other: those whose bits
-  /// are set in `lanes`. `query_in_a`: `query` belongs to tree a.
+  /// Subtree `query` of one tree does not overlap some children of the inner node `node` of the other tree (of the same
+  /// tree if it is traversed against itself): those whose bits are set in `lanes`. `query_in_a`: `query` belongs to
+  /// tree a.
   struct Missed {
     Ref query, node;
     std::uint16_t lanes;

@@ -17,7 +17,8 @@ struct VelocityCone {
     return {now.mean - then.mean, now.radius + then.radius};
   }
 
-  /// Bound of the motion of a point of one set relative to a point of the other [m]; 0 if both only translate equally.
+  /// Bound of the motion of a point of one set relative to a point of the other [m]; 0 if both sets make the same
+  /// translation.
   friend double relative_motion(const VelocityCone& a, const VelocityCone& b) {
     constexpr double kRoundUp = 1 + 0x1p-48;  // exceeds the rounding of a few sums and roots
     return ((a.mean - b.mean).norm() + a.radius + b.radius) * kRoundUp;

@@ -14,7 +14,7 @@ echo '    ' >"$code_file" # reserves space for the exit code, since the disk may
 trap 'stopped=again; [ -z "$child" ] || kill -TERM "$child"' USR1
 trap 'stopped=yes' TERM INT
 
-# Runs a command, and again if that may help: after a killed process or a full disk.
+# Runs a command, and again if that may help: after a killed process, an internal error or a full disk.
 attempt() {
   tries=0
   while :; do

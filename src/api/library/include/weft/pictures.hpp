@@ -15,8 +15,8 @@ struct Picture {
 };
 
 /// Sets the decoder of PNG, JPEG or TGA files, which scenes with pictures need. The library has no decoder of its own,
-/// so that it needs no image libraries. `decode` gets the bytes of a file. If it cannot decode them, it must throw
-/// std::runtime_error with the reason.
+/// so that it needs no image libraries. `decode` gets the bytes of a file. If `decode` cannot decode them, it must
+/// throw std::runtime_error with the reason.
 WEFT_API void set_picture_decoder(std::function<Picture(std::string_view bytes)> decode);
 
 }  // namespace weft

@@ -12,7 +12,7 @@
 
 namespace weft {
 
-/// A scene without mistakes. It never changes. Copies share its data, and any thread may read them.
+/// A scene without mistakes. A Scene never changes. Copies share the data, and any thread may read a Scene.
 class WEFT_API Scene {
  public:
   /// Reads a file. Each of `changes` is "path.to.key=value", as for `--set` on the command line, such as
@@ -22,7 +22,7 @@ class WEFT_API Scene {
   /// at its folder.
   static Scene parse(std::string_view toml, const std::vector<std::string>& changes = {},
                      const std::filesystem::path& name = "scene.toml");
-  /// Returns this scene with further changes, checked again. Throws SceneError.
+  /// Returns this scene with further changes, checked again. Throws SceneError with all mistakes.
   Scene with(const std::vector<std::string>& changes) const;
 
   const std::string& name() const;             ///< file name without its ending
@@ -30,7 +30,7 @@ class WEFT_API Scene {
   int frames() const;                          ///< number of frames; frame k shows time k / fps, frame 0 the start
   std::vector<std::string> cloths() const;     ///< names, in the order of the scene
   std::vector<std::string> obstacles() const;  ///< names, in the order of the scene
-  /// The scene as TOML, completed with the default values of all keys that it leaves out.
+  /// The scene as TOML, including its changes and the default values of all keys that neither file nor changes set.
   std::string text() const;
 
   struct Data;

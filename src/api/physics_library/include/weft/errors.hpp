@@ -1,4 +1,4 @@
-// Exceptions of the library. Each text says where, what was expected with its unit, what was found, and what to do.
+// Exceptions of the library. Each what() says where, what was expected with its unit, what was found, and what to do.
 #pragma once
 
 #include <stdexcept>
@@ -10,14 +10,14 @@
 namespace weft {
 
 struct Mistake {
-  std::string file;          ///< path of the scene, as it was given
+  std::string file;          ///< path of the scene, as the caller gave it; may be empty
   int line = 0, column = 0;  ///< counted from 1; 1 and 1 if the scene lacks something; 0: not in the text of the file
   std::string change;        ///< the change "key=value" that caused the mistake; empty if the file did
   std::string key;           ///< such as "cloth.band.material.thickness"; empty for the file as a whole
   std::string text;          ///< such as "expected > 0 m, got -0.001"
 };
 
-/// A scene has mistakes, or surfaces of a scene or model touch at the start. what() lists all of them, one per line:
+/// A scene has mistakes, or surfaces of a scene or model touch at the start. what() lists all mistakes, one per line:
 /// "file:line:column: key: text".
 class WEFT_API SceneError : public std::runtime_error {
  public:

@@ -1,4 +1,4 @@
-// One frame of a simulation: the state of all objects, quantities measured in it, and the cost of computing it.
+// One frame of a simulation: the state of all objects, quantities measured in the frame, and the cost of computing it.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace weft {
 
 using Vector = std::array<double, 3>;          ///< x, y, z in world space
-using RestPoint = std::array<double, 2>;       ///< rest coordinates along weft and warp
+using RestPoint = std::array<double, 2>;       ///< rest coordinates along weft and warp [m]
 using Triangle = std::array<std::int32_t, 3>;  ///< indices of vertices, counter-clockwise seen from the front
 
 enum class Kind { cloth, obstacle, character, rope };
@@ -25,8 +25,8 @@ struct Object {
   std::span<const Vector> positions;   ///< per vertex [m]; the vertices of a cloth are its particles
   std::span<const Vector> velocities;  ///< per particle [m/s]; empty for bodies and for cloth that is not put on yet
   /// Total contact force on each particle, friction included, at the end of the last time step [N]; empty if
-  /// `velocities` is empty. Zero at the start of a simulation and after it was restored. Contacts are stiff springs, so
-  /// sums over several particles are more accurate than values of single ones.
+  /// `velocities` is empty. Zero at the start of a simulation, and in the frame at which a simulation was restored.
+  /// Contacts are stiff springs, so sums over several particles are more accurate than values of single ones.
   std::span<const Vector> contact_forces;
   /// Per particle, the largest |length / rest length - 1| of the threads at it; empty if `velocities` is empty.
   std::span<const float> strains;
@@ -41,7 +41,7 @@ struct EnclosedAir {
   double pressure = 0;  ///< gauge pressure, relative to the outside air [Pa]
 };
 
-/// Cost of computing a frame, and quantities measured in it. In frame 0, the energies are those of the start.
+/// Cost of computing a frame, and quantities measured in the frame. In frame 0, the energies are those of the start.
 struct Report {
   double wall_s = 0, cpu_s = 0;  ///< wall time and CPU time of simulating this frame [s]
   int steps = 0;                 ///< number of accepted time steps
@@ -60,20 +60,21 @@ struct Report {
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
   double error_estimate = 0;    ///< estimated local errors of positions, summed over the steps [m]
   double solver_error = 0;      ///< estimated errors of positions due to the solver, summed over the steps [m]
-  /// Maximum number of pinched triangles of cloth at one time. A triangle pinched by several limbs counts for each.
+  /// Maximum number of pinched triangles of cloth at one time. A triangle that several limbs pinch counts once per
+  /// limb.
   int pinched_pairs = 0;
   int lagging_particles = 0;  ///< maximum number, at one time, of pinned particles that are not at their targets
   std::vector<EnclosedAir> enclosed_air;  ///< one per cloth with pressure
   std::vector<std::string> warnings;
 };
 
-/// One frame. It never changes. Copies share its data, and any thread may read them.
+/// One frame. A Frame never changes. Copies share the data, and any thread may read a Frame.
 class WEFT_API Frame {
  public:
   int number() const;            ///< counted from 0
   double time() const;           ///< [s]
   const Report& report() const;  ///< all zero in the frame at which a simulation was restored
-  /// Cloths and ropes, then obstacles, then characters; each in the order of the model or scene.
+  /// Cloths and ropes, then obstacles, then characters; each kind in the order of the model or scene.
   std::span<const Object> objects() const;
   /// The object with this name. If there is none, throws std::out_of_range with the names of all objects.
   const Object& object(std::string_view name) const;

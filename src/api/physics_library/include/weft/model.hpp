@@ -21,14 +21,14 @@ struct Material {
   double stretch_warp = 2100;  ///< stiffness along warp [N/m]
   double shear = 130;          ///< [N/m]
   double bend = 1e-5;          ///< bending stiffness [N·m]
-  double max_stretch = 0.1;    ///< relative extension at which threads lock; 0: never
+  double max_stretch = 0.1;    ///< relative extension at which threads lock (stiffen); 0: never
   double max_shear = 0;        ///< change of the angle between weft and warp at which threads lock [degrees]; 0: never
   double stretch_viscosity = 0;  ///< [N·s/m]
   double shear_viscosity = 0;    ///< [N·s/m]
   double bend_viscosity = 1e-6;  ///< [N·m·s]
   double bend_friction = 5e-4;   ///< minimum moment per width that changes the curvature [N]
   double thickness = 0.002;      ///< distance at which two layers of this fabric begin to push each other [m]
-  double friction = 0.3;         ///< Coulomb coefficient; a contact uses the geometric mean of those of both objects
+  double friction = 0.3;         ///< Coulomb coefficient; a contact uses the geometric mean of both coefficients
   double drag = 1;               ///< air resistance coefficient, for motion normal to the cloth; 0: none
 };
 
@@ -36,8 +36,9 @@ struct Material {
 struct Cloth {
   std::string name{};
   Mesh mesh{};  ///< shape at the start
-  /// Rest coordinates of each particle: its place in the flat fabric, along weft and warp [m]. If empty, the mesh is
-  /// the rest shape, and the weft of each triangle runs along the projection of the x axis onto the triangle.
+  /// Rest coordinates of each particle: its place in the flat fabric, along weft and warp [m]. If `rest` is empty, the
+  /// mesh is the rest shape, and the weft of each triangle runs along the projection of the x axis onto the triangle
+  /// (but if the triangle is nearly perpendicular to this axis, the warp runs along the projection of the y axis).
   std::vector<RestPoint> rest{};
   Material material{};
   Vector velocity{0, 0, 0};  ///< of all particles at the start [m/s]
@@ -50,7 +51,7 @@ struct Pose {
 };
 
 struct PoseKey {
-  double time = 0;  ///< [s]; later than that of the key before
+  double time = 0;  ///< [s]; later than the time of the key before
   Pose pose{};
 };
 
@@ -59,11 +60,11 @@ struct Body {
   std::string name{};
   Mesh mesh{};                  ///< in the coordinates of the body; must be closed if the body has a mass
   Pose pose{};                  ///< pose at the start; a body without mass and keys keeps it
-  std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; if there are any, `pose` is ignored
+  std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; unless empty, `pose` is ignored
   double mass = 0;              ///< [kg]; if it is above 0, forces move the body
   Vector velocity{0, 0, 0};     ///< velocity at the start, of a body with a mass [m/s]
-  double friction = 0.3;
-  bool collide = true;  ///< false: nothing touches the body, but pins can follow it
+  double friction = 0.3;        ///< Coulomb coefficient
+  bool collide = true;          ///< false: nothing touches the body, but pins can follow it
 };
 
 /// Holds particles of a cloth in place, or moves them with a body. A particle can be in one pin only.
@@ -76,7 +77,7 @@ struct Pin {
 
 enum class Method { implicit_euler, implicit_midpoint, bdf2 };
 
-/// A model to simulate. The names of its cloths and bodies must differ from each other. A Simulation copies the model.
+/// A model to simulate. All names of cloths and bodies must be different. A Simulation copies the model.
 struct Model {
   double fps = 25;     ///< frames per second
   double step = 0.01;  ///< maximum time step [s]; a frame is divided into equal steps that are not longer

@@ -19,9 +19,9 @@ WEFT_API void set_threads(int threads);
 /// function restores standard error.
 WEFT_API void set_warning_handler(std::function<void(std::string_view warning)> handle);
 
-/// Sets a function that simulations call many times a second while they compute, in the thread that uses them. To
-/// interrupt a frame, `check` throws: Simulation::advance() then throws the same exception, and Simulation::frame()
-/// stays as it was. An empty function removes the check.
+/// Sets a function that simulations call many times a second while they compute, in the thread that uses the
+/// simulation. If `check` throws, the frame is interrupted: Simulation::advance() throws the same exception, and
+/// Simulation::frame() stays as it was. An empty function removes the check.
 WEFT_API void set_interrupt_check(std::function<void()> check);
 
 }  // namespace weft

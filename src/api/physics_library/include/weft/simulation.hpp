@@ -1,4 +1,4 @@
-// Simulates a model or a scene frame by frame.
+// Simulates a model or a scene, frame by frame.
 #pragma once
 
 #include <memory>
@@ -15,14 +15,14 @@ namespace weft {
 class Scene;
 
 struct SimulationOptions {
-  /// Names of the bodies that Simulation::move() will move. They must have no mass. In scenes, a body with a mass may
-  /// be driven until its `release`.
+  /// Names of the bodies that Simulation::move() will move. These bodies must have no mass; but in scenes, a body with
+  /// a mass may be driven until its `release`.
   std::vector<std::string> driven{};
   std::string state{};  ///< result of Simulation::save() from which to continue; empty: begin at frame 0
 };
 
-/// A simulation, which advances frame by frame. One thread at a time may use it; different simulations may run in
-/// different threads. The same model or scene gives the same bits on any number of threads.
+/// A simulation, which advances frame by frame. Only one thread at a time may use a simulation; different simulations
+/// may run in different threads. The same model or scene gives the same bits on any number of threads.
 class WEFT_API Simulation {
  public:
   /// Simulates a model. Throws std::invalid_argument if a value of the model is out of range or the options do not fit
@@ -46,16 +46,17 @@ class WEFT_API Simulation {
 
   /// During the next frame, moves a driven body to `pose` at constant velocity. Then the body stays there until the
   /// next call. Pins that follow the body move with it, so a body that does not collide can serve as a handle for
-  /// cloth. Throws std::invalid_argument if the body is not driven, or if the pose is not finite or not a unit
-  /// quaternion.
+  /// cloth. Throws std::invalid_argument if the body is not driven, if a coordinate of the position is not within ±1e5
+  /// m, or if the rotation is no unit quaternion.
   void move(std::string_view body, const Pose& pose);
 
-  /// Sets gravity [m/s²] and the velocity of the air [m/s] from the next frame on. They replace the values and keys of
-  /// the model or scene; gusts and fans of a scene stay. Throws std::invalid_argument if a number is out of range.
+  /// Sets gravity [m/s²] and the velocity of the air [m/s] from the next frame on. These values replace those of the
+  /// model or scene and the keys of the scene; gusts and fans of a scene stay. Throws std::invalid_argument if a number
+  /// is out of range.
   void set_weather(const Vector& gravity, const Vector& wind);
 
-  /// Returns the state on which later frames depend, for SimulationOptions::state. To restore it, use the same model or
-  /// scene, options, library version and kind of machine. Do not call it after advance() has thrown.
+  /// Returns the state on which later frames depend, for SimulationOptions::state. To restore the state, use the same
+  /// model or scene, driven bodies, library version and kind of machine. Do not call it after advance() has thrown.
   std::string save() const;
 
   struct Impl;  ///< for the library itself

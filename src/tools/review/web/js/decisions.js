@@ -28,7 +28,8 @@
   let author = stored("weft-review-author", "");
 
   const ownOf = (run) => own[run.home]?.[run.key];
-  // Whether the change is later than the entry of review.json. Dates are ISO 8601 in UTC, so they compare as text.
+  // Whether there is a change on the page that is later than the entry of review.json. Dates are ISO 8601 in UTC, so
+  // they compare as text.
   const isPending = (run) => ownOf(run) !== undefined && (ownOf(run).date ?? "") > (run.filed?.date ?? "");
   const entryOf = (run) => (isPending(run) ? ownOf(run) : run.filed) ?? { state: "open", notes: [] };
 

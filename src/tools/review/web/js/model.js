@@ -150,7 +150,7 @@
   });
 
   const age = (run) => run.date?.getTime() ?? 0;
-  // What makes runs versions of each other: the same scene and, in a sweep, the same values.
+  // Runs with the same text are versions of each other: they have the same scene and, in a sweep, the same values.
   const shot = (run) => JSON.stringify([run.scene, run.values]);
   /** Runs of the same scene, the newest first. */
   const versions = (run) => runs.filter((other) => shot(other) === shot(run)).sort((a, b) => age(b) - age(a));

@@ -1,5 +1,5 @@
-// Shows the pictures of one run, or of several at the same time. Each run has a track. The time of the first track sets
-// that of the others.
+// Shows the pictures of one run, or of several at the same time. Each run has a track. The first track sets the time of
+// the other tracks.
 "use strict";
 {
   const { h } = review;
