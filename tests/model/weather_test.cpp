@@ -18,7 +18,7 @@ Weather weather_of(const std::string& text) {
 
 TEST(Weather, OfASceneThatNamesNothingIsItsGravityAndWindEverywhere) {
   const Weather weather = weather_of("[physics]\ngravity = [1, 2, 3]\nwind = [4, 5, 6]");
-  EXPECT_FALSE(weather.varies_in_space());
+  EXPECT_FALSE(weather.differs_from_wind());
   EXPECT_EQ(weather.gravity(7), Vec3(1, 2, 3));
   EXPECT_EQ(weather.air({8, 9, 10}, 7), Vec3(4, 5, 6));
   EXPECT_TRUE(weather.is_constant_between(0, 7));
@@ -86,7 +86,7 @@ TEST(Weather, OfAFanWithKeysTurnsAndStopsWithThem) {
 TEST(Weather, BlowsOnNothingWithoutAirOrDrag) {
   const environment::Environment environment(
       support::scene_of_text(std::string(kFan) + "[[cloth]]\nname = \"sheet\"\nmaterial.drag = 0\n"));
-  EXPECT_FALSE(Weather(environment.model).varies_in_space());
+  EXPECT_FALSE(Weather(environment.model).differs_from_wind());
 }
 
 }  // namespace

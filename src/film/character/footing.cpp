@@ -14,7 +14,8 @@ namespace {
 constexpr double kMaxContactSpeed = 0.35, kMaxContactHeight = 0.05;
 /// Maximum height of the ankle of a flat foot above Footsteps::ankle_height [leg lengths].
 constexpr double kMaxFlatAnkleHeight = 0.03;
-/// Speeds are means over this time [s]: half of the key interval of a clip with 15 keys per second.
+/// Minimum time over which speeds are averaged [s]. With few keys per second, it is the time from the key before to the
+/// key after.
 constexpr double kSpeedWindow = 1.0 / 30;
 /// Shorter contacts are ignored [s].
 constexpr double kMinContactTime = 0.08;
@@ -85,7 +86,7 @@ std::vector<Contact> contacts_of(const FootTrack& ball, std::span<const double> 
   return contacts;
 }
 
-/// Height of the floor under the balls of both feet; the height of the lowest ball if no ball is ever slow.
+/// Height of the ball joints of feet that stand on the floor; the height of the lowest one if none is ever slow.
 double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   std::vector<double> slow;
   double lowest = std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// Finds the vertices of body parts: by common names (hands, torso), names of joints, or bones or materials of the file.
+// Finds the vertices of body parts, given by a common name (hands, torso), the name of a joint, a node of the skeleton,
+// or a material of the character's file.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ const std::vector<std::string>& part_names();
 std::vector<Index> joints_of_part(const std::string& name);
 
 /// The vertices with at least half of their weight on the nodes of these joints. A joint owns its own node and all
-/// nodes below it, except those that are or lie below another joint. `nodes`: the node of each of joint_names(), −1 if
+/// nodes below it, except the nodes that another joint below it owns. `nodes`: the node of each of joint_names(), −1 if
 /// there is none.
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
 

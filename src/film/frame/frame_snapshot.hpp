@@ -135,7 +135,9 @@ struct Camera {
   /// Names of the surfaces to keep in view. If empty: for `whole`, all visible surfaces except infinite floors; for the
   /// other kinds, all characters; without characters, all cloths; without both, as for `whole`.
   std::vector<std::string> subjects = {};
-  double azimuth = 33;     ///< direction from the subjects to the camera: angle from the front to the right [degrees]
+  /// Horizontal direction from the subjects to the camera [degrees]: 0 is the front of the scene (−y if z is up, +z if
+  /// y is up), 90 is +x.
+  double azimuth = 33;
   double elevation = 17;   ///< direction from the subjects to the camera: angle above the horizontal [degrees]
   double margin = 0.14;    ///< free space around the subjects, as a fraction of half the picture's width or height
   double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
@@ -166,7 +168,8 @@ struct Stage {
   Vec3 up{0, 0, 1};
   Look look = Look::studio;
   // The look sets each of the next three values that is absent.
-  std::optional<Vec3> sky_color;     ///< sRGB; light from above; if there is no floor, also tints a grey backdrop
+  std::optional<Vec3>
+      sky_color;  ///< sRGB; light from above; without a floor, also tints the look's backdrop if it is grey
   std::optional<Vec3> ground_color;  ///< sRGB; light reflected from below
   /// Fraction of the light that comes from the surroundings, 0 to 1; the rest comes from the lights.
   std::optional<double> sky_intensity;

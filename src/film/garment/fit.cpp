@@ -33,8 +33,8 @@ Measures measure(const Wearer& wearer) {
   if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
   const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
   const auto girth = [&](double s) { return torso.girth(s, 0); };
-  // A waistband needs nearly vertical skin. Where the girth changes faster with height, a body part ends, such as the
-  // ball between chest and hips of a puppet.
+  // A waistband slides off skin that is too inclined. Where the girth changes faster than kMaxGirthSlope with height, a
+  // body part ends, such as the ball between chest and hips of a puppet.
   const auto is_upright = [&](double s) {
     return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
            kMaxGirthSlope * kSpacing;

@@ -15,8 +15,8 @@ constexpr std::size_t kMaxCurves = 10000;
 constexpr double kMaxCoordinate = 1e6;
 // Number of straight pieces for measuring the length of a curve; relative error for a quarter circle: 2e-6.
 constexpr int kPiecesPerCurve = 256;
-// Minimum angle between two consecutive curves that counts as a corner [rad]. Pieces of one curve meet at angles of 1
-// or 2 degrees, seam and hem at 60 degrees or more.
+// Minimum angle between two consecutive curves that counts as a corner [rad]. Curves that form one smooth line of
+// a drawing meet at angles of 1 or 2 degrees, seam and hem at 60 degrees or more.
 constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
 
 Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {

@@ -15,8 +15,9 @@ struct PlanItem {
   std::string reason;
 };
 
-/// Lists the parts without building the simulation. Reads only the files of characters (for the size of their key
-/// frames), and builds only cloths from meshes and from fitted patterns (for their rest shapes). If a file or cloth
+/// Lists the parts without building the simulation. Reads the files of characters (for the size of their key
+/// frames and what cloth passes through), and builds the cloths from meshes and from fitted patterns (for their rest
+/// shapes); it reads and builds nothing else. If a file or cloth
 /// cannot be used, throws Error with the code asset_unreadable or scene_invalid.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 

@@ -24,7 +24,7 @@ using LightValue = motion::Spline<10>::Value;
 // Maximum angle between the normals of two faces of a character at which their edge is shaded smoothly [degrees].
 constexpr double kCharacterCrease = 80;
 
-// Maximum roll of a camera in a file that is ignored without a warning [degrees].
+// The roll of a camera from a file is ignored; above this angle, with a warning [degrees].
 constexpr double kMaxIgnoredRoll = 0.1;
 
 // The default colour of the back of a cloth lies this fraction of the way from the colour of the front to white.
@@ -278,7 +278,7 @@ motion::Spline<7> camera_track(const scene::Camera& camera) {
   return {camera.interpolation, std::move(times), std::move(values)};
 }
 
-// Track of a camera from a file. In the coordinates of the file, y is up and z points to the front.
+// Track of a camera from a file. In the file, y is up and z points toward the front of the scene.
 motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
   const std::string where =
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);

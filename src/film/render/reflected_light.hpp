@@ -52,8 +52,9 @@ class ReflectedLight {
 
   struct Arriving {
     Lanes open = Lanes::Zero();  ///< 1 if the ray hits no surface; the floor counts as part of the surroundings
-    Lanes3 light;                ///< radiance to add to that of the surroundings, which include the fully lit floor;
-                                 ///< negative if the ray hits shaded floor
+    /// The radiance along the ray is `open` times that of the surroundings, plus `light`: all of the radiance if the
+    /// ray hits a surface; negative if it hits shaded floor, because the surroundings contain the floor fully lit.
+    Lanes3 light;
   };
   Arriving arriving(const Rays& rays) const;
 

@@ -11,13 +11,14 @@ namespace weft::forces {
 
 /// Keeps the distances between the four particles p_k of a rigid body (mesh::RigidFrame, with deviations s and corners
 /// t_k). If the body is not deformed, B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R. With the body's mass m, the
-/// stiffness κ and W = diag(s)^-½, the energy is κ m/8 ‖W Bᵀ B W − W⁻²‖². It is the energy of the strain AᵀA − I of an
-/// affine body, A = B diag(s)⁻¹ (Lan et al., "Affine Body Dynamics", 2022). The factors W scale the strain so that
-/// stretch along each axis has the same angular frequency √κ; thin bodies are then as rigid as round ones.
+/// stiffness κ and W = diag(s)^-½, the energy is κ m/8 ‖W Bᵀ B W − W⁻²‖². It equals
+/// κ m/8 ‖W⁻¹ (AᵀA − I) W⁻¹‖², an energy of the strain AᵀA − I of an affine body, A = B diag(s)⁻¹ (Lan et al., "Affine
+/// Body Dynamics", 2022). The weights W⁻¹ give stretch along each axis the same angular frequency √κ, so that thin
+/// bodies are as rigid as round ones.
 ///
-/// The force is the product of the strain at the end of the step and the derivatives of the strain at the stage x.
-/// Therefore, with the midpoint rule, the force does not resist rotation, and every integration method damps the
-/// strain.
+/// The force is the product of the strain at the end of the step and the derivatives of the strain at the positions at
+/// which the method evaluates forces. With the midpoint rule, a body that only rotates looks shrunk there, half-way,
+/// but has no strain at the end, so the force does not resist rotation. With every method, the force damps the strain.
 class Rigidity final : public Force {
  public:
   /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].
@@ -25,7 +26,7 @@ class Rigidity final : public Force {
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void partition(std::span<const Index> /*bounds*/) override {}  // every range evaluates all elements, which are few
+  void partition(std::span<const Index> /*bounds*/) override {}  // every range evaluates the whole body
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
 

@@ -90,8 +90,8 @@ void Stretch::add(const Evaluation& at) const {
 }
 
 // The viscous force is proportional to (n·w) n, where n is the direction of the edge and w the relative velocity of its
-// ends. Its derivative with respect to n, O(η‖w‖/l), is unsymmetric, so add() omits it from Newton's matrix. Therefore
-// Newton's method converges only linearly with viscosity.
+// ends. The part of its derivative with respect to x that comes from the change of n, O(η‖w‖/l), is unsymmetric, so
+// add() omits it from Newton's matrix. Therefore Newton's method converges only linearly with viscosity.
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
   for_each_edge([&](const Edge& edge) {

@@ -28,8 +28,8 @@ class Weather {
 
   /// Gravity at time t [s], in [m/s²].
   Vec3 gravity(double t) const { return keys_ ? Vec3(keys_->at(t).value.head<3>()) : gravity_; }
-  /// Whether the velocity of the air may differ from Model::physics.wind at any time or place.
-  bool varies_in_space() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
+  /// Whether keys, gusts or fans make the air differ from Model::physics.wind at some time or place.
+  bool differs_from_wind() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
   /// Velocity of the air at x [m] and time t [s], in [m/s].
   Vec3 air(const Vec3& x, double t) const;
   /// Whether gravity and air are the same at t0 and t1 [s]; false if there are gusts.

@@ -66,7 +66,7 @@ void StepLoop::update_weather(double t, double h) {
   const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   gravity_ = weather_.gravity(t + until_stage);
   cloth_.use_gravity(gravity_);
-  if (!weather_.varies_in_space()) return;
+  if (!weather_.differs_from_wind()) return;
   const SystemState& now = progress_.now;
   std::vector<solver::PaddedVec3<double>> air(now.v.size());
   parallel_for(air.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {

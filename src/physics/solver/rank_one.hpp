@@ -19,7 +19,7 @@ class RankOneTerms {
  public:
   using Apply = std::function<void(std::span<const PaddedVec3<Real>> r, std::span<PaddedVec3<Real>> z)>;
 
-  /// Reads `system`, which must outlive the following calls.
+  /// Copies the terms of `system`, filtered by its constraints.
   void prepare(const LinearSystem& system);
 
   /// Restricts the following calls to vectors that are zero outside of these diagonal blocks.
@@ -30,7 +30,7 @@ class RankOneTerms {
   /// Adds k d dᵀ p of each selected term to q, where d is filtered by the constraints; returns the increase of p·q.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;
 
-  /// Changes z from P⁻¹ r to the product of r with the preconditioner of the whole matrix.
+  /// Changes z from P⁻¹ r to (P + Σ k d dᵀ)⁻¹ r, with the sum over the selected terms.
   void correct(std::span<PaddedVec3<Real>> z) const;
 
   bool empty() const { return terms_.empty(); }

@@ -1,4 +1,5 @@
-// Finds ways out of solids for cloth that starts inside, one for each connected region of cloth.
+// Finds ways out of forbidden regions (solid bodies, floors, layers; here all called solids) for cloth that starts
+// inside, one for each connected region of cloth.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +18,19 @@ struct InsideRegion {
   Vec3 centre = Vec3::Zero();       ///< [m]
   double size = 0;                  ///< longest side of its bounding box, which is extended half-way to neighbours [m]
   double farthest = 0;              ///< largest displacement of a particle [m]
-  double shortest = std::numeric_limits<double>::infinity();  ///< as `farthest`, for the shortest way without blocked
-                                                              ///< threads [m]; infinite: none
-  double cost = 0;                                            ///< see stretch_cost; 0 if the whole mesh moves
+  /// Smallest value of `farthest` among all ways, also those not chosen, after which the threads are outside the solid
+  /// [m]; infinite: there is none.
+  double shortest = std::numeric_limits<double>::infinity();
+  double cost = 0;          ///< see stretch_cost; 0 if the whole mesh moves
   double blocked = 0;       ///< fraction of its threads that would still go through the solid after the moves
   std::vector<Move> moves;  ///< out of the solid, to the height `above` over its surface
 };
 
-/// Finds all regions of cloth that can move (UntangleInput::can_move) inside `solid` at x [m], and chooses the cheapest
-/// way out of each: every particle goes to its nearest exit, or all particles move in one direction, or the whole mesh
-/// moves. For example, a sheet through a ball moves to the side where its smaller part is; a garment that is too small
-/// moves outward on all sides. `above`: height over the surface, per body of cloth [m].
+/// Finds all regions that are inside `solid` at x [m], of cloth that can move (UntangleInput::can_move), and chooses
+/// the cheapest way out of each: every particle goes to its nearest exit, or all particles move in one direction, or
+/// the whole mesh moves. For example, a sheet that cuts a ball into two parts moves to the side of the smaller part of
+/// the ball; a garment that is too small moves outward on all sides. `above`: height over the surface, per body of
+/// cloth [m].
 std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
                                       std::span<const double> above, std::span<const Vec3> x);
 

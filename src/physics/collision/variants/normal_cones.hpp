@@ -15,18 +15,19 @@ namespace weft::collision {
 ///
 /// Let P be the triangles below a node and P⁺ all triangles that share a vertex with P. Features of P without a common
 /// vertex are not near each other if an axis a exists such that, during the linear motion from x_t0 to x_t1,
-///   1. no corner of P is on the border of the surface, so all triangles around it are in P⁺;
+///   1. no corner of P is on the border of the surface, so the triangles around it, all in P⁺, surround it completely;
 ///   2. the normals of P⁺ lie in a cone around a with a half-angle below 90°, so that a viewer who looks along −a sees
 ///      only front sides of P⁺;
 ///   3. the contour of P⁺, seen along −a, runs counter-clockwise around its centre once (star-shaped: Schvartzman,
 ///      Pérez & Otaduy, "Star-Contours for Efficient Hierarchical Self-Collision Detection", 2010);
 ///   4. the altitudes of the triangles of P⁺, projected along a, exceed the detection distance.
 ///
-/// Proof: the degree of the projection is the winding number of the contour, to which every triangle contributes +1. By
-/// conditions 2 and 3, each point inside the contour is covered once, so P⁺ projects to a planar triangulation. In that
-/// plane, the closest points of two features of P without a common vertex include a vertex v of one of them. By
-/// condition 1, the triangles around v surround v. The segment from v to the other feature leaves them through an edge
-/// opposite to v, so it is at least as long as an altitude. Distances in space are no smaller than their projections.
+/// Proof: by condition 2, all projected triangles have the same orientation, so the winding number of the contour
+/// around a point is the number of triangles that cover the point. By condition 3, this number is 1 inside the contour,
+/// so P⁺ projects to a planar triangulation. In that plane, the closest points of two features of P without a common
+/// vertex include a vertex v of one of them. By condition 1, the triangles around v surround v. The segment from v to
+/// the other feature leaves them through an edge opposite to v, so it is at least as long as an altitude. Distances in
+/// space are no smaller than their projections.
 ///
 /// During a step, normals and cross products of edges are quadratic functions of time. The cone test and the contour
 /// test therefore use their Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle
