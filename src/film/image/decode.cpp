@@ -114,8 +114,8 @@ Picture to_picture(const AVFrame& frame) {
   sws_setColorspaceDetails(scaler.get(), coefficients, kFullRange, coefficients, kFullRange, 0, kUnchanged, kUnchanged);
   Picture picture{frame.width, frame.height, {}};
   picture.rgba.resize(4 * static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
-  std::uint8_t* const planes[] = {picture.rgba.data()};
-  const int strides[] = {4 * picture.width};
+  std::uint8_t* const planes[4] = {picture.rgba.data()};  // swscale reads four
+  const int strides[4] = {4 * picture.width};
   if (sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, planes, strides) != frame.height)
     fail("its colors could not be converted");
   return picture;

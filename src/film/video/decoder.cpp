@@ -113,8 +113,8 @@ struct Decoder::Impl {
     if (frame->width != codec->width || frame->height != codec->height) fail_to_read(file, "its pictures change size");
     if (!scaler) scaler = make_scaler(*frame, file);
     image::Image image(frame->width, frame->height);
-    std::uint8_t* const planes[] = {image.rgb.data()};
-    const int strides[] = {3 * image.width};
+    std::uint8_t* const planes[4] = {image.rgb.data()};  // swscale reads four
+    const int strides[4] = {3 * image.width};
     check_read(sws_scale(scaler.get(), frame->data, frame->linesize, 0, frame->height, planes, strides), file);
     return image;
   }

@@ -54,39 +54,40 @@ FrameConverter::FrameConverter(int width, int height, std::filesystem::path file
       rgb_(format == AV_PIX_FMT_RGB24 || format == AV_PIX_FMT_BGR0),
       file_(std::move(file)) {
   scaler_ = make_scaler(padded_width(), padded_height(), format_, rgb_, file_);
-  if (padded_width() != width || padded_height() != height) padded_ = image::Image(padded_width(), padded_height());
+  source_ = allocate(AV_PIX_FMT_RGB24);
+}
+
+FramePtr FrameConverter::allocate(AVPixelFormat format) const {
+  FramePtr frame = check_allocated(FramePtr(av_frame_alloc()), file_);
+  frame->format = format;
+  frame->width = padded_width();
+  frame->height = padded_height();
+  check(av_frame_get_buffer(frame.get(), 0), file_, "get memory for a frame");
+  return frame;
 }
 
 FramePtr FrameConverter::make_frame() const {
-  FramePtr frame = check_allocated(FramePtr(av_frame_alloc()), file_);
-  frame->format = format_;
-  frame->width = padded_width();
-  frame->height = padded_height();
+  FramePtr frame = allocate(format_);
   frame->color_range = rgb_ ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
   frame->colorspace = rgb_ ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
   frame->color_primaries = AVCOL_PRI_BT709;
   // BT.709 and sRGB share their primaries; players treat this transfer tag like sRGB.
   frame->color_trc = AVCOL_TRC_BT709;
   if (!rgb_) frame->chroma_location = AVCHROMA_LOC_LEFT;
-  check(av_frame_get_buffer(frame.get(), 0), file_, "get memory for a frame");
   return frame;
 }
 
 void FrameConverter::convert(const image::Image& image, AVFrame& frame) {
-  const image::Image* source = &image;
-  if (!padded_.rgb.empty()) {
-    for (int y = 0; y < padded_.height; ++y) {
-      const int from_y = std::min(y, height_ - 1);
-      std::memcpy(padded_.pixel(0, y), image.pixel(0, from_y), 3 * static_cast<std::size_t>(width_));
-      if (width_ % 2 != 0) std::memcpy(padded_.pixel(width_, y), image.pixel(width_ - 1, from_y), 3);
-    }
-    source = &padded_;
+  for (int y = 0; y < source_->height; ++y) {
+    const int from_y = std::min(y, height_ - 1);
+    std::uint8_t* const row = source_->data[0] + static_cast<std::ptrdiff_t>(y) * source_->linesize[0];
+    std::memcpy(row, image.pixel(0, from_y), 3 * static_cast<std::size_t>(width_));
+    if (source_->width > width_) std::memcpy(row + std::ptrdiff_t{3} * width_, image.pixel(width_ - 1, from_y), 3);
   }
-  const std::uint8_t* const planes[] = {source->rgb.data()};
-  const int strides[] = {3 * source->width};
-  const int rows = check(sws_scale(scaler_.get(), planes, strides, 0, source->height, frame.data, frame.linesize),
-                         file_, "convert a frame to video colours");
-  if (rows != source->height) fail(file_, "convert a frame to video colours", "rows are missing");
+  const int rows =
+      check(sws_scale(scaler_.get(), source_->data, source_->linesize, 0, source_->height, frame.data, frame.linesize),
+            file_, "convert a frame to video colours");
+  if (rows != source_->height) fail(file_, "convert a frame to video colours", "rows are missing");
 }
 
 }  // namespace weft::video

@@ -26,12 +26,14 @@ class FrameConverter {
   void convert(const image::Image& image, AVFrame& frame);
 
  private:
+  FramePtr allocate(AVPixelFormat format) const;
+
   int width_, height_;
   AVPixelFormat format_;
   bool rgb_;
   std::filesystem::path file_;
   ScalerPtr scaler_;
-  image::Image padded_;  // only for odd sizes
+  FramePtr source_;  // the padded picture; memory of libav, since swscale reads beyond the last pixel of its source
 };
 
 }  // namespace weft::video
