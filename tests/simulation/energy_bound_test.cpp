@@ -406,6 +406,18 @@ TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   }
 }
 
+// Uses a made-up report, because garments with buttons are far larger.
+TEST(EnergyBound, ClosingButtonsBringEnergy) {
+  model::Model model = environment::Environment(on_a_blade()).model;
+  FrameReport gained;
+  gained.kinetic_energy = 1;
+  const auto is_suspected = [&] { return !EnergyBound(model, 0.05, {}).check(gained).empty(); };
+  model.cloths[0].sheet.ties = {{.a = 0, .b = 1, .strength = 1}};
+  EXPECT_TRUE(is_suspected()) << "it is closed from the start";
+  model.cloths[0].sheet.ties[0].closed = 0.5;
+  EXPECT_FALSE(is_suspected());
+}
+
 // Uses made-up reports, because it depends on details of the solver whether contact adds energy in a run.
 TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
   const auto after_a_fall = [](double gained) {
