@@ -59,7 +59,7 @@ const Table& contact_rules() {
           .plain(Type::boolean, "obstacles", &Contact::obstacles,
                  "whether anything collides with obstacles and characters")
           .number("stiffness", &Contact::stiffness, within(0, 1e9), "N/m",
-                  "minimum stiffness of the spring of one contact; 0: what mass and step of the particles need")
+                  "minimum stiffness of the spring of one contact; heavy particles and short steps get a higher one")
           .table("search", &Contact::search, search_rules())
           .list(Type::list, "pair", &Contact::pairs, friction_pair_rules())
           .choice("response", &Contact::response, {"springs", "velocity_constraints"},

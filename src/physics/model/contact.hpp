@@ -36,7 +36,7 @@ struct FrictionPair {
 struct Contact {
   bool self = true;       ///< cloth against itself and other cloths
   bool obstacles = true;  ///< cloth against obstacles
-  double stiffness = 0;   ///< stiffness of a contact [N/m], at least Numerics::Contact::inertial_stiffness
+  double stiffness = 0;   ///< minimum stiffness of a contact [N/m], beside Numerics::Contact::inertial_stiffness
   std::vector<FrictionPair> pairs;
   Search search;
   Response response = Response::springs;
