@@ -8,7 +8,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 right_world;        // right axis of the camera
   vec4 sky;                // linear light from above
   vec4 horizon;            // linear light from the sides; w: Style::toe, linear light below which tones are darkened
-  vec4 ground;             // linear light from below
+  vec4 ground;             // linear light from below, for reflections
   vec4 backdrop;           // linear colour at the horizon; w: fraction by which it is darker far from the subjects
   vec4 backdrop_top;       // linear colour straight above
   vec4 viewport;           // width, height [pixels], and their reciprocals

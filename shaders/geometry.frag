@@ -8,12 +8,14 @@ in vec2 surface_uv;
 in float surface_heat;
 in vec3 normal_squares, normal_products, plane;
 uniform float surface;
-layout(location = 0) out vec4 normal_heat;       // world normal towards the viewer, of length 1 + rise() [m]; w: heat
+// normal_heat: world normal on the visible side; w: heat. The length of the normal is 1 + the
+// height of the smooth surface above the triangle along this normal [m].
+layout(location = 0) out vec4 normal_heat;
 layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // see "Surface numbers" in frame.glsl
 #ifdef PAINTED
-// `paint`: xyz: square root of the linear colour, which needs only 8 bits. w: above 0.5 if the pixel is painted; below
-// 1 if a picture lies over a colour and is transparent there.
+// `paint`: xyz: square root of the linear colour, which needs only 8 bits. w: 0 if the pixel is not
+// painted; from 0.6 (transparent) to 1 (opaque) if a picture lies over a colour; else 1.
 #ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, premultiplied

@@ -7,8 +7,9 @@ struct Light {
 // The first LIGHTS entries are valid, at least one. Index them by constants: with a variable index, llvmpipe reads a
 // member again for each pixel.
 layout(std140, binding = 1) uniform Lights { Light lights[4]; };
-// Unit vector towards light i. `cone`: relative intensity of the light at the point. Of a sun: 1. Of a spot: 1 at its
-// target, 0 outside its cone; inside, it falls with the squared distance.
+// Returns the unit vector towards light i. `cone`: relative intensity of the light at the point.
+// For a sun, it is 1. For a spot, it is 0 outside the cone, 1 at the target, and inversely
+// proportional to the squared distance.
 vec3 toward_light(int i, vec3 position_world, out float cone) {
   cone = 1.0;
 #ifdef SPOTS

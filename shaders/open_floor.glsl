@@ -22,7 +22,7 @@ vec3 light_on_floor(int i, FloorPoint at) {
   return lights[i].color.rgb * cone * shown;
 }
 
-// 0 near the subjects, rising to 1 far from them.
+// 0 up to 1.5 radii (frame.eye_world.w) from the centre of the subjects, rising to 1 far away.
 float away_from_subjects(vec3 position_world) {
   float away = max(length(position_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
   return away * away / (1.0 + away * away);

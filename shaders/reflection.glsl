@@ -3,16 +3,16 @@ layout(binding = 13) uniform sampler2D mirror;            // upside down, sRGB e
 layout(binding = 14) uniform sampler2D mirror_distances;  // distance from eye via floor to reflected surface [m]
 const int kMirrorTaps = 8;
 
-// sRGB to linear light, with an error below 0.3/255 (a cubic fitted to IEC 61966-2-1).
+// sRGB to linear light, with an error below 0.5/255 (a cubic fitted to IEC 61966-2-1).
 vec3 decode(vec3 srgb) { return srgb * (srgb * (srgb * 0.305306011 + 0.682171111) + 0.012522878); }
 
 // Blends the reflection with the weight `share` over the floor's colour (sRGB); returns linear light. `distance_view`:
 // distance of the floor along the view axis [m].
 vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float share) {
   vec2 at = vec2(uv.x, 1.0 - uv.y);
-  // A rough floor scatters light into a cone (`cone`: tangent of its half angle). So the blur radius grows with the
-  // distance from the floor to the reflected surface. This is the nearest surface in the pixels around, so that outlines
-  // are blurred evenly.
+  // A rough floor scatters light into a cone (`cone`: tangent of its half angle). So the blur
+  // radius grows with the distance from the floor to the reflected surface. Uses the nearest
+  // surface in the pixels around, so that outlines are blurred evenly.
   float cone = 0.5 * roughness * roughness, nearest = textureLod(mirror_distances, at, 0.0).r;
   vec2 aspect = vec2(frame.frustum.y / frame.frustum.x, 1.0);
   float widest = 0.5 * cone / frame.frustum.y;

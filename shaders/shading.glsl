@@ -3,8 +3,8 @@
 #include "lights.glsl"
 #include "surroundings.glsl"
 
-// The curve of IEC 61966-2-1, approximated by roots with an error below 0.1/255 on [0.0031, 1]. Computing three powers
-// would cost 25 ns more per pixel.
+// The curve of IEC 61966-2-1, approximated by roots with an error below 0.1/255 on [0.0031, 1].
+// Computing three powers would take longer.
 vec3 srgb(vec3 linear) {
   vec3 root = sqrt(linear);
   vec3 curve = 0.833761273 * root + 0.298103297 * sqrt(root) - 0.055321666 * linear - 0.076902919;

@@ -1,12 +1,14 @@
 // Threads drawn in rest coordinates: plain weave, 3/1 twill, face side of a jersey, or loose fibres. Yarns differ
 // slightly in tone. To avoid shimmer, every feature fades to its mean before it becomes smaller than two pixels.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-// Maximum relative deviation of a yarn's tone at the smallest size of uneven_tone(); each larger size has 0.7 of it.
+// Maximum relative deviation of a yarn's tone at the smallest size of uneven_tone(). Each further
+// size has 0.7 of the deviation of the size before.
 const float kUneven = 0.15;
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
-// Random number from -1 to 1 for a thread. The numbers of neighbouring threads almost cancel in a sum. A slow variation
-// would be visible as bands after the threads themselves have faded.
+// Random number from -1 to 1 for a thread. In a sum over neighbouring threads, the numbers almost
+// cancel. Thus, the mean tone does not vary slowly, which would be visible as bands after the
+// threads themselves have faded.
 float thread_noise(float thread) { return noise(thread + 1.0) - noise(thread); }
 
 // Random value from -0.5 to 0.5 for each cell.
@@ -74,10 +76,11 @@ Top knit_top(vec2 thread) {
   return Top(height - 0.717, tilt, floor(thread.x) + 37.0, false);
 }
 
-// Tone variation of yarns, in patches of three sizes: 3, 9 and 27 threads wide and eight times as long. Patches below
-// the pixel's resolution fade. The warp of denim is dyed unevenly, and protruding fibres vary in tone. `footprint`:
-// size of the pixel along weft and warp [threads]. It has two values, because at oblique view the yarns of one
-// direction may still be resolved.
+// Tone variation of yarns, in patches of three sizes: 3, 9 and 27 threads wide and eight times as
+// long (without threads, 1.4 times). Patches below the pixel's resolution fade. The warp of denim
+// is dyed unevenly, and protruding fibres vary in tone. `footprint`: size of the pixel along weft
+// and warp [threads]. It has two values, because at oblique view the yarns of one direction may
+// still be resolved.
 float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;

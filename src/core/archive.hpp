@@ -20,7 +20,7 @@ struct ByteWriter {
   std::string bytes;
 
   void raw(const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
-  /// T must have no padding: padding bytes would be indeterminate.
+  /// T must be a plain value: padding bytes would be indeterminate.
   template <class T>
   void value(T& value) {
     raw(&value, sizeof value);
@@ -88,8 +88,8 @@ void serialize_each(Archive& archive, List& list, const Serialize& serialize_one
   for (auto& entry : list) serialize_one(entry);
 }
 
-/// Writes or reads a list of `count` finite points or vectors. When reading, throws std::runtime_error if the list has
-/// a different length or contains a value that is not finite.
+/// Writes or reads a list of points or vectors. When reading, throws std::runtime_error if the list
+/// does not have `count` entries or contains a value that is not finite.
 template <class Archive>
 void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
   serialize_plain(archive, points);

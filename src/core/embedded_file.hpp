@@ -1,4 +1,4 @@
-// A file that is compiled into the program; embed_files.cmake generates arrays of these.
+// A file that is compiled into the program. embed_files.cmake generates arrays of EmbeddedFile.
 #pragma once
 
 #include <string_view>

@@ -14,8 +14,8 @@ enum class ExitCode : int {
   ok = 0,                 ///< success
   internal = 1,           ///< internal error
   usage = 2,              ///< command line not understood, or software is missing, such as Mesa
-  scene_invalid = 3,      ///< the scene file has mistakes
-  asset_unreadable = 4,   ///< a mesh, motion or picture file cannot be used
+  scene_invalid = 3,      ///< the scene has mistakes, or surfaces touch at the start
+  asset_unreadable = 4,   ///< an input file cannot be used, such as a mesh, motion or picture
   simulation_failed = 5,  ///< the simulation cannot continue; finished frames are kept
   output_failed = 6,      ///< disk, encoder or image writer failed
   images_differ = 7,      ///< pictures differ by more than the limits

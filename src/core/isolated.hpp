@@ -9,17 +9,19 @@
 namespace weft {
 
 struct Isolation {
-  std::string name = "the process";         ///< used in messages
+  std::string name = "the process";         ///< name of the child in messages
   unsigned cpu_seconds = 0;                 ///< CPU time limit; 0: none
   unsigned wall_seconds = 0;                ///< wall time limit, after which the child is killed; 0: none
   std::uint64_t addresses = 0;              ///< address space limit [bytes]; 0: none
   const std::atomic<bool>* stop = nullptr;  ///< if it becomes true, the child is killed; nullptr: never
 };
 
-/// Calls `work` in a child process and returns the bytes that `work` returned. The calling process survives any failure
-/// of the child (a crash, an endless loop, a runaway allocation). If `work` throws, throws std::runtime_error with the
-/// text of that exception; if the child fails otherwise, with the reason. If `stop` becomes true, throws
-/// Error(interrupted). The child has only the calling thread: `work` must not wait for other threads.
+/// Calls `work` in a child process and returns the bytes that `work` returned. The calling process
+/// survives a crash of the child and, within the limits of `isolation`, an endless loop or a
+/// runaway allocation. If `work` throws a std::exception, throws std::runtime_error with its text;
+/// if memory or time runs out or the child crashes, throws std::runtime_error with the reason. If
+/// `stop` becomes true, throws Error(interrupted). The child has only the calling thread, so `work`
+/// must not wait for other threads.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

@@ -44,7 +44,8 @@ T value_or(const Json& json, const char* key, T otherwise) {
   return fits ? found->template get<T>() : otherwise;
 }
 
-/// Contents of a file; null if it cannot be read or parsed.
+/// Contents of a JSON file; null if the file cannot be read, is larger than kMaxTextBytes, or is no
+/// JSON.
 nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);
 
 enum class JsonLetters { all, ascii };
@@ -53,7 +54,7 @@ enum class JsonLetters { all, ascii };
 /// U+FFFD, because JSON cannot represent them. JsonLetters::ascii escapes all letters beyond ASCII.
 std::string json_text(const nlohmann::ordered_json& json, int indent = -1, JsonLetters letters = JsonLetters::all);
 
-/// The same for JSON with sorted keys.
+/// As json_text(), for JSON with sorted keys.
 std::string sorted_json_text(const nlohmann::json& json, int indent = -1);
 
 }  // namespace weft

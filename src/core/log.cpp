@@ -27,14 +27,16 @@ State& state() {
 // Carriage return and "erase to the end of the line" (ECMA-48 EL).
 constexpr std::string_view kEraseLine = "\r\x1b[K";
 
-// Writes each line by one call, so that it is not mixed with lines of other processes on the same terminal. Ignores
-// failures: a failure of standard error cannot be reported and must not stop a run.
+// Writes a text by one call, so that it is not mixed with lines of other processes on the same
+// terminal. Ignores failures, because a failure of standard error cannot be reported and must not
+// stop a run.
 void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-// If there is no handler, returns false. Otherwise releases the lock and passes the text to the handler. The lock is
-// released first, because the handler may wait for a thread that itself waits for the lock.
+// If there is no handler, returns false. Otherwise releases the lock, passes the text to the
+// handler, and returns true. The lock is released first, because the handler may wait for a thread
+// that itself waits for the lock.
 bool handled(std::string_view text, const State& s, std::unique_lock<std::mutex>& lock) {
   const auto handle = s.handle;
   if (!handle) return false;
@@ -52,7 +54,8 @@ void print(State& s, std::string_view text) {
   }
 }
 
-/// Passes a text to the handler. Without a handler, prints the text and adds it to `list`, unless it is there already.
+/// Passes a text to the handler. Without a handler, prints the text and adds it to `list`; does
+/// nothing if `list` contains it already.
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
   std::unique_lock lock(s.mutex);

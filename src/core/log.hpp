@@ -8,28 +8,32 @@
 
 namespace weft::log {
 
-/// `text` with control characters escaped, because a terminal would interpret them as commands; names of files may
-/// contain them. `kept`: ASCII control characters that are not escaped.
+/// `text` with control characters escaped as \xNN, because a terminal would interpret them as
+/// commands; file names may contain control characters. `kept`: ASCII control characters that are
+/// not escaped.
 std::string without_controls(std::string_view text, std::string_view kept = "\n\t");
 
 void info(std::string_view line);
 
-/// Prints `warning: text` and keeps the text for the summary at the end of a run. Ignores a text that is kept already.
+/// Prints `warning: text`, and keeps the text for warnings(). Does nothing if this text is kept
+/// already.
 void warn(std::string_view text);
 
-/// Like warn(), but prints `note: text`. For changes of a scene that the program makes on purpose.
+/// Like warn(), but prints `note: text` and keeps the text for notes(). For changes of a scene that
+/// the program makes on purpose.
 void note(std::string_view text);
 
-/// Passes the texts of all later calls of info(), warn() and note() to `handle`, in the calling thread, instead of
-/// printing and keeping them. An empty `handle` restores the default.
+/// Passes the texts of all later calls of info(), warn() and note() to `handle`, in the thread of
+/// the call, instead of printing and keeping them. If `handle` is empty, later texts are printed
+/// and kept again.
 void set_handler(std::function<void(std::string_view text)> handle);
 
 std::vector<std::string> warnings();
 
 std::vector<std::string> notes();
 
-/// Shows `line`, such as a progress bar, below all other lines, in place of the previous status line. An empty `line`
-/// only removes the previous status line. For terminals only.
+/// Shows `line`, such as a progress bar, below all other lines, in place of the previous status
+/// line. If `line` is empty, only removes the previous status line. For terminals only.
 void status(std::string_view line);
 
 }  // namespace weft::log

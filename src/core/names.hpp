@@ -6,16 +6,17 @@
 
 namespace weft {
 
-/// If a UTF-8 text begins with a control character, returns the number of its bytes: 1 for ASCII, 2 for U+0080 to
-/// U+009F. Otherwise 0. Terminals and readers of logs could interpret such characters.
+/// If a UTF-8 text begins with a control character, returns the number of bytes of this character:
+/// 1 in ASCII, 2 for U+0080 to U+009F. Otherwise returns 0. Terminals and readers of logs could
+/// interpret control characters.
 inline std::size_t control_size(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : ' '); };
   if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) <= 0x9F) return 2;
   return byte(0) < 0x20 || byte(0) == 0x7F ? 1 : 0;
 }
 
-/// Whether a name from outside can be used in file names unchanged: it does not lead into another folder, and contains
-/// no control characters. Does not check whether it is valid UTF-8.
+/// Whether a given name can be used in file names unchanged: it is not empty, not "." or "..", and
+/// contains neither "/" nor control characters. Does not check whether the name is valid UTF-8.
 inline bool is_plain_name(std::string_view name) {
   if (name.empty() || name == "." || name == "..") return false;
   for (std::size_t i = 0; i < name.size(); ++i)

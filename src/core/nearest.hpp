@@ -1,4 +1,4 @@
-// "Did you mean": the known name closest to a misspelt one.
+// The known name closest to a misspelt one, for messages such as "did you mean mass?".
 #pragma once
 
 #include <span>
@@ -7,12 +7,13 @@
 
 namespace weft {
 
-/// Minimum number of insertions, deletions, replacements and swaps of neighbours that turn one text into the other
-/// (Damerau, "A technique for computer detection and correction of spelling errors", 1964). No letter is edited twice.
+/// Minimum number of edits that turn one text into the other. An edit inserts, deletes or replaces
+/// a byte, or swaps two neighbouring bytes; no byte is edited twice (Damerau, "A technique for
+/// computer detection and correction of spelling errors", 1964).
 int edit_distance(std::string_view from, std::string_view to);
 
-/// Considers the names of `known` whose edit distance from `name` is less than half the length of the longer of the two
-/// names. Returns the one with the smallest distance (the first of several); empty if there is none.
+/// Considers those names of `known` whose edit distance from `name` is less than half the length of
+/// the longer of both. Returns the first with the smallest distance; empty if there is none.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 }  // namespace weft

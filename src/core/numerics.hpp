@@ -4,53 +4,61 @@
 
 namespace weft {
 
-/// Tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m², particle spacings of 1 cm to
-/// 1 m, steps of 1 to 40 ms. "Larger: X" means that a larger value was measured to cause X; "Smaller:" and "0:"
-/// likewise. Members without a unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a
-/// member changes.
+/// Constants tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m²,
+/// particle spacings of 1 cm to 1 m, steps of 1 to 40 ms. "Larger: X" means that a larger value was
+/// measured to cause X; "Smaller:", "0:" and the like have the same meaning. Members without a unit
+/// are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member
+/// changes.
 struct Numerics {
   /// The linear solver (src/physics/solver).
   struct Linear {
-    /// A particle is stiff if the trace of its 3×3 diagonal block of the matrix exceeds this value times the sum of
-    /// `LinearSystem::norm_weights` over its cloth. If any particle is stiff, the multigrid levels correct each
-    /// aggregate as a whole instead of interpolating between aggregates (Preconditioner). Larger: systems with slender
-    /// cells or a viscosity of 1e4 N·s/m are not solved. Smaller: soft cloth takes twice as many iterations.
+    /// A particle of a cloth is stiff if the trace of its 3×3 diagonal block of the matrix exceeds
+    /// this value times the sum of `LinearSystem::norm_weights` over the cloth. If any particle is
+    /// stiff, the multigrid levels correct each aggregate as a whole; otherwise, they interpolate
+    /// between aggregates (Preconditioner). Larger: systems with slender cells or a viscosity of
+    /// 1e4 N·s/m are not solved. Smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
-    /// After n iterations, the last max(`min_error_window`, n / `error_window_divisor`) iterations give the estimate of
-    /// the error. Fewer: solves end where the error only stagnates, and cloth with a viscosity of 1e4 N·s/m gains
-    /// energy.
+    /// After n iterations, the error is estimated from the last max(`min_error_window`, n /
+    /// `error_window_divisor`) iterations, at most n. Fewer: solves end where the error only
+    /// stagnates, and cloth with a viscosity of 1e4 N·s/m gains energy.
     int min_error_window = 3;
     int error_window_divisor = 5;
-    /// Maximum number n of cloth aggregates on the coarsest multigrid level; with more than n cloths, one aggregate per
-    /// cloth. The dense factorisation of that level takes 9 n³ multiplications.
+    /// Maximum number n of cloth aggregates on the coarsest multigrid level. If there are more than
+    /// n cloths, this level has one aggregate per cloth. The dense Cholesky factorisation of n
+    /// aggregates takes 4.5 n³ multiplications.
     int coarsest_aggregates = 70;
   } linear;
 
   /// Newton's method (src/physics/integrator).
   struct Newton {
-    /// Allowed error of a linear solve, relative to the allowed error of Newton's method. A diagonal block (a cloth or
-    /// rigid body) whose Newton error is below this fraction of the allowed error is left out of the next linear solve
-    /// (but see `slow_after`). 1: fewer iterations, but more strain.
+    /// Allowed error of a linear solve, relative to the allowed error of Newton's method. If the
+    /// Newton error of a diagonal block (a cloth or rigid body) is at most this fraction of the
+    /// allowed error, the next linear solve leaves out this block (but see `slow_after`). 1: fewer
+    /// iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on `solver.linear_tolerance` for the midpoint rule, which damps nothing. Larger:
     /// flat sheets fold in free fall.
     double midpoint_tightening = 0.1;
-    /// `slope_left`: slope (residual · direction) at which a line search ends, relative to the slope at its start.
-    /// Smaller: more evaluations. Larger: more Newton iterations. `line_trials`: maximum number of evaluations.
+    /// `slope_left`: magnitude of the slope (residual · direction) at which a line search ends,
+    /// relative to that at its start. Smaller: more evaluations. Larger: more Newton iterations.
+    /// `line_trials`: maximum number of evaluations.
     double slope_left = 0.5;
     int line_trials = 6;
-    /// Number of Newton iterations after which a solve pauses, so that contacts on the new trajectory are found early.
+    /// Number of Newton iterations after which the first solve of a step pauses, so that contacts
+    /// on the new trajectory are found early.
     int check_after = 4;
-    /// Number of Newton iterations after which a solve counts as slow. In a slow solve, friction keeps its normal
-    /// forces, and velocity errors are allowed up to unseen_velocity() or, with implicit Euler, up to `velocity_ratio`
-    /// times the local velocity error. From half of this number on, each linear solve includes all diagonal blocks.
-    /// Larger: friction and normal forces, or cloths that press on each other, oscillate. `slow_after` is also the
-    /// maximum number of times that the solve of a step continues after cloth was pushed apart. 0:
-    /// tests/bench/scenes/ring.toml takes four times the steps.
+    /// Number of Newton iterations after which a solve counts as slow. In a slow solve, the normal
+    /// forces that limit friction stay fixed. The allowed velocity error is then at least
+    /// `solver.newton_tolerance` times the larger of unseen_velocity() and, with implicit Euler,
+    /// `velocity_ratio` times the local velocity error. From half of this number on, each linear
+    /// solve includes all diagonal blocks. Larger: friction and normal forces, or cloths that press
+    /// on each other, oscillate. `slow_after` is also the maximum number of times that the solve of
+    /// a step continues after cloth was pushed apart. 0: tests/bench/scenes/ring.toml takes four
+    /// times the steps.
     int slow_after = 20;
     double velocity_ratio = 0.5;
-    /// Time for which a velocity error is assumed to displace cloth [s]. Smaller: most of a run's error comes from the
-    /// solver. Larger: more iterations.
+    /// Time for which a velocity error is assumed to displace cloth [s]. Smaller: most of the error
+    /// of a run comes from the solver. Larger: more iterations.
     double lasting_time = 0.15;
     /// Visibility thresholds: smaller errors of acceleration [m/s²] and velocity [m/s] are not visible. As bounds of
     /// solver errors, both are multiplied by `solver.newton_tolerance`.
@@ -58,48 +66,57 @@ struct Numerics {
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
     /// Ratio of friction to its limit above which a diagonal block counts as about to slide.
     double about_to_slide = 0.9;
-    /// Newton's method reuses the matrix rows of a cloth until a particle has moved farther than this (in particle
-    /// spacings) since the rows were assembled. Larger: more iterations.
+    /// Newton's method reuses the matrix rows of a cloth until one of its particles has moved
+    /// farther than this since the rows were assembled; in units of the smallest particle spacing
+    /// of all cloths. Larger: more iterations.
     double stale_motion = 0.005;
   } newton;
 
   /// Step sizes from `time.tolerance` (src/physics/integrator/step_control.cpp), and after rejections.
   struct Steps {
-    /// Local error that the controller aims at, relative to the tolerance. Nearer to 1: more steps are rejected.
+    /// Local error that the step control aims at, relative to `time.tolerance`. Nearer to 1: more
+    /// steps are rejected.
     double aim = 0.7;
-    /// Minimum and maximum ratio of the length of a step to that of the step before; after a rejection, the maximum is
-    /// 1. A larger maximum: BDF2 amplifies earlier errors.
+    /// Minimum and maximum ratio of the length of a step to that of the step before. After a
+    /// rejection, the maximum is 1. Larger `largest_factor`: BDF2 amplifies earlier errors.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Shortest step that the error control chooses [s]. A step that is not solved is halved, if necessary to less than
-    /// this length. If a step shorter than this is not solved, the run ends.
+    /// Shortest step that the step control chooses because of the local error [s]. A step that is
+    /// not solved is halved, if necessary to less than this length. If a step shorter than this is
+    /// not solved, the run ends. Without `time.tolerance`, this value has no effect.
     double min_step = 1e-5;
-    /// If any particle is faster than this, cloth does not count as at rest [m/s]; see StepLoop::may_rest().
+    /// Cloth counts as at rest only if no particle is faster than this [m/s]; see
+    /// StepLoop::may_rest().
     double rest_velocity = 0.02;
   } steps;
 
   /// Contacts (src/physics/collision).
   struct Contact {
-    /// Ratio of the detection distance to the largest activation distance. Smaller: contacts are found late in a step.
+    /// Ratio of the detection distance to the largest contact thickness. Smaller: contacts are
+    /// found late in a step.
     double detection = 1.5;
-    /// Verlet margin m of near pairs, in detection distances: the search reuses its list of near pairs until a vertex
-    /// has moved farther than this. Larger: longer lists. Smaller: more searches. Four other bounds follow from m, also
-    /// in detection distances:
-    /// - 2 m: Verlet margin of candidate pairs; if a vertex moves farther than this in a step, the margin is 0,
+    /// Verlet margin m of near pairs, in detection distances: the search reuses its list of near
+    /// pairs until a vertex has moved farther than this. Larger: longer lists. Smaller: more
+    /// searches. Other bounds follow from m, also in detection distances:
+    /// - 2 m: Verlet margin of candidate pairs; if a vertex moves this far along an axis in a step,
+    ///   the margin is 0,
     /// - m / 2: `search.coherence` keeps closest points until a vertex has moved farther than this,
     /// - m: if, in a step, the arc of a vertex of a turning obstacle deviates from its chord by more than this, the
     ///   step is halved,
-    /// - m: if no obstacle moves farther than this in a step, shorter steps would find no more space for cloth.
+    /// - m: if no obstacle moves farther than this in a step, shorter steps are assumed to find no
+    ///   more space for cloth.
     double margin = 0.25;
-    /// Maximum contact thickness of cloth other than ropes, in particle spacings. Larger: a sheared sheet collides with
-    /// itself.
+    /// Maximum contact thickness of a cloth other than a rope, in units of its smallest particle
+    /// spacing. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
-    /// Minimum contact stiffness, in m/h². h: `time.step`. m: weighted mean mass of the contact's particles; if a rigid
-    /// body that forces move touches cloth or another such body, only of the particles on the lighter side. Thus a
-    /// particle penetrates in one step of implicit Euler by at most a hundredth of its motion without contact.
+    /// Minimum contact stiffness, in m/h². h: `time.step`. m: weighted mean mass of the contact's
+    /// particles; if a rigid body that forces move touches cloth or another such body, only of the
+    /// particles on the lighter side. Thus, in a step of implicit Euler of length h, a contact
+    /// leaves at most a hundredth of the penetration that the motion without contact would cause.
     double inertial_stiffness = 100;
-    /// Factor `stiffening` of the normal force k d (1 + stiffening (d/r)⁴) at depth d, with stiffness k and activation
-    /// distance r. 10: tips penetrate; 1000: more iterations.
+    /// Factor `stiffening` of the normal force k d (1 + stiffening (d/r)⁴) at a depth d up to the
+    /// full activation distance r, with stiffness k. At larger depths, the force is linear. 10:
+    /// tips penetrate; 1000: more iterations.
     double stiffening = 100;
     /// Width w of the ramps along which the stiffness of a near pair falls to zero (stiffness_fraction()). 0: contacts
     /// switch on and off. Larger: only separating planes keep crossing creases apart. The stiffness falls
@@ -108,25 +125,30 @@ struct Numerics {
     /// - for edge pairs with cloth, while the closest point moves from the fraction w of an edge to its end.
     double ramp_width = 0.1;
     double flat_fold() const { return 0.5 * ramp_width; }
-    /// Slip velocity below which friction sticks [m/s]. If contacts are springs, this velocity is at least
-    /// `stick_spacings` [1/s] times the smallest particle spacing. Larger: cloth creeps down slopes. Smaller: a stiffer
-    /// system.
+    /// Slip velocity below which a contact sticks: friction then grows with the slip [m/s]. For
+    /// contacts that are springs, this velocity is at least `stick_spacings` [1/s] times the
+    /// smallest particle spacing of all cloths. Larger: cloth creeps down slopes. Smaller: a
+    /// stiffer system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
-    /// Slip velocity from which the friction coefficient is that of sliding, in stick velocities.
+    /// Slip velocity from which the friction coefficient is that of sliding, in units of the stick
+    /// velocity.
     double slide_velocity = 5;
-    /// Closing velocity [m/s] from which BDF2 treats a contact fully as an impact; below it, in proportion to the
-    /// velocity. Larger: impacts in short steps rebound.
+    /// Closing velocity [m/s] from which BDF2 treats a contact fully as an impact. At smaller
+    /// closing velocities, the fraction treated as an impact is proportional to the velocity.
+    /// Larger: impacts in short steps rebound.
     double impact_velocity = 0.05;
-    /// Maximum number of times in one step that a sliding contact sticks again when its slip reverses. 0:
-    /// tests/bench/scenes/ribbons_in_half_pipe.toml takes 1.4 times the iterations. 20: friction with a coefficient of
-    /// 10 does not settle.
+    /// If the slip of a sliding contact reverses, the contact sticks again, unless it has already
+    /// begun to slide this many times in the step. 0: tests/bench/scenes/ribbons_in_half_pipe.toml
+    /// takes 1.4 times the iterations. 20: friction with a coefficient of 10 does not settle.
     int max_resticks = 2;
-    /// Time in which the activation distance of a new contact grows from the gap to its full value [s]. 0: in steps of
-    /// 1 ms or less, surfaces that are already close when a contact appears fly apart and gain energy.
+    /// Time in which the activation distance of a contact may grow from 0 to its full value [s]: in
+    /// a step of length h, it is at most the gap at the start of the step plus the fraction h /
+    /// `range_growth_time` of its full value. 0: in steps of 1 ms or less, surfaces that are
+    /// already close when a contact appears fly apart and gain energy.
     double range_growth_time = 5e-3;
-    /// Stiffness of contacts that push pinched cloth out while an obstacle blocks its way out, relative to that of
-    /// other contacts.
+    /// Factor on the stiffness of a contact that pushes pinched cloth out, if an obstacle blocks
+    /// the way out.
     double blocked_exit_factor = 0.05;
   } contact;
 
@@ -137,9 +159,10 @@ struct Numerics {
     double least_gap = 1e-6;
     /// Pushing apart restores a gap of max(2 `least_gap`, min(`restored_gap`, half of the gap at the start)) [m].
     double restored_gap = 2e-4;
-    /// Maximum number of rounds of pushing apart. In later rounds, particles of failing pairs move back: by half of
-    /// their motion in up to `rounds` / 2 rounds, then to the start of the step in up to `rounds` rounds. Smaller:
-    /// particles move back farther than necessary.
+    /// Maximum number of rounds of pushing apart. If pairs still fail, their particles move back:
+    /// by half of their motion in up to `rounds` / 2 further rounds, then to the start of the step
+    /// in up to `rounds` rounds; then all particles move back. Smaller: particles move back farther
+    /// than necessary.
     int rounds = 24;
   } separation;
 
@@ -152,13 +175,15 @@ struct Numerics {
     /// Minimum sine of the angle between the normal of a wall and the span of the normals of the walls before it. If
     /// the sine is smaller, the wall adds no constraint.
     double min_independent_sine = 0.05;
-    /// Maximum number of changes of a particle's constraints in a step (`flips`), of solves in a step (`solves`), and
-    /// of walls per particle (`max_walls`).
+    /// `flips`: maximum number of changes of a particle's constraints in a step after which the
+    /// step is solved again. `solves`: maximum number of solves in a step. `max_walls`: maximum
+    /// number of walls per particle.
     int flips = 3;
     int solves = 6;
     int max_walls = 8;
-    /// A change of constraints that is smaller than these bounds needs no further solve. Bounds: of the constraint
-    /// force per mass [m/s²], and of friction relative to its limit.
+    /// A change of constraints needs no further solve if it changes the constraint force per mass
+    /// by less than `negligible_acceleration` [m/s²], or friction by less than `negligible_change`
+    /// of its limit.
     double negligible_acceleration = 0.5;
     double negligible_change = 0.2;
   } walls;
@@ -166,28 +191,31 @@ struct Numerics {
   /// Repairs of a step (src/physics/simulation/step_loop.cpp).
   struct Repair {
     /// Number of tries after which the step loop accepts a compromise:
-    /// - after this many rejections of a step, cloth may count as pinched, and pushing apart may add much energy,
-    /// - after this many halvings of a trajectory, the search for its separating planes ends (0: a tenth more
-    ///   iterations),
+    /// - after this many rejections of a step, cloth may count as pinched if obstacles move little,
+    ///   and pushing apart may add much energy,
+    /// - after this many halvings of a trajectory, the search for its separating planes ends (0: a
+    ///   tenth more iterations of the solver),
     /// - after this many tries of a step in which obstructed pins are released, pushing apart may move pinned
     ///   particles.
     int max_retries = 3;
-    /// Maximum strain that pushing apart may add. If pushing apart adds more strain than this, or more energy than
-    /// Energy::doubtful_gain, the solve continues from the pushed positions. After the last such continuation, only
-    /// added energy can reject the step. Larger: single frames show strain of 0.1 and more.
+    /// If pushing apart adds more strain than this, or more energy than Energy::doubtful_gain, the
+    /// solve continues from the pushed positions. After the last such continuation, only added
+    /// energy can reject the step. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;
-    /// If an unfinished solve adds more energy than this, relative to the kinetic and elastic energy at the start of
-    /// the step, the step is solved again with fixed normal forces.
+    /// If the first solve of a step has added more energy than this when it pauses (`check_after`),
+    /// relative to the kinetic and elastic energy at the start of the step, it begins again with
+    /// fixed normal forces.
     double diverged_energy_ratio = 3;
   } repair;
 
   /// Pinned particles that an obstacle or other cloth keeps from their targets. Such particles lag: a force pulls them
   /// back (src/physics/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Maximum speed of a lagging particle relative to its target [m/s].
+    /// Maximum speed, relative to its target, with which a lagging particle is pulled back [m/s].
     double return_velocity = 1;
-    /// Maximum force on a lagging particle of mass m: max(`acceleration` m, W / n, min(W / k, `most_acceleration` m)).
-    /// W: `cloth_weight_factor` times the weight of the cloth. The pin has n particles, k of which lag.
+    /// Maximum force on a lagging particle of mass m: max(`acceleration` m, W / n, min(W / k,
+    /// `most_acceleration` m)). W: `cloth_weight_factor` times the weight of the cloth, with the
+    /// largest gravity. The pin has n particles, k of which lag.
     double acceleration = 2000;  // [m/s²]
     double cloth_weight_factor = 3;
     double most_acceleration = 20000;  // [m/s²]
@@ -195,8 +223,9 @@ struct Numerics {
 
   /// Rigid bodies that move by forces (forces/rigidity.hpp).
   struct Bodies {
-    /// Squared angular frequency at which the body stretches elastically, in 1/`time.step`². Smaller: an impact of 1
-    /// m/s compresses the body by more than 1e-6 m. Larger: rounding errors in single precision.
+    /// Squared angular frequency of the elastic stretch of the body, in 1/`time.step`². Smaller: an
+    /// impact of 1 m/s compresses the body by more than 1e-6 m. Larger: rounding errors in single
+    /// precision.
     double rigidity = 1e4;
     /// Contact thickness [m]; reduced to `thickness_of_size` times the smallest component of RigidFrame::deviations()
     /// if that is smaller. Smaller: bodies at rest on each other rattle. Larger: gaps are visible.
@@ -207,15 +236,18 @@ struct Numerics {
   /// Bounds of energy without a source. Gains in a run are relative to EnergyBound::energy_in_play(): the kinetic and
   /// elastic energy at the start, plus the ranges that the potential energy and the work of pins have covered so far.
   struct Energy {
-    /// If the gain exceeds this value, the run fails. But if cloth can touch something and the method is not the
-    /// midpoint rule, the run only warns, because the method damps contacts. The run also warns if the work of the
-    /// residual exceeds this value, relative to the energy in play plus the largest kinetic and elastic energy so far.
+    /// If the gain exceeds this value, the run fails. Exception: if cloth can touch something and
+    /// the method is not the midpoint rule, the run only warns, because the method damps contacts.
+    /// The run also warns if the work of the solver's residual exceeds this value, relative to the
+    /// energy in play plus the largest kinetic and elastic energy so far.
     double failing_gain = 0.3;
-    /// If the gain exceeds this value, the run warns. This value is also the maximum energy that pushing apart may add,
-    /// relative to the kinetic and elastic energy at the start of the step; and the maximum work of the residual of a
-    /// diagonal block in a step, relative to the kinetic energy of the block.
+    /// If the gain exceeds this value, the run warns. Two other bounds have this value, too: the
+    /// energy that pushing apart may add, relative to the kinetic and elastic energy at the start
+    /// of the step, and the work of the solver's residual on a diagonal block in a step, relative
+    /// to the kinetic energy of the block.
     double doubtful_gain = 0.1;
-    /// Energy per mass that is never an error [J/kg]: enough to lift cloth by 1 cm.
+    /// Energy per mass that is added to the bounds of gains and of the residual's work [J/kg]: it
+    /// lifts cloth by 1 cm.
     double negligible = 0.1;
   } energy;
 };

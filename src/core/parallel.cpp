@@ -12,13 +12,13 @@
 namespace weft {
 namespace {
 
-int g_threads = 0;  // 0 until set: all cores
+int g_threads = 0;  // 0: as many as processors
 std::unique_ptr<tbb::global_control> g_limit;
 
 #ifdef __SANITIZE_THREAD__
-// The thread sanitizer would report a data race in every loop, because libtbb is not built with the sanitizer, which
-// therefore does not detect how TBB synchronises threads. Under the sanitizer, these loops use two standard threads
-// instead, so that races between chunks are detected.
+// The thread sanitizer does not see how TBB synchronises threads, because libtbb is not built with
+// the sanitizer; it would report a data race in every loop. Under the sanitizer, loops use two
+// standard threads instead, so that only races between chunks are reported.
 void run_on_threads(std::size_t chunks, FunctionOfIndex run) {
   const auto each_second = [&](std::size_t first) {
     for (std::size_t c = first; c < chunks; c += 2) run(c);

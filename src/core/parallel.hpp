@@ -12,12 +12,15 @@
 
 namespace weft {
 
-/// Sets the maximum number of threads of the loops below; 0: as many as cores. Call it before any loop runs.
+/// Sets the maximum number of threads of the loops below; 0: as many as processors. Call it before
+/// any loop runs.
 void set_thread_count(int threads);
+/// The maximum number of threads that is in effect, at least 1.
 int thread_count();
 
-/// Estimates how much several threads would speed up the loops below. Measured on one thread, where the time of a loop
-/// is the sum of the times of its chunks. Counts only loops of several chunks that do not run inside another loop.
+/// Estimates how much several threads would speed up the loops below, from a measurement on one
+/// thread, where the time of a loop is the sum of the times of its chunks. Counts only loops of
+/// several chunks that do not run inside another counted loop.
 struct LoopCounts {
   static constexpr std::array<std::size_t, 4> kThreads{2, 4, 8, 16};
 
@@ -27,10 +30,12 @@ struct LoopCounts {
   /// and threads start without delay.
   std::array<double, kThreads.size()> seconds_on{};
 };
-/// The counts to which the loops below add; null: none. Set it only while thread_count() is 1.
+/// The counts to which the loops below add; null: they count nothing. Set it only while
+/// thread_count() is 1.
 inline LoopCounts* counted_loops = nullptr;
 
-/// Counts a loop of several chunks: its wall time is the lifetime of this object.
+/// Counts a loop if it has several chunks and there are `counted_loops`. The lifetime of this
+/// object is the wall time of the loop.
 class CountedLoop {
  public:
   explicit CountedLoop(std::size_t chunks) : chunks_(chunks), counts_(chunks > 1 ? counted_loops : nullptr) {
@@ -59,8 +64,9 @@ class CountedLoop {
   WallTimer timer_;
 };
 
-/// Numbers of items per chunk with which a chunk takes 10 to 50 µs. kGrainSize: for vectors and lists of pairs;
-/// kFineGrainSize: for more expensive items (contacts, leaves of hierarchies). Other values change the bits of sums.
+/// Numbers of items per chunk for which a chunk takes 10 to 50 µs. kGrainSize: for vectors and
+/// lists of pairs. kFineGrainSize: for more expensive items, such as contacts and leaves of
+/// hierarchies. Other values change the bits of sums.
 inline constexpr std::size_t kGrainSize = 1024, kFineGrainSize = 256;
 
 /// Reference to a function of an index. The function must outlive the reference.
@@ -77,8 +83,9 @@ class FunctionOfIndex {
   void (*call_)(const void* called, std::size_t index);
 };
 
-/// Calls run(c) for each c below `chunks`, on several threads in any order, and returns when all calls have returned.
-/// Not a template, because instantiating TBB's code for each loop takes a tenth of the build time.
+/// Calls run(c) for each c below `chunks`, and returns when all calls have returned. The order of
+/// the calls is arbitrary, and several threads may share them. Not a template, because to
+/// instantiate TBB's code for each loop would take a tenth of the build time.
 void run_chunks(std::size_t chunks, FunctionOfIndex run);
 
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each, or fewer in the last. Chunks
@@ -100,7 +107,8 @@ void parallel_invoke(const One& one, const Other& other) {
   }
 }
 
-/// Sum of body(begin, end), a number or vector, over the chunks of [0, count); added in the order of chunks.
+/// Sum of body(begin, end), a number or vector, over the chunks of [0, count) with `chunk` items
+/// each, or fewer in the last. Adds in the order of chunks.
 template <class Body>
 auto parallel_sum(std::size_t count, std::size_t chunk, const Body& body) {
   using Sum = decltype(body(std::size_t{0}, count));

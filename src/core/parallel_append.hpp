@@ -14,9 +14,10 @@ void append(std::vector<T>& to, const std::vector<T>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
 
-/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each; on one thread, once for
-/// all of [0, count). `body` appends its results to `list`. `out` gets all results, in the order of items. `List` needs
-/// a function append(List&, const List&) that appends the second list to the first.
+/// Calls body(begin, end, list) for consecutive chunks of [0, count) with `chunk` items each; on
+/// one thread, once for all of [0, count). `body` appends its results to `list`. Appends all
+/// results to `out`, in the order of items. `List` needs a function append(List&, const List&) that
+/// appends the second list to the first.
 template <class List, class Body>
 void parallel_append(std::size_t count, std::size_t chunk, List& out, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -38,7 +39,7 @@ Number parallel_max(std::size_t count, std::size_t chunk, Number lower_bound, co
   return lower_bound;
 }
 
-/// Whether holds(i) for all i in [0, count).
+/// Whether holds(i) is true for all i in [0, count).
 template <class Holds>
 bool parallel_all_of(std::size_t count, const Holds& holds) {
   return parallel_sum(count, kGrainSize, [&](std::size_t begin, std::size_t end) {

@@ -16,8 +16,8 @@
 namespace weft {
 namespace {
 
-// Time over which the pace is averaged [s]: long enough for a steady estimate, short enough to follow the pace when
-// contacts slow the simulation down.
+// Time over which the pace is averaged [s]: long enough for a steady estimate, and short enough to
+// follow the pace when contacts slow down the simulation.
 constexpr double kPaceWindow = 30;
 constexpr std::chrono::milliseconds kBarInterval{200};
 constexpr std::chrono::milliseconds kHeartbeatInterval{5000};  // a log of one hour stays below a thousand lines
@@ -64,7 +64,8 @@ std::optional<double> RemainingTime::seconds() const {
     const int advanced = last.done[stage] - first.done[stage];
     if (left <= 0) continue;
     all_done = false;
-    // A stage without progress has no known pace: for example, drawing before the first frame to draw is simulated.
+    // The pace of a stage without progress is not known, for example of drawing before the first
+    // frame to draw is simulated.
     if (advanced > 0) slowest = std::max(slowest.value_or(0.0), left * span / advanced);
   }
   return all_done ? 0.0 : slowest;
@@ -72,8 +73,8 @@ std::optional<double> RemainingTime::seconds() const {
 
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns) {
-  // The bar gives each frame of each stage the same weight. So it moves from the start, and is full only when all
-  // frames are written.
+  // The bar gives each frame of each stage the same weight. Thus the bar moves from the start, and
+  // is full only when all frames are written.
   const int all = std::max(1, totals[kSimulate] + totals[kDraw] + totals[kWrite]);
   const double fraction = static_cast<double>(done[kSimulate] + done[kDraw] + done[kWrite]) / all;
   constexpr int kCells = 12;

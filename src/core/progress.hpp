@@ -22,8 +22,8 @@ using StageCounts = std::array<int, kStages>;
 /// "48 s", "3:07 min", "1:02:45 h".
 std::string format_duration(double seconds);
 
-/// Estimates the remaining time from the pace of the last half minute, because frames take longer as layers of cloth
-/// come into contact.
+/// Estimates the remaining time from the frames of the last half minute: as layers of cloth come
+/// into contact, frames take longer than at the beginning of a run.
 class RemainingTime {
  public:
   explicit RemainingTime(StageCounts totals) : totals_(totals) {}
@@ -31,9 +31,10 @@ class RemainingTime {
   /// Records that `done` frames were finished `seconds` after the start. Times must not decrease.
   void sample(double seconds, const StageCounts& done);
 
-  /// Remaining time [s], that of the slowest stage, because stages work in parallel; 0 if all frames are done. A stage
-  /// that has finished no frame in the last half minute has no known pace, and is ignored. Nothing if no stage with
-  /// frames left has a known pace.
+  /// Remaining time [s], that of the slowest stage, because stages work in parallel; 0 if all
+  /// frames are done. Ignores a stage that has finished no frame in the last half minute, because
+  /// its pace is not known. Returns nothing before the second sample, and if the pace of no stage
+  /// with frames left is known.
   std::optional<double> seconds() const;
 
  private:
@@ -45,8 +46,8 @@ class RemainingTime {
   std::deque<Sample> samples_;
 };
 
-/// A line such as `[#####-------]  47 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to less than `columns`
-/// characters (`columns` = 0: not cut).
+/// A line such as `[#####-------]  47 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to at
+/// most `columns` − 1 characters (`columns` = 0: not cut).
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns);
 
@@ -59,8 +60,8 @@ class Progress {
  public:
   enum class Style { automatic, bar, plain, none };
 
-  /// `totals`: number of frames of each stage. Style::automatic shows a bar if standard error is a terminal whose TERM
-  /// is not `dumb`, otherwise lines.
+  /// `totals`: number of frames of each stage. Style::automatic shows a bar if standard error is a
+  /// terminal and the variable TERM is set and not `dumb`; otherwise, it prints lines.
   Progress(Style style, StageCounts totals);
   ~Progress();
   Progress(const Progress&) = delete;

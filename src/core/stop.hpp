@@ -14,7 +14,8 @@ namespace weft {
 inline std::atomic<long long> stop_requested_at{0};
 static_assert(std::atomic<long long>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 
-/// Time that the current frame may still take after a request [ns]. Most frames end within this time, and so are kept.
+/// Time that the current frame may still take after a request [ns]. Most frames end within this
+/// time and are therefore kept.
 inline constexpr long long kStopGrace = 3'000'000'000;
 
 /// Time on the monotonic clock [ns]. Safe in a signal handler.
@@ -24,12 +25,13 @@ inline long long monotonic_ns() {
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// A check that a program that uses the library may set; empty: none. If the check throws, its exception ends the
-/// computation.
+/// A check that a program that uses the library may set; empty: none. If it throws, its exception
+/// ends the computation.
 inline std::function<void()> host_check;
 
-/// Throws what host_check throws; throws Error(interrupted) if a stop was requested more than kStopGrace ago. Loops
-/// that may run longer than kStopGrace call this function in each iteration.
+/// Calls host_check, if there is one, and lets its exception pass. Throws Error(interrupted) if a
+/// stop was requested more than kStopGrace ago. Loops that may run longer than kStopGrace call this
+/// function in each iteration.
 inline void end_if_stopped() {
   if (host_check) host_check();
   const long long requested = stop_requested_at.load(std::memory_order_relaxed);

@@ -29,7 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Paths that the signal handler reads: in fixed memory without locks. A run has far fewer than 64 files open at once.
+// Path of a temporary file for the signal handler: in fixed memory, without a lock. A run has far
+// fewer than 64 temporary files at once.
 struct Slot {
   enum State : int { free, claimed, active };
   std::atomic<int> state{free};
@@ -74,7 +75,8 @@ bool lock(int descriptor) {
   return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
 }
 
-// Removes a temporary file or folder if no process holds its lock: then the process that created it was killed.
+// Removes a temporary file or folder if no process holds its lock: the process that created it has
+// then been killed.
 void remove_abandoned(const fs::path& path) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -83,9 +85,9 @@ void remove_abandoned(const fs::path& path) {
   ::close(descriptor);
 }
 
-// At the first call for a folder, creates it and removes what killed processes have left in it. Does not create it
-// again at later calls: if somebody has removed the folder, output is not wanted there. Returns false, with the reason
-// in `error`, if the folder cannot be created.
+// At the first call for a folder, creates it and removes the temporary files that killed processes
+// have left there. Later calls do not create it again: if somebody has removed the folder, output
+// is not wanted there. Returns false, with the reason in `error`, if the folder cannot be created.
 bool prepare_once(const fs::path& folder, std::error_code& error) {
   static std::mutex mutex;
   static std::set<fs::path> prepared;
@@ -123,9 +125,10 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
   return std::rename(from.c_str(), to.c_str()) == 0;
 }
 
-// Creates the file or folder and locks it. Another process that cleans up the folder may lock and remove the new file
-// or folder before this process locks it. Then tries again, for half a second at most, because the other process may
-// have to wait for a processor.
+// Creates and locks the file or folder; returns its descriptor, or −1 with errno. Before this
+// process locks it, another process that cleans up the parent folder may lock and remove it. Then
+// tries again, for half a second at most, because the other process may have to wait for a
+// processor.
 int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -159,8 +162,8 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
 
 TemporaryName::~TemporaryName() {
   const fs::path path = path_;
-  // The process may have no free file descriptor. unlink() needs none. remove_all() of a folder needs some, so
-  // release() closes one first.
+  // The process may have no free file descriptor. unlink() needs none, but remove_all() of a folder
+  // needs some. Therefore release(), which closes one, comes before remove_all().
   const bool removed = path.empty() || ::unlink(path.c_str()) == 0;
   release();
   std::error_code ignored;
@@ -245,7 +248,8 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
-  // Several machines may draw parts of one film, and each writes the same scene file beside the film.
+  // Several machines may draw parts of one film; each of them writes the same scene file beside the
+  // film.
   const auto is_there = [&] { return !may_replace(file) && holds(file, content); };
   if (is_there()) return;
   try {

@@ -31,7 +31,7 @@ inline double process_cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Time that a stage of the work takes.
+/// Wall time and CPU time that a stage of the work takes [s].
 struct StageTime {
   double wall_s = 0, cpu_s = 0;
 
@@ -47,9 +47,10 @@ struct StageTime {
   }
 };
 
-/// Selects the CPU time that a Stopwatch adds to its stage. False: that of the calling thread alone, because other
-/// threads draw and encode while this thread simulates. True: that of all threads, to include the helper threads of
-/// parallel loops; correct only if the process does nothing else. Set it before any stage runs.
+/// Selects the CPU time that a Stopwatch adds to its stage. False: the time of the calling thread
+/// alone, because other threads draw and encode while this thread simulates. True: the time of all
+/// threads, to include the helper threads of parallel loops; correct only if the process does
+/// nothing else. Set it before any stage runs.
 inline bool charge_all_threads = false;
 
 /// Adds the wall and CPU time of a scope to those of a stage.

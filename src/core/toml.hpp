@@ -9,7 +9,8 @@
 
 namespace weft {
 
-/// Throws toml::parse_error if the text is no TOML or nests too deep. `source`: path of the file, for error messages.
+/// Parses TOML. Throws toml::parse_error if the text is no TOML or nests_too_deep() is true.
+/// `source`: path of the file, for error messages.
 inline toml::table parse_toml(std::string_view text, std::string_view source = {}) {
   if (nests_too_deep(text))
     throw toml::parse_error("expected at most 128 levels of lists, tables and dotted keys, got more",

@@ -1,4 +1,4 @@
-// Vocabulary types shared by every module.
+// Types that all modules use.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,7 +25,8 @@ inline std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Tolerance for ratios, and for lengths [m]: far above rounding errors, far below any relevant size.
+/// Tolerance for ratios, and for lengths [m]: far above rounding errors, and far below all sizes
+/// that matter.
 inline constexpr double kRoundoff = 1e-9;
 
 inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]

@@ -1,4 +1,5 @@
-// The decoder of pictures in the shared library, which the program that uses the library sets.
+// Decoding of pictures in the shared library: by the function that the program sets with
+// set_picture_decoder().
 #include <stdexcept>
 #include <utility>
 #include <weft/pictures.hpp>

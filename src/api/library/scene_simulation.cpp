@@ -16,8 +16,8 @@
 namespace weft {
 namespace {
 
-// Checks the driven obstacles. Gives each of them at least two keys, because only obstacles with two keys or more count
-// as moving.
+// Checks the driven obstacles; throws std::invalid_argument for a wrong one. Gives each at least
+// two keys, because only obstacles with two or more keys count as moving.
 scene::Scene with_driven(scene::Scene scene, const SimulationOptions& options) {
   for (const std::string& name : options.driven) {
     const auto found = std::ranges::find(scene.obstacles, name, &scene::Obstacle::name);

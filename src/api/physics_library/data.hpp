@@ -27,7 +27,7 @@ struct Frame::Data {
   std::vector<std::vector<Vec3>> velocities;      ///< per cloth
   std::vector<std::vector<float>> strains;        ///< per cloth
   std::vector<std::vector<Vec3>> contact_forces;  ///< per cloth
-  std::vector<Object> objects;                    ///< views of the members above, and of `viewed` or `snapshot`
+  std::vector<Object> objects;  ///< they view the members above, and data of `viewed` or `snapshot`
   std::shared_ptr<const void> viewed;             ///< owns positions and meshes; null for a simulation of a Scene
   std::shared_ptr<const frame::FrameSnapshot> snapshot;  ///< for drawing; null for a simulation of a Model
 };
@@ -36,8 +36,9 @@ struct Simulation::Impl {
   /// Returns data with the objects of the current state. The data own the arrays that these objects view.
   using MakeFrame = std::function<Frame::Data(const simulation::Simulation& now)>;
 
-  /// `heading_of_state`: first line of a saved state; see heading_of(). If the options name no saved state, runs the
-  /// preroll. Throws std::invalid_argument if the options do not fit.
+  /// `heading_of_state`: first line of a saved state; see heading_of(). If `options.state` is
+  /// empty, runs the preroll; else restores that state. Throws std::invalid_argument if the options
+  /// do not fit the simulation.
   Impl(std::unique_ptr<simulation::Simulation> of, std::string heading_of_state, const SimulationOptions& options,
        MakeFrame make_frame);
 
@@ -58,7 +59,7 @@ struct Simulation::Impl {
 
 namespace weft::library {
 
-// Views points as another type of the same layout.
+/// A view of a list as values of another type, which must have the same layout.
 template <class To, class From>
 std::span<const To> view_as(const std::vector<From>& points) {
   static_assert(sizeof(To) == sizeof(From));
@@ -67,11 +68,12 @@ std::span<const To> view_as(const std::vector<From>& points) {
 
 Report report_of(const simulation::FrameReport& report);
 
-/// Makes a frame. Adds views of velocities, strains and contact forces to its first objects, which are the cloths.
+/// Makes a frame of these data. Sets the velocities, strains and contact forces of the first
+/// objects, which must be the cloths, to views of the members of `data`.
 Frame make_frame(Frame::Data data);
 
-/// First line of a saved state. The line identifies the library version, the model or scene (`hash`) and the driven
-/// bodies.
+/// First line of a saved state, with its line feed. It identifies the library version, the model or
+/// scene (`hash`) and the driven bodies.
 std::string heading_of(std::uint64_t hash, const SimulationOptions& options);
 
 /// Throws the exception of weft/errors.hpp that corresponds to `error`, or std::runtime_error.

@@ -9,7 +9,8 @@
 namespace weft::library {
 namespace {
 
-// Removes a suffix such as ":12" from a text, and returns its number.
+// Removes a suffix such as ":12" from a text, and returns its number. If there is no such suffix,
+// or its number is below 1, changes nothing and returns nothing.
 std::optional<int> take_number(std::string_view& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string_view::npos) return std::nullopt;

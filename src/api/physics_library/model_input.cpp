@@ -23,7 +23,7 @@ template <class... Arguments>
   throw std::invalid_argument(object + ": expected " + fmt::format(text, std::forward<Arguments>(arguments)...));
 }
 
-// Bounds are those of scenes (src/film/scene/*_rules.cpp).
+// Bounds of absolute values, as in scenes (src/film/scene/*_rules.cpp).
 constexpr double kFarthest = 1e5;  // [m]
 constexpr double kFastest = 1e4;   // [m/s]
 
@@ -93,8 +93,8 @@ void check_vertices_are_used(const mesh::Mesh& mesh, const std::string& object) 
   if (loose != used.end()) refuse(object, "vertices that triangles use, got number {} alone", loose - used.begin());
 }
 
-// Refuses vertices at the same place: they would touch at the start. Meshes of other programs often have two vertices
-// at the same place on a seam of the texture.
+// Refuses vertices at the same place, because their triangles would touch at the start. In meshes
+// of other programs, seams of the texture often have two vertices at the same place.
 void check_vertices_are_apart(const mesh::Mesh& mesh, const std::string& object) {
   std::map<std::array<double, 3>, std::size_t> places;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -199,7 +199,8 @@ std::size_t number_of(const std::string& name, const Objects& objects, const cha
   refuse("pin", "a {} ({}), got \"{}\"", kind, fmt::join(names, ", "), name);
 }
 
-// Adds a pin to its cloth, and the particles of the pin to `held`, the list of cloth and index of all pinned particles.
+// Adds a pin to its cloth, and its particles to `held`, which has the cloth and the index of each
+// pinned particle.
 void add_pin(const Pin& given, std::set<std::pair<std::string, int>>& held, model::Model& model) {
   model::Cloth& cloth = model.cloths[number_of(given.cloth, model.cloths, "cloth")];
   model::Pin& pin = cloth.pins.emplace_back();

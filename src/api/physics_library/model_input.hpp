@@ -9,12 +9,12 @@
 
 namespace weft::library {
 
-/// Converts a pose. If a coordinate is not finite or beyond ±1e5 m, or if the rotation is no unit quaternion, throws
-/// std::invalid_argument with the name `object`.
+/// Converts a pose. If a coordinate is not within ±1e5 m, or if the rotation is no unit quaternion,
+/// throws std::invalid_argument with the name `object`.
 motion::Pose pose_of(const Pose& given, const std::string& object);
 
-/// Convert gravity [m/s²] and wind [m/s]. If a component is out of range, throw std::invalid_argument with the name
-/// `object`.
+/// These functions convert gravity [m/s²] and wind [m/s]. If a component is not within ±1e5 m/s² or
+/// ±1000 m/s, they throw std::invalid_argument with the name `object`.
 Vec3 gravity_of(const Vector& given, const std::string& object);
 Vec3 wind_of(const Vector& given, const std::string& object);
 

@@ -9,7 +9,8 @@
 
 namespace weft::assets {
 
-/// A camera of a file, sampled at one or more times. Between the samples, linear interpolation is accurate enough.
+/// A camera of a file, sampled at one or more times. Samples of a motion are at most 0.02 s apart,
+/// so that linear interpolation between them is accurate enough.
 struct LoadedCamera {
   std::vector<double> times;    ///< [s], increasing
   std::vector<Vec3> positions;  ///< [m], in axes with y up

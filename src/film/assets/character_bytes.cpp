@@ -38,7 +38,8 @@ void serialize(Archive& archive, character::Coloring& coloring) {
   serialize_plain(archive, coloring.uv);
 }
 
-/// Writes or reads all members, depending on the archive: one function, so that both use the same order.
+/// Writes or reads, depending on the archive. One function does both, so that both use the same
+/// order. Omits the members that no file sets, such as Material::pixels.
 template <class Archive>
 void serialize(Archive& archive, ReadCharacter& read) {
   character::Character& character = read.character;

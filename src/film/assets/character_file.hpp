@@ -12,8 +12,8 @@
 
 namespace weft::assets {
 
-/// How to interpret the lengths and axes of a file. If `up` is as_file, the up axis is the one that the file states,
-/// else y.
+/// How to interpret the lengths and axes of a file. If `up` is as_file, the up axis is the one that
+/// the file states; y if it states none.
 struct FileAxes {
   std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, else 1
   scene::FileUp up = scene::FileUp::as_file;
@@ -22,13 +22,14 @@ struct FileAxes {
 
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
-  std::vector<std::string> warnings;  ///< each names scene entry, file, and mesh, bone or clip
+  std::vector<std::string> warnings;  ///< each names the scene entry and the file
   double scale = 1;                   ///< applied scale: metres per unit of the file
 };
 
-/// Reads skeleton, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada, X, B3D, BVH and
-/// others of assimp. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
-/// Error(asset_unreadable) with `where`, the file, and the mesh, bone or clip.
+/// Reads skeleton, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada,
+/// X, B3D, BVH and others of assimp. A skeleton without a mesh gets a mesh of sticks. `where` names
+/// the scene entry. Throws Error(asset_unreadable) with `where`, the file and the reason, also if
+/// no face has an area.
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 

@@ -62,7 +62,8 @@ std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
       nodes.push_back(next);
       const auto children = children_of(*next.first);
       for (std::size_t c = children.size(); c-- > 0;)
-        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // null: see soup.cpp
+        // assimp's importer of RAW files (lists of triangles) leaves some child pointers null.
+        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);
     }
     return nodes;
   };
@@ -131,8 +132,8 @@ class CharacterReader {
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
-      // In FBX and glTF, a mesh can have the name of a bone: a name refers to the first node of this name that has no
-      // mesh.
+      // In FBX and glTF, a mesh can have the name of a bone. A name refers to the first node of
+      // this name that has no mesh; if all have meshes, to the first one.
       const auto [named, is_new] = targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
       if (!is_new && nodes_[named->second]->mNumMeshes > 0 && node->mNumMeshes == 0)
         named->second = static_cast<Index>(nodes_.size());
@@ -172,9 +173,11 @@ class CharacterReader {
     read_morphs(mesh, node, base, placing);
   }
 
-  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the transform from mesh to world in
-  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights. Vertices are
-  /// stored after this transform, and bone offsets are adapted to it, so that all meshes share one space.
+  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the transform from
+  /// mesh to world in the rest pose: (bone's node to world) × (bone offset) of the bone with the
+  /// largest sum of weights, among the bones for which this product is invertible. Vertices are
+  /// stored after this transform, and bone offsets are adapted to it, so that all meshes share one
+  /// space.
   std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
     std::vector<std::pair<Index, Affine>> bones;  // node and offset of each bone with weights
@@ -328,8 +331,9 @@ class CharacterReader {
     if (name != of_node) targets_.morphs.emplace(name, group);
   }
 
-  /// Merges vertices with the same position, weights and displacements: files have several for one point at seams of
-  /// textures or normals, which would cut the surface. Drops vertices without faces.
+  /// Merges vertices with the same position, weights and displacements. At seams of textures or
+  /// normals, files have several vertices for one point, which would cut the surface. Drops
+  /// vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
     std::vector<Index> renamed(soup_.positions.size(), -1);

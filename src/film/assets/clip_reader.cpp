@@ -117,9 +117,10 @@ struct ClipReader {
   }
 };
 
-/// For some FBX nodes, assimp inserts a chain of helper nodes above them, named after the node; each helper has a part
-/// of the transform. If a channel nevertheless has the whole transform of such a node, the helpers get identity
-/// channels, so that nothing applies twice.
+/// For some FBX nodes, assimp inserts a chain of helper nodes above them, named after the node;
+/// each helper has a part of the transform. If a channel has keys for both position and rotation of
+/// such a node, it has the whole transform. Then the helpers without a channel of their own get
+/// identity channels, so that nothing applies twice.
 void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
                            character::Clip& clip) {
   if (from.mNumPositionKeys == 0 || from.mNumRotationKeys == 0) return;

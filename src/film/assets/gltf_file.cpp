@@ -41,7 +41,7 @@ constexpr std::array kAllowedExtensions = {"_materials_",           "_texture_",
 struct Gltf {
   bool is_binary = false;
   std::string text;  // JSON; empty if the file is no glTF
-  std::string data;  // of a binary file
+  std::string data;  // content of the binary chunk
 };
 
 std::uint32_t length_at(std::string_view bytes, std::size_t at) {

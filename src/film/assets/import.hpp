@@ -24,11 +24,12 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
 /// The name with decoded escapes such as %20 (RFC 3986), which glTF and Collada use in names of files.
 std::string percent_decoded(const std::string& name);
 
-/// The unit that an FBX file states [m]; nullopt for other formats, which assimp converts to metres if it finds the
-/// unit.
+/// The unit that an FBX file states [m]; nullopt if the number is not finite or not positive. Also
+/// nullopt for other formats, which assimp converts to metres if it finds the unit.
 std::optional<double> metres_per_unit(const aiScene& scene);
 
-/// The weight of a morph target without a clip: that of the file, but 0 in FBX, where assimp 5.2 sets all weights to 1.
+/// The weight of a morph target without a clip: that of the file. A weight of 1 in FBX counts as 0,
+/// since assimp 5.2 sets all weights of FBX files to 1.
 double rest_weight(const aiScene& scene, const aiAnimMesh& target);
 
 /// The up axis (0 x, 1 y, 2 z): as stated in FBX; y for glTF and Collada, which assimp rotates; nullopt for other

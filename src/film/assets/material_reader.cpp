@@ -91,7 +91,8 @@ bool is_nameless(const std::string& texture_path) {
 
 constexpr const char* kNameless = "neither named nor held by the file";
 
-/// The bytes of a picture. If it cannot be read, returns none and sets `reason`.
+/// The bytes of a picture. If the picture cannot be used, returns an empty string and sets
+/// `reason`.
 std::string read_picture(const aiScene& scene, const aiString& texture_path, const fs::path& file,
                          std::string& reason) {
   std::string bytes;
@@ -131,7 +132,8 @@ Vec3 base_color(const aiMaterial& material) {
   return rgb.allFinite() ? Vec3(rgb.cwiseMax(0).cwiseMin(1)) : Vec3(Vec3::Constant(0.6));
 }
 
-/// Whether transparent parts are holes: as glTF states; in other formats, if the material has an opacity picture.
+/// Whether transparent parts are holes: in glTF, if the alpha mode is not OPAQUE; in other formats,
+/// if the material has an opacity picture.
 bool is_cutout(const aiMaterial& material) {
   aiString mode;
   if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS) return std::string_view(mode.C_Str()) != "OPAQUE";
@@ -174,8 +176,8 @@ Vec2 placed_uv(const aiMaterial& material, const Vec2& uv) {
   aiUVTransform placing;
   const bool is_gltf = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS;
   if (!type || !is_gltf || material.Get(AI_MATKEY_UVTRANSFORM(*type, 0), placing) != AI_SUCCESS) return uv;
-  // Undo a conversion by assimp, which changes the offset so that it applies to v upward and to a rotation by −angle
-  // about the middle of the picture.
+  // Undo a conversion by assimp: it changes the offset so that it applies to v upward and to a
+  // rotation by −angle about the middle of the picture.
   const double cos = std::cos(placing.mRotation), sin = -std::sin(placing.mRotation);
   const Vec2 scale(placing.mScaling.x, placing.mScaling.y),
       offset(placing.mTranslation.x - scale.x() / 2 * (1 - cos + sin),

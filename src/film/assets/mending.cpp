@@ -166,8 +166,9 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
   return turned;
 }
 
-/// At each edge of more than two triangles, or of two that face opposite ways, detaches the triangles that `joints` do
-/// not join: gives them vertices of their own, and moves these away from the edge. Removes small detached pieces.
+/// At each edge of more than two triangles, or of two that face opposite ways, detaches the
+/// triangles that `joints` do not join, or join with opposite orientations: gives them vertices of
+/// their own, and moves these vertices away from the edge. Removes small detached pieces.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -207,7 +208,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
     areas[piece_of[at(cut_triangles[t][0])]] += area(loaded, t);
     whole += area(loaded, t);
   }
-  // One copy of each vertex stays in place: that in the largest piece or, within a piece, that of the most triangles.
+  // One copy of each vertex stays in place: the copy in the largest piece; of several copies there,
+  // the one that most triangles use.
   std::map<Index, std::pair<double, Index>> kept_copies;
   std::vector<int> use_count(from.size(), 0);
   for (const Triangle& t : cut_triangles)
@@ -240,8 +242,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// At edges of more than two triangles, removes those that cut() cannot detach, since other triangles connect them to
-/// the two joined triangles.
+/// At edges that cut() could not repair, since other triangles connect the sides, keeps only the
+/// most nearly coplanar pair of triangles that face the same way, and removes the others.
 void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;

@@ -92,7 +92,7 @@ std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   return corners;
 }
 
-/// A border vertex, and the distance within which other border vertices are merged with it [m].
+/// A border vertex, and the maximum distance of other border vertices that are merged with it [m].
 struct BorderVertex {
   Index vertex;
   double weld_distance;
@@ -114,7 +114,7 @@ std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double ratio) {
 Welded weld_borders(LoadedMesh& loaded, double ratio) {
   const std::vector<Vec3>& x = loaded.mesh.positions;
   std::vector<BorderVertex> border = border_of(loaded.mesh, ratio);
-  // Sort along x, so that only vertices near each other in this order are compared.
+  // Sort by the x coordinate, so that only vertices with similar x are compared.
   std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
   DisjointSets sets(x.size());
   Welded welded;

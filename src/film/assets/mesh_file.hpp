@@ -30,8 +30,9 @@ struct LoadedMesh {
   std::size_t joined_vertices = 0;    ///< copies of a vertex (for other UVs or normals) that were merged
 };
 
-/// How to interpret the lengths and axes of a mesh file. The up axis of the file is `up` or, if that is as_file, the
-/// axis that the file states (glTF, FBX, Collada), else `default_up`. The mesh is rotated to the axes of the scene.
+/// How to interpret the lengths and axes of a mesh file. If `up` is as_file, the up axis of the
+/// file is the one that the file states (glTF, FBX, Collada), else `default_up`. The mesh is
+/// rotated to the axes of the scene.
 struct MeshAxes {
   double scale = 1;  ///< factor on all lengths
   scene::FileUp up = scene::FileUp::as_file;
@@ -49,13 +50,14 @@ LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, co
 
 /// The result of weld_borders().
 struct Welded {
-  std::size_t vertices = 0;  ///< number of merged vertices
+  std::size_t vertices = 0;  ///< number of removed vertices
   double widest = 0;         ///< largest distance between merged vertices [m]
 };
 
-/// Merges border vertices that nearly coincide, as in files that keep panels separate. Two vertices are merged at their
-/// mean if their distance is at most `ratio` times the shortest border edge at either of them. If merging would create
-/// an edge of three triangles, or of two that face opposite ways, changes nothing.
+/// Merges border vertices that nearly coincide, as in files that keep panels separate. Two vertices
+/// are merged if their distance is at most `ratio` times the shortest border edge at each of them;
+/// merged vertices are placed at their mean. If the merged mesh is not manifold, changes nothing
+/// and returns zeros.
 Welded weld_borders(LoadedMesh& loaded, double ratio);
 
 }  // namespace weft::assets

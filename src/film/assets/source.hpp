@@ -28,8 +28,8 @@ struct Source {
   /// The text that fail() throws; also used for warnings.
   std::string describe(const std::string& what) const;
 
-  /// Throws like fail() if the file is missing, no regular file, empty, too large, or a PLY file that assimp misreads
-  /// or that blocks assimp for ever.
+  /// Throws like fail() if the file is missing, no regular file, empty, larger than
+  /// kMaxMeshFileBytes, or a PLY file that assimp misreads or that blocks assimp for ever.
   void check() const;
   /// Calls check(), then `read` in a child process, and returns its result. If the child fails or exceeds its limits on
   /// time and memory, throws like fail() with the reason.

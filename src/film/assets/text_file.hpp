@@ -7,12 +7,13 @@
 
 namespace weft::assets {
 
-/// Returns text that assimp reads in place of `file`, or nullopt if assimp can read the file itself. The text differs
-/// from the file as follows:
+/// Returns text that assimp reads in place of `file`, or nullopt if assimp can read the file
+/// itself. The text differs from the file as follows:
 /// - All formats: it has no byte order mark, which assimp would read as a part of the first line.
-/// - OBJ: it has no comments after the numbers of vertices, faces, line elements and points.
-/// - BVH: keywords and names of channels have their usual spelling, such as "Frame Time:" for "frametime:", and spaces
-///   in names of joints are underscores.
+/// - OBJ: it has no comments in lines of numbers (vertices, UVs, normals, faces, line elements,
+///   points).
+/// - BVH: keywords and names of channels have their usual spelling, such as "Frame Time:" for
+///   "frametime:", and spaces in names of joints are underscores.
 std::optional<std::string> readable_text(const std::filesystem::path& file);
 
 }  // namespace weft::assets

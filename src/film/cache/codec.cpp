@@ -75,7 +75,8 @@ void serialize_optional(Archive& archive, std::optional<Value>& value) {
   serialize_finite(archive, *value);
 }
 
-// Serialises entries as byte planes (codec.hpp), without their number. Before reading, the list must have its size.
+// Serialises entries as byte planes (codec.hpp), without their number. For reading, the list must
+// already have its final size.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();

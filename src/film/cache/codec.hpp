@@ -46,7 +46,8 @@ std::string encode_surfaces(const Surfaces& surfaces);
 /// Throws std::runtime_error with the defect.
 Surfaces decode_surfaces(std::string_view payload);
 
-/// `surfaces`: of frame 0 of the same run.
+/// `surfaces`: of frame 0 of the same run. Throws std::logic_error if a surface of the snapshot has
+/// another number of vertices.
 std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces);
 

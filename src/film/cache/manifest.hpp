@@ -15,7 +15,9 @@ struct Manifest {
   std::string scene;  ///< name of the scene
   std::string title;  ///< may be empty
   std::uint64_t scene_hash = 0;
-  std::uint64_t simulation_hash = 0;  ///< of the simulation's inputs; caches of one hash share frames; 0: unknown
+  /// Hash of the inputs of the simulation. Caches with the same hash that come from the same
+  /// program have the same motion. 0: unknown.
+  std::uint64_t simulation_hash = 0;
   std::vector<std::uint64_t> former_hashes;  ///< scene hashes of earlier versions of the scene with the same simulation
   double fps = 25;
   int frame_count = 1;               ///< in the scene; the cache may contain fewer

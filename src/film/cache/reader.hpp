@@ -18,16 +18,18 @@ struct SolverState {
   std::string bytes;
 };
 
-/// Which files the reader accepts: only those with the looks (colours, cameras, lights) of the present scene, or also
-/// those with the looks of earlier versions of the scene (Manifest::former_hashes), which exist until a run with
-/// --resume replaces them.
+/// Which files the reader accepts: only those with the looks (colours, cameras, lights) of the
+/// present scene, or also those with the looks of earlier versions of the scene
+/// (Manifest::former_hashes). Files with earlier looks exist until a run with --resume replaces
+/// them.
 enum class Looks { of_scene, any };
 
 /// All functions are thread-safe. Functions that read files throw Error(asset_unreadable) with the file name and the
 /// defect; folder(), manifest() and has() do not throw.
 class Reader {
  public:
-  /// Reads the data that all frames share. A cache without frames is valid.
+  /// Reads the data that all frames share. A cache without frames is valid, but read() then throws,
+  /// even if frames are added later.
   explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }

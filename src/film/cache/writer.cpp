@@ -46,10 +46,11 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether a file of the folder belongs to the cache, so that it may be removed. Its name must be one of a cache, or of
-/// a temporary file of one. A temporary file needs no other check. Of other files the first bytes must be as Weft
-/// writes them; the scene file has no fixed first bytes, so those of the manifest or of the surfaces are checked
-/// instead. Empty files belong to the cache too, since nothing is lost with them.
+/// Whether a file of the folder belongs to the cache, so that it may be removed. Its name must be
+/// that of a file of a cache, or that of a temporary file for one. A temporary file needs no other
+/// check. Other files must be regular files that are empty or begin as Weft writes them. The scene
+/// file has no fixed first bytes: it belongs to the cache if the manifest or the surfaces file
+/// beside it begins as Weft writes it.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);

@@ -15,8 +15,9 @@ namespace {
 /// Vectors shorter than this, absolutely or relative to the vector that they derive from, have no reliable direction.
 constexpr double kNegligibleLength = 1e-9;
 
-/// Minimum mean weight, over all postures, of the directions that determine an axis. If it is less, a guess gets the
-/// missing weight. The weight of a hinge is the squared sine of its angle, so that elbows bent by 13° need no guess.
+/// Minimum mean weight, over all postures, of the directions that determine an axis. If the mean
+/// weight is smaller, a guess gets the missing weight. The weight of a hinge is the squared sine of
+/// its bend, so that elbows that stay bent by 13° need no guess.
 constexpr double kMinDeterminedWeight = 0.05;
 
 /// Widths of the Gaussian weights of postures (see falloff) by their angle from upright [rad]: of the whole trunk, and
@@ -58,8 +59,8 @@ class AnatomyFinder {
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // Replaces the vector to the left of the body if hip and shoulder joints are missing. It depends on `up` only, so
-    // that two skeletons get the same vector.
+    // `level_` replaces the vector to the left of the body if hip and shoulder joints are missing.
+    // This vector depends on `up` only, so that two skeletons get the same vector.
     level_ = up.unitOrthogonal();
   }
 
@@ -131,8 +132,8 @@ class AnatomyFinder {
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
-  /// Gives a joint the z axis along its mean bone, and the x axis as close as possible to `across` (in the axes of the
-  /// joint). A joint without a bone gets the axes of its parent.
+  /// Gives a joint the z axis along its mean bone, and the x axis as close as possible to `across`
+  /// (in the axes of the joint). If the mean bone is zero, the joint gets the axes of `parent`.
   void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
     if (unit(z).isZero()) return copy_axes(joint, parent);
@@ -160,7 +161,9 @@ class AnatomyFinder {
       if (joint == Joint::hips && !hips.isZero()) return Vec3(hips);
       return shoulders.isZero() || joint == Joint::spine ? Vec3(hips + shoulders) : shoulders;
     });
-    // The line through the hip joints determines the rotation of the hips best, so their x axis follows it exactly.
+    // The x axis of the hips follows the line through the hip joints exactly, since this line
+    // determines the rotation of the hips best. For other joints, or if z is nearly parallel to the
+    // line, the z axis is exact.
     const Vec3 line = unit(x), beside = z - z.dot(line) * line;
     own_[joint_index(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
   }
@@ -168,8 +171,9 @@ class AnatomyFinder {
   void find_limb_axes(Joint upper, Joint lower, Joint trunk, bool right) {
     if (!skeleton_.has(upper)) return;
     const bool arm = joint_index(upper) < joint_index(on_side(Joint::left_upper_leg, right));
-    // Guess of the hinge axis: arms that point to the side bend forward, legs that hang straight down bend backward.
-    // For other directions of the bone, the axis rotates with it along the shortest arc.
+    // Guess of the hinge axis: arms that point to the side bend forward, legs that hang straight
+    // down bend backward. For other directions of the bone, the axis rotates with the bone along
+    // the shortest arc, and the weight of the guess decreases with the angle.
     const auto guess = [&](const Posture& p, std::size_t) {
       const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
       const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));

@@ -18,13 +18,15 @@ struct Rig {
   std::span<const Index> joints;
 };
 
-/// Positions and rotations of the joints in one pose, in world coordinates. The values of missing joints are
-/// meaningless.
+/// Positions and rotations of the joints in one pose, in world coordinates. A missing joint has the
+/// position 0 and the identity rotation.
 struct Posture {
   std::array<Vec3, kJointCount> places;
   std::array<Quat, kJointCount> rotations;
   std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes; position of the joint if it has no child
-  std::array<Vec3, 2> knuckles;        ///< of the left and the right hand: from index to little finger; zero: unknown
+  /// Vectors from the index to the little finger, of the left and the right hand [m]; zero if
+  /// unknown.
+  std::array<Vec3, 2> knuckles;
 };
 
 /// Directions and lengths of the limbs and the trunk of a rig, in given postures.
@@ -64,21 +66,28 @@ class Skeleton {
 /// Weights of the left and the right foot in one posture: 1 if the foot stands flat on the floor, 0 if not.
 using Flat = std::array<double, 2>;
 
-/// Finds the axes of the body part of each joint, as a rotation from the coordinates of the part to those of the joint.
-/// Axes of body parts:
-/// - Hips, spine, chest, neck and head: x to the left of the body, z up when the body stands upright. Shoulders: as the
-/// chest.
+/// Finds, for each joint, the axes of its body part: a rotation from the coordinates of the part to
+/// those of the joint. The rotation is the identity for missing joints, and for the foot and the
+/// toes of a leg without a knee joint. Axes of body parts:
+/// - Hips, spine, chest, neck and head: x to the left of the body, z up when the body stands
+/// upright.
+/// - Shoulders: as the chest; without a chest, as the spine or else the hips.
 /// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee.
-/// - Hands: z along the bone, x out of the left palm and out of the back of the right hand.
+/// - Hands: z along the bone, x out of the left palm and out of the back of the right hand. If the
+/// fingers are unknown, x is as close as possible to the x axis of the lower arm.
 /// - Feet and toes: z up when they are flat on the floor, x toward the toes.
-/// Only positions of joints determine the axes in the world; the rest pose of a file and the pose with zero angles have
-/// no effect. Each axis is a mean over the postures that determine it: upright postures for the trunk, all postures for
-/// a hinge (weighted by its bend), postures with a flat foot for the foot. If postures determine an axis too weakly, a
-/// guess from neighbouring joints complements it. `flat`: one entry per posture. `up`: unit vector.
+/// Only positions of joints and fingers determine the axes in the world; the rest pose of a file
+/// and the pose with zero angles have no effect. Each axis is a weighted mean over the postures.
+/// The weight of a posture is larger the more upright it is (z axes of the trunk), the squared sine
+/// of the bend (hinges), `flat` (feet and toes), and equal for all postures otherwise. If the mean
+/// weight is too small, a guess from the bone or from neighbouring joints gets the missing weight.
+/// `flat`: one entry per posture. `up`: unit vector.
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
                                            std::span<const Flat> flat, const Vec3& up);
 
-/// The rotation whose z axis points along `z` and whose x axis is as close as possible to `x`.
+/// The rotation whose z axis points along `z` and whose x axis is as close as possible to `x`. If
+/// `z` is 0, the z axis is (0, 0, 1). If `x` is 0 or parallel to `z`, the x axis is any
+/// perpendicular vector.
 Quat axes_along(const Vec3& z, const Vec3& x);
 
 }  // namespace weft::character

@@ -21,8 +21,8 @@ struct Node {
   Affine local = Affine::Identity();  ///< transform from node to parent at rest
 };
 
-/// A bone of linear blend skinning. In a pose, it maps a vertex x to G · offset · x, where G is the global transform of
-/// its node.
+/// A bone of linear blend skinning. In a pose, the bone maps a vertex x to G · offset · x, where G
+/// is the global transform of its node.
 struct Bone {
   Index node = 0;
   Affine offset = Affine::Identity();  ///< transform from mesh to node in the bind pose
@@ -70,7 +70,8 @@ struct Clip {
 
 /// A surface material: its colour and its picture (texture).
 struct Material {
-  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< picture beyond its edge; once: transparent
+  /// How the picture continues beyond its edge; once: not at all, the area beyond is transparent.
+  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };
   std::string name;
   Vec3 color{0.8, 0.8, 0.8};         ///< linear RGB; multiplied with the picture
   std::string picture;               ///< content of a PNG, JPEG or TGA file; empty: none
@@ -83,21 +84,24 @@ struct Material {
 /// Materials and pictures of the triangles of a mesh.
 struct Coloring {
   std::vector<Material> materials;
-  std::vector<Index> material_of_triangle;  ///< per triangle; empty if the file has no colours
+  std::vector<Index> material_of_triangle;  ///< per triangle, in `materials`; empty: no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
   bool covers_look = false;                 ///< whether the colour from the scene shows where pictures are transparent
 };
 
-/// Lengths are in metres; the up axis is that of the scene.
+/// A body of bones and skin, with its clips. load_character() gives it in metres and the axes of
+/// the scene, make_mannequin() in metres with z up.
 struct Character {
   std::vector<Node> nodes;
   std::vector<Bone> bones;
-  mesh::Mesh mesh;                     ///< in the bind pose; vertices of the file that always move together are merged
+  /// In the bind pose. Vertices of the file with equal position, weights and displacements are
+  /// merged.
+  mesh::Mesh mesh;
   std::vector<Index> first_influence;  ///< per vertex, its first index in `influences`; last entry: their total number
   std::vector<Influence> influences;
   std::vector<MorphTarget> morphs;
   std::vector<std::string> materials;     ///< names of all materials in the file
-  std::vector<Index> material_of_vertex;  ///< per vertex; empty if there are no materials
+  std::vector<Index> material_of_vertex;  ///< in `materials`; -1: none; empty for the mannequin
   Coloring coloring;
   std::vector<Clip> clips;
 };

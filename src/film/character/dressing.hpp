@@ -8,20 +8,24 @@
 
 namespace weft::character {
 
-/// Returns the pose with straight arms in the frontal plane of the body. `degrees`: angle of both arms from straight
-/// down; at 90 they point straight to the sides. If the rig has no pair of arms, the pose does not change. `up`: unit
-/// vector.
+/// Returns the pose with straight arms in the frontal plane of the body. `degrees`: angle of both
+/// arms from straight down; at 90 they point straight to the sides. Returns `pose` unchanged if the
+/// rig has neither two upper-arm joints nor two shoulder joints, or if the line through them is
+/// vertical. `up`: unit vector.
 Pose raise_arms(const Rig& rig, const Pose& pose, double degrees, const Vec3& up);
 
-/// For each vertex, the point inside the body from which the vertex grows: the mean of the nearest points on the bones
-/// that influence the vertex, weighted by the influences. A bone that branches has one nearest point per branch,
-/// weighted by the inverse fourth power of the distance from the vertex. A vertex that two limbs influence equally, as
-/// between the legs, grows from the mean position of the joints of its bones.
+/// For each vertex, the point on the bones from which the vertex grows. This point is the mean of
+/// one point per bone that influences the vertex, weighted by the influences. The point on a bone
+/// is the one nearest to the vertex; if the bone branches, the mean of the nearest points on all
+/// branches, weighted by the inverse fourth power of their distance from the vertex. If bones of
+/// other branches, such as the other leg, also influence the vertex, the point moves from there
+/// toward the joint of its bone. It is at the joint if these other bones have at least half of the
+/// weight.
 std::vector<Vec3> growth_start_positions(const Character& character, const Pose& pose);
 
-/// Distance of the skin of a growing body from its bones, as a fraction of the final distance. `t`: time since the
-/// start of growth; `duration`: of growth [s]. The fraction rises smoothly from 0.1, at which an arm fits into a sleeve
-/// with clearance, to 1.
+/// Distance of the skin of a growing body from its bones, as a fraction of the final distance. `t`:
+/// time since the start of growth; `duration`: of growth, > 0 [s]. The fraction rises smoothly from
+/// 0.1, at which an arm fits into a sleeve with clearance, to 1 at `duration`.
 double grown(double t, double duration);
 
 }  // namespace weft::character

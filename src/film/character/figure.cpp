@@ -26,7 +26,8 @@ struct Ink {
   }
 };
 
-/// 1 inside (`depth` > 0) and 0 outside an outline, with a soft edge of width `edge` [cm].
+/// Opacity of an area with a soft outline: 0 up to the depth -edge / 2, 1 from edge / 2 on, smooth
+/// between. `depth`: how far a point is inside the outline, < 0: outside. Both have the same unit.
 double inside(double depth, double edge) {
   const double t = std::clamp(0.5 + depth / edge, 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -49,7 +50,7 @@ const Vec3 kHair(0.20, 0.135, 0.095), kShoe(0.13, 0.12, 0.125), kSole(0.07, 0.06
 
 /// Shoes, seen from the side; y grows from front to back.
 Ink body_ink(double y, double z) {
-  // From the toes over the instep to the heel.
+  // Upper edge of the shoe as (y, z), from the toes over the instep to the heel.
   static const Vec2 kShoeline[] = {{-11.5, 9.0}, {-9.2, 3.6}, {-4, 2.8}, {1, 3.8}, {5, 5.6}, {7, 6.2}};
   Ink ink;
   const double shoe = inside(height(kShoeline, y) - z, 0.15) * inside(10 - z, 0.2);
@@ -135,7 +136,8 @@ struct PictureArea {
 };
 const PictureArea kBody{{-22, -1}, {14, 177}}, kFace{{-6, 153}, {6, 169}}, kHead{{-15, 150}, {15, 177}};
 
-/// Triangles above this height use the picture of the head or the face [cm].
+/// A triangle uses the picture of the head or the face only if all its corners are above this
+/// height [cm].
 constexpr double kHeadFrom = 152;
 
 }  // namespace

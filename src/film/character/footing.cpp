@@ -8,18 +8,20 @@
 namespace weft::character {
 namespace {
 
-// A foot is in contact if its ball is slower than kMaxContactSpeed [leg lengths/s] and less than kMaxContactHeight [leg
-// lengths] above the floor: 0.3 m/s and 4 cm for the leg of an adult, 0.85 m. Toes in swing move at 3 to 5 m/s; noise
-// in recordings moves standing feet at 0.05 to 0.15 m/s.
+// A foot is in contact if its ball is slower than kMaxContactSpeed [leg lengths/s] and less than
+// kMaxContactHeight [leg lengths] above floor_height(): 0.3 m/s and 4 cm for the leg of an adult,
+// 0.85 m. Toes in swing move at 3 to 5 m/s; noise in recordings moves standing feet at 0.05 to 0.15
+// m/s.
 constexpr double kMaxContactSpeed = 0.35, kMaxContactHeight = 0.05;
 /// Maximum height of the ankle of a flat foot above Footsteps::ankle_height [leg lengths].
 constexpr double kMaxFlatAnkleHeight = 0.03;
-/// Minimum time over which speeds are averaged [s]. With few keys per second, it is the time from the key before to the
-/// key after.
+/// The speed at a key is averaged from the last key that is at least half of this time earlier to
+/// the first key that is at least half of it later [s].
 constexpr double kSpeedWindow = 1.0 / 30;
 /// Shorter contacts are ignored [s].
 constexpr double kMinContactTime = 0.08;
-/// If the ball moves farther than this during a contact, as in shuffling, a new contact begins [leg lengths].
+/// If the ball is farther than this from its position at the start of a contact, as in shuffling, a
+/// new contact begins [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
 /// A histogram counts the heights of slow feet. The floor is its lowest peak that is at least this fraction of its
 /// highest peak. Initial poses of recordings and outliers lie below the floor, stairs and chairs above it.
@@ -86,7 +88,8 @@ std::vector<Contact> contacts_of(const FootTrack& ball, std::span<const double> 
   return contacts;
 }
 
-/// Height of the ball joints of feet that stand on the floor; the height of the lowest one if none is ever slow.
+/// Height of the ball joints of feet that stand on the floor. If no ball joint is ever slower than
+/// kMaxContactSpeed, the height of the lowest one.
 double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   std::vector<double> slow;
   double lowest = std::numeric_limits<double>::infinity();
@@ -167,7 +170,8 @@ double rise_of_hips(const Leg& leg, const Vec3& ankle, const Vec3& up) {
   return 0;
 }
 
-/// Smallest curve that is nowhere below the values `needed` (>= 0) and takes kHipBlendTime to rise and to fall.
+/// For each key, the largest of the values `needed` (>= 0) at all keys, where the value of another
+/// key fades to 0 with its time distance within kHipBlendTime.
 std::vector<double> spread_over_time(const std::vector<double>& needed, std::span<const double> times) {
   std::vector<double> result = needed;
   for (std::size_t k = 0; k < needed.size(); ++k) {

@@ -38,17 +38,20 @@ struct Leg {
 /// The left and the right leg.
 using Legs = std::array<Leg, 2>;
 
-/// Corrections at one key. They keep feet that are in contact in place.
+/// Corrections at one key that keep the feet in contact in place.
 struct Stance {
   double rise = 0;                                          ///< of the hips [m]; < 0: down
   std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
   std::array<bool, 2> in_contact{};
 };
 
-/// Keeps the ball of each foot at its mean position during a contact, with the sole on the floor. Within 0.15 s before
-/// and after a contact, the foot blends into the motion; no foot goes below the floor. The hips move down if a leg is
-/// too short to reach its shifted ankle, and up if a knee would bend too far. `floor`: height of the floor, on which
-/// the body stands at rest [m].
+/// Computes, per key, the corrections that keep feet in place. During a contact, the ball of the
+/// foot stays at its mean horizontal position over the contact, and the lower one of ball and heel
+/// is on the floor. The shift of the foot fades within 0.15 s before and after the contact, or
+/// within the time to the next contact if it is shorter. No ball or heel goes below the floor. The
+/// hips move down if a leg is too short to reach its shifted ankle, and up if a knee would bend too
+/// far. `legs`: of the body, per key. `floor`: height of the floor, on which the body stands at
+/// rest [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
@@ -56,8 +59,8 @@ std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& step
 struct LegTurns {
   Quat upper, lower;
 };
-/// Two-bone inverse kinematics: the rotations that bring the ankle to a given position, or as near to it as the leg
-/// reaches. The knee bends in the present plane of the leg.
+/// Two-bone inverse kinematics: the rotations that bring the ankle to a given position, or as near
+/// to it as the limits of the knee allow. The knee bends in the present plane of the leg.
 LegTurns reach(const Leg& leg, const Vec3& ankle);
 
 }  // namespace weft::character

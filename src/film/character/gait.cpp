@@ -16,11 +16,14 @@ constexpr double kShoulderSwing = 1.5;  ///< factor on the recorded chest yaw, w
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
                  kHeadRoll = -0.4;  ///< ratios of pitch (chest / pelvis, head / pelvis) and of roll (head / chest)
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
-// Hanging arms have elbows bent by kElbowAtRest; walking adds kElbowRatio of the difference between the recorded bend
-// and kElbowAtRest. The upper arms keep the angle Walk::arms_out from the vertical on average. The forearms turn back
-// toward the vertical by the fraction kForearmTurnRatio of this angle, at most by kMaxForearmTurn. Angles in degrees.
+// Hanging arms have elbows bent by kElbowAtRest; walking adds kElbowRatio of the difference between
+// the recorded bend and kElbowAtRest. The upper arms keep the angle Walk::arms_out from the
+// vertical on average. The forearms turn back toward the vertical by the fraction kForearmTurnRatio
+// of this angle, at most by kMaxForearmTurn, and less beside wide hips. Angles in degrees.
 constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
-constexpr double kHandClearance = 8;  ///< minimum from hip skin to middle of a hanging hand, at height 175 cm [cm]
+/// Minimum distance from the skin of the hips to the middle of a hanging hand, for a height of 175
+/// cm [cm].
+constexpr double kHandClearance = 8;
 // In a turn the head rotates first, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering:
 // coordination and control of body center of mass, head and body reorientation", 1999). Lead times relative to the hips
 // [s].

@@ -11,7 +11,7 @@ struct Walk {
   double distance = 6;     ///< one way, > 0 [m]; a walk has at least two steps
   bool turn_back = false;  ///< whether the body then turns around on a small arc and walks back
   double stand = 0.5;      ///< standing time before the first and after the last step [s]
-  double arms_out = 13;    ///< angle of the upper arms from the vertical [degrees]; > 0: clearance for sleeves, skirts
+  double arms_out = 13;    ///< mean outward angle of the upper arms from the vertical [degrees]
 };
 
 /// Makes a walk. Feet stay on their footholds (Feet, gait_feet.hpp), the body balances above the feet (balance_body,

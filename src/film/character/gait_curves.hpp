@@ -5,8 +5,8 @@
 
 namespace weft::character {
 
-/// mean + Σ_k cosine[k] cos(2π (k + 1) phase) + sine[k] sin(2π (k + 1) phase). Phase: 0 at a strike of the left heel, 1
-/// at the next one.
+/// mean + Σ_k (cosine[k] cos(2π (k + 1) phase) + sine[k] sin(2π (k + 1) phase)). Phase: 0 at a
+/// strike of the left heel, 1 at the next one.
 struct HarmonicCurve {
   double mean = 0;
   std::array<double, 6> cosine{}, sine{};

@@ -10,13 +10,17 @@
 namespace weft::character {
 namespace {
 
-constexpr double kStandingKnee = 6;         ///< knee bend of a standing leg [degrees]; a straighter leg looks stiff
-constexpr double kPitchRatio = 0.79;        ///< factor on the recorded foot pitch, which is too large for a mannequin
-constexpr double kReleaseFraction = 0.17;   ///< from the end of support by one leg to the strike of the other [strides]
-constexpr double kTakeoverFraction = 0.13;  ///< from the strike of a leg to the start of its support [strides]
-constexpr double kLateKneeRatio = 0.75;     ///< factor on the knee curve before toe-off
-constexpr double kHeelRiseLength = 0.002;   ///< length over which the start of the rise of a heel is smoothed [m]
-constexpr double kSwingKneeShift = 13;  ///< knee bend added in swing, since kLateKneeRatio reduces it before [degrees]
+constexpr double kStandingKnee = 6;   ///< knee bend of a standing leg [degrees]; less looks stiff
+constexpr double kPitchRatio = 0.79;  ///< factor on the recorded foot pitch, which is too large
+/// A leg determines the height of the pelvis until this time before the strike of the other leg
+/// [strides].
+constexpr double kReleaseFraction = 0.17;
+/// A leg determines the height of the pelvis from this time after its strike on [strides].
+constexpr double kTakeoverFraction = 0.13;
+constexpr double kLateKneeRatio = 0.75;    ///< factor on the knee curve before toe-off
+constexpr double kHeelRiseLength = 0.002;  ///< length that smooths the start of the heel rise [m]
+/// Knee bend added in swing, since kLateKneeRatio reduces the bend at toe-off [degrees].
+constexpr double kSwingKneeShift = 13;
 constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< angles [degrees] and factor in toe_pitch
 constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toes [degrees]
 constexpr double kInPlaceKneeLift = 32;  ///< additional knee bend in a step in place [degrees]
@@ -55,8 +59,8 @@ double early_bump(double s) {
   return 119.2 * s * s * s * (1 - s) * (1 - s) * (1 - s) * (1 - s);
 }
 
-/// Like bump(), with a later maximum. It falls steeply at the end, so that a foot that is set down does not skim the
-/// floor.
+/// Like bump(), with its maximum at s = 0.6 and a non-zero second derivative at s = 1: the steep
+/// fall keeps a foot that is set down from skimming the floor.
 double late_bump(double s) {
   return 28.9 * s * s * s * (1 - s) * (1 - s);
 }
@@ -105,8 +109,10 @@ Vec3 Feet::hip(int side, int key) const {
   return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) + hips_[track_.index(key)][side];
 }
 
-/// Knee bend of a stance leg [degrees]: a blend of walking::knee after the strike and before toe-off, each scaled by
-/// the size of its step. Apart from kLateKneeRatio, the two weights sum to 1 in steady walking.
+/// Knee bend of a stance leg [degrees]: kStandingKnee, plus the difference of walking::knee from
+/// kStandingKnee in two parts. The part after the strike is scaled by the size of the step to this
+/// foothold, the part before toe-off by the size of the next step and by kLateKneeRatio. Sizes
+/// above 1 count as 1.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
@@ -124,7 +130,8 @@ double Feet::leg_extent(double knee) const {
   return std::sqrt(a * a + b * b + 2 * a * b * std::cos(knee * kDegree));
 }
 
-/// Recorded foot pitch after a strike [rad]; it fades to exactly 0 within 0.12 strides.
+/// Foot pitch after a strike [rad]: the recorded pitch, scaled by kPitchRatio and the size of the
+/// step. It fades to exactly 0 within 0.12 strides.
 double Feet::strike_pitch(const Plant& plant, int key) const {
   const double since = plan_.strides_since_strike(plant, key);
   if (since > 0.12) return 0;
@@ -161,7 +168,8 @@ Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * ahead_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
 }
 
-/// Foot pitch in stance [rad]: the heel of the trailing leg rises until the knee has the bend knee().
+/// Foot pitch in stance [rad]: strike_pitch() early in stance. Late in stance, the heel rises until
+/// the knee has the bend knee().
 double Feet::standing_pitch(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double share = smooth_ramp(kStance - plan_.until_off(here, key), 0.24, 0.36);
@@ -230,17 +238,18 @@ FootState Feet::at(int side, int key) const {
   return key <= plant(side, number).off ? standing(side, number, key) : swinging(side, number, key);
 }
 
-/// Height of the pelvis above a stance leg whose knee has the bend knee() [m].
+/// Height of the pelvis above the floor [m] at which the knee of a stance leg has the bend knee().
 double Feet::height_above(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const Vec3 leg = hip(side, key) - rolling_ankle(here, strike_pitch(here, key));
   const double d = leg_extent(knee(side, number, key));
-  // Here hip() has the middle of the pelvis at height 0, since heights_ is not computed yet.
+  // Here hip() puts Joint::hips at height 0, since heights_ is not computed yet.
   return std::sqrt(d * d - leg.head<2>().squaredNorm()) - leg.z();
 }
 
-/// Computes the heights of the pelvis. While neither leg determines the height, it is interpolated. A correction gives
-/// it the value at the strike that the knee of the leading leg requires.
+/// Computes the heights of the pelvis. While neither leg determines the height, it is interpolated.
+/// A correction of the interpolated height gives the knee of the leading leg the bend knee() at its
+/// strike.
 void Feet::find_heights() {
   struct Support {
     int side;

@@ -16,15 +16,16 @@ struct FootState {
   double toes = 0;            ///< upward bend of the toes relative to the foot [rad]
 };
 
-/// Positions of the left and the right hip joint relative to the middle of the pelvis [m]. One entry per key, from the
-/// first key of the track on.
+/// Positions of the left and the right hip joint relative to Joint::hips, in world axes [m]. One
+/// entry per key, from the first key of the track on.
 using HipOffsets = std::vector<std::array<Vec3, 2>>;
 
 /// Computes the paths of both feet and the height of the pelvis, such that knees bend as in human walking.
 ///
-/// The stance leg determines the height of the pelvis from shortly after its strike until shortly before the strike of
-/// the other foot: its knee follows the curve walking::knee. Between these intervals, the height is interpolated. Late
-/// in stance, the foot raises its heel until the knee follows this curve in these gaps, too.
+/// The knee of the stance leg follows the curve walking::knee. From shortly after the strike of
+/// this leg until shortly before the strike of the other foot, the height of the pelvis follows
+/// from this bend. Between these intervals, the height is interpolated. Late in stance, the heel
+/// rises until the knee has the bend of the curve, also between these intervals.
 ///
 /// In swing, knee bend, leg direction and foot pitch are interpolated from toe-off to the strike. At both ends, their
 /// values, velocities and accelerations match those in stance, except for the velocity and acceleration of the knee at

@@ -27,7 +27,8 @@ Vec2 left_of(double yaw) {
   return {std::cos(yaw), std::sin(yaw)};
 }
 
-/// Size of steady steps, relative to those of the recorded walk.
+/// Size of steady steps: step length / leg length, relative to the recorded walk; clamped to 0.5 to
+/// 1.2.
 double step_size(const Physique& body, const Pace& pace) {
   const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
   return std::clamp(pace.step_length / recorded, 0.5, 1.2);

@@ -34,11 +34,12 @@ struct Pace {
   double step_time = 0;    ///< half a stride [s]
 };
 
-/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is the same at all speeds:
-/// 0.0062 m/(steps/min), that of the recorded walk (gait_curves.hpp), scaled by the height. In people it is about
-/// 0.0065 (Sekiya & Nagasaki, "Reproducibility of the walking patterns of normal young adults", 1998) and constant for
-/// speeds from 1.03 m/s on (Murakami & Otaka, "Estimated lower speed boundary at which the walk ratio constancy is
-/// broken", 2017).
+/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is the
+/// same at all speeds: that of the recorded walk (gait_curves.hpp), 0.0062 m/(steps/min) at a
+/// height of 1.70 m, scaled by the height. In people the walk ratio is about 0.0065 m/(steps/min)
+/// (Sekiya & Nagasaki, "Reproducibility of the walking patterns of normal young adults", 1998) and
+/// constant for speeds from 1.03 m/s on (Murakami & Otaka, "Estimated lower speed boundary at which
+/// the walk ratio constancy is broken", 2017).
 Pace pace_of(double speed, double height);
 
 /// Number of keys in a step; always even.

@@ -12,7 +12,7 @@ struct Track {
   int first = 0;
   std::vector<Vec2> place;    ///< middle of the hips [m]
   std::vector<double> yaw;    ///< heading of the body, 0 toward -y, + to the left [rad]
-  std::vector<double> speed;  ///< mean over a step, relative to the steady walking speed
+  std::vector<double> speed;  ///< smoothed over 1.5 steps, relative to the steady walking speed
   std::vector<double> phase;  ///< integer at a strike of the left heel, integer + 0.5 at one of the right
 
   std::size_t index(int key) const { return static_cast<std::size_t>(key - first); }

@@ -60,7 +60,8 @@ std::vector<std::string> words_of(const std::string& name) {
       inside = inside && i + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0;
       continue;
     }
-    // A capital begins a word if it follows or precedes a lower-case letter: "LeftArm", "LHipJoint".
+    // A capital begins a word if the character before it is no capital, or if the one after it is a
+    // lower-case letter: "LeftArm", "LHipJoint".
     const bool after_small = i > start && std::isupper(static_cast<unsigned char>(name[i - 1])) == 0;
     const bool before_small = i + 1 < name.size() && std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
     if (!inside || (std::isupper(c) != 0 && (after_small || before_small))) words.emplace_back();
@@ -113,9 +114,10 @@ bool is_above(std::span<const Node> nodes, Index above, Index node) {
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// Determines the joints of the trunk from the tree. Hips: the node at which legs and spine branch, or a node above it
-/// that is named as the hips. Chest: the node at which the arms branch. Spine: the node halfway between them; of two
-/// middle nodes, the lower one.
+/// Determines the joints of the trunk from the tree. Hips: the node at which legs and spine branch,
+/// or a node above it that is named as the hips. Chest: the node at which the arms branch. Spine:
+/// the node halfway between hips and chest; of two middle nodes, the lower one; -1 if there is no
+/// node between them.
 void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   const auto at = [&](Joint joint) -> Index& { return joints[joint_index(joint)]; };
   Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
@@ -135,7 +137,7 @@ void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   at(Joint::spine) = between.empty() ? -1 : between[between.size() / 2];
 }
 
-/// Whether upper and lower arms and legs are all found; a moving body needs them.
+/// Whether all upper and lower arms and legs are found.
 bool has_all_limbs(const std::vector<Index>& joints) {
   return std::ranges::all_of(
       std::array{Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg},
@@ -146,7 +148,8 @@ bool has_all_limbs(const std::vector<Index>& joints) {
 /// skeleton.
 constexpr std::size_t kMinRigNodes = 15;
 
-/// Minimum length of a prefix without a separator. Shorter ones are shared by chance, or name the sides of a body.
+/// Minimum length of a prefix or suffix without a separator. Shorter ones are shared by chance, or
+/// name the sides of a body.
 constexpr std::size_t kMinPrefixLength = 3;
 
 /// Prefixes that end with a separator and are shared by at least kMinRigNodes nodes, longest first.
@@ -162,8 +165,9 @@ std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
   return prefixes;
 }
 
-/// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes nodes share,
-/// longest first. Omits a prefix if as many nodes share a longer one that begins with it.
+/// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes
+/// names share, longest first. Omits a prefix if a longer one that begins with it is shared by as
+/// many names.
 std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : names)
@@ -279,8 +283,9 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
     for (const BodyPart& part : kSides) joints.push_back(find(side, part));
-    // Resolves ambiguous names: a "shoulder" is the upper arm if no other node is; a "foot" is the toes if there is an
-    // ankle; a "leg" is the lower leg if no other node is.
+    // Resolves ambiguous names. A "shoulder" is the upper arm if no other node is the upper arm. A
+    // "foot" is the toes if there is an ankle. A "leg" is the lower leg if no other node is the
+    // lower leg.
     if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
@@ -292,9 +297,9 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
 
 namespace {
 
-/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Does so only
-/// if at least kMinRigNodes names end with a number and almost all of these numbers differ; numbers of spines and
-/// fingers repeat.
+/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l
+/// knee_048"). Does so only if the names end with at least kMinRigNodes different numbers, and at
+/// most 10 % of the numbers are repetitions. Numbers that rigs give to spines and fingers repeat.
 std::vector<Node> without_numbers(std::vector<Node> nodes) {
   const auto number_of = [](const std::string& name) {
     const std::size_t mark = name.rfind('_');
@@ -315,9 +320,10 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
   return nodes;
 }
 
-/// Finds joints by name. If this fails, removes the affixes of a rig from the names and tries again
-/// ("UnityChan_LeftArm", "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"). If a file has several rigs, selects the one
-/// with most joints that influence skin or move.
+/// Finds joints by name. If not all arms and legs are found, removes the affixes of a rig from the
+/// names and tries again ("UnityChan_LeftArm", "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt").
+/// If several affixes give all arms and legs, as in a file with several rigs, selects the rig with
+/// most joints that influence skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<bool> is_active(character.nodes.size(), false);
   for (const Bone& bone : character.bones) is_active[bone.node] = true;

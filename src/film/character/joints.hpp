@@ -61,11 +61,12 @@ std::string normalise_word(const std::string& name);
 /// Index of a name in joint_names(), compared by normalise_word(); -1 for other names.
 Index joint_number(const std::string& name);
 
-/// For each of joint_names(), the node with that role; -1 if there is none. Finds nodes by the names of common rigs (a
-/// table in joints.cpp). If arms and legs are found, the nodes at which they branch off determine hips, spine and chest
-/// instead. Case, separators, the name of a rig before a colon, and words such as Bip01 or bone are ignored. Several
-/// nodes can have the same name, since meshes can have the names of bones. Then the first active node counts; if none
-/// is active, the first node. `is_active`: per node, whether it influences skin or moves; empty: all are active.
+/// For each of joint_names(), the node with that role; -1 if there is none. Finds nodes by the
+/// names of common rigs (a table in joints.cpp). If both upper arms and both upper legs are found,
+/// the nodes at which they branch off determine hips, spine and chest instead. Case, separators,
+/// the name of a rig before a colon, and words such as Bip01 or bone are ignored. If several nodes
+/// have the same name, the first active one counts; if none of them is active, the first one.
+/// `is_active`: per node, whether it influences skin or moves; empty: all are active.
 std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vector<bool>& is_active = {});
 
 /// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix, such as the name of the

@@ -16,7 +16,7 @@ namespace {
 /// difference occurs near a joint, where weights change gradually and skin may fold onto itself.
 constexpr float kMinWeightDifference = 0.15F;
 
-/// Lines from bone to skin per parallel task, which takes some hundred microseconds.
+/// Lines from bone to skin per parallel task. A task takes some hundred microseconds.
 constexpr std::size_t kLinesPerTask = 512;
 
 /// Number of grid cells along the longest side of the body; the cells of a person have 3 cm.
@@ -26,7 +26,8 @@ constexpr double kCellsPerSide = 60;
 /// otherwise each round halves the missing clearance.
 constexpr int kMaxRounds = 8;
 
-/// Missing clearance that is tolerated at the end, as a fraction of the clearance.
+/// move_skin() ends if no vertex moves by more than this fraction of the clearance in a round,
+/// apart from smoothing.
 constexpr double kMissingTolerance = 0.02;
 
 /// Smoothing passes per round: dents extend over at least this number of edges.
@@ -143,8 +144,9 @@ LimbClearance::LimbClearance(const Rig& rig, const VertexMask& touched, std::vec
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
-// Computes per vertex the length of the part of its line that lies in another limb, minus this length at rest. The line
-// goes from the bone to the skin and is extended by the clearance. `from`: points on the bones. `skin`: unmoved skin,
+// Computes the missing clearance per vertex: the length of its line from the first entry into
+// another limb to the end of the line, minus this length at rest. The line goes from the bone to
+// the skin and is extended by the clearance. `from`: points on the bones. `skin`: unmoved skin,
 // which defines the lines. `x`: present positions of the skin.
 void LimbClearance::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                                  std::vector<MissingClearance>& missing) const {
@@ -190,8 +192,8 @@ void LimbClearance::smooth(std::span<const double> lengths, std::vector<double>&
   }
 }
 
-// Lifts skin out of the ground. Does not lift limbs whose bones are in the ground: the scene intends this, or lifting
-// the skin does not help.
+// Lifts skin out of the ground. Does not lift skin whose points on the bones are in the ground:
+// either the scene intends this, or lifting the skin does not help.
 void LimbClearance::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
@@ -202,8 +204,9 @@ void LimbClearance::lift_from_ground(std::span<const Vec3> from, std::span<Vec3>
     }
 }
 
-// Finds the vertex that moved farthest: first back from `before` to `unlifted`, then up to `x`. `other`: per vertex,
-// the triangle of another limb that made it move back; -1: none, but it may have followed its neighbours.
+// Finds the vertex that moved farthest: first back from `before` to `unlifted`, then up to `x`.
+// `other`: per vertex, the triangle of another limb that made it move back; -1: none, the vertex at
+// most followed its neighbours.
 Moved LimbClearance::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
                               std::vector<Index> other) const {
   Moved moved;

@@ -28,12 +28,13 @@ struct Moved {
   std::string away_from;  ///< the other limb, or "ground" if lifting moved the vertex farther than moving back
 };
 
-/// Moves skin back along the lines from its bones to the skin, to make clearance for cloth. Limbs are upper and lower
-/// arms, upper and lower legs, and the trunk with the head. If cloth is near at least one of two limbs, the skin of
-/// each moves back by at most half of the missing clearance; it moves farther only to follow its neighbours. Skin that
-/// is closer to another limb at rest, as at a common joint, keeps its clearance at rest. Skin that is inside another
-/// limb at rest moves only to follow its neighbours. Skin near cloth is also lifted out of the ground, except that of
-/// feet.
+/// Moves skin back along the lines from its bones to the skin, to make clearance for cloth. Limbs
+/// are upper arms, lower arms with hands, upper legs, lower legs with feet, and the trunk with head
+/// and shoulders. If cloth is near at least one of two limbs, the skin of each limb moves back by
+/// at most half of the missing clearance. Skin moves farther only to follow its neighbours, and
+/// never by more than half of its line. Skin that is closer to another limb at rest, as at a common
+/// joint, keeps its clearance at rest. Skin that is inside another limb at rest moves only to
+/// follow its neighbours. Skin near cloth is also lifted out of the ground, except that of feet.
 class LimbClearance {
  public:
   /// Weight of each limb at a vertex.

@@ -93,7 +93,8 @@ double Loft::value(const Vec3& p) const {
   const double n = s[5];
   const double across = power(u / s[2], n) + power(v / (v > 0 ? s[3] : s[4]), n);
   const double rho_sq = (n == 2 ? across : std::pow(across, 2 / n)) + cap * cap;
-  // On the axis the ray has no direction; the value there is minus the smallest half width or depth.
+  // At the centre the ray has no direction; the value there is minus the smallest half width or
+  // depth.
   const double rho = std::sqrt(rho_sq), length = std::sqrt(u * u + v * v + beyond * beyond);
   return rho < 1e-9 ? -std::min({s[2], s[3], s[4]}) : length * (1 - 1 / rho);
 }
@@ -108,8 +109,8 @@ double BlendedBody::operator()(const Vec3& p) const {
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
   for (const Part& part : parts_) {
-    // A part has no effect if its distance exceeds the blend width plus the present value (for a carved part: minus the
-    // present value).
+    // A part has no effect if its distance exceeds the blend width plus f (for a carved part: minus
+    // f).
     const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
     const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
     double value = nothing;

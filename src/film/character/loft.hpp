@@ -36,7 +36,9 @@ class Loft {
   /// and the last section, > 0 [m].
   Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap);
 
-  /// Distance from p to the surface [m], along the ray from the nearest point of the axis through p; negative inside.
+  /// Distance from p to the surface [m], measured along the ray through p from the centre of the
+  /// cross-section at p; beyond an end, from the centre of the section at this end. Negative
+  /// inside.
   double value(const Vec3& p) const;
 
   const Box3& bounds() const { return bounds_; }

@@ -31,9 +31,9 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
   };
 }
 
-/// Wanted edge length: shorter where the body is thin or strongly curved (arms, hands, shins, feet, neck, head, between
-/// the legs and under the arms). In coarse bodies, kMaxHandEdge limits the edge length of face and fingers, so that
-/// they keep their shape.
+/// Wanted edge length: shorter where the body is thin or strongly curved (arms, hands, shins, feet,
+/// neck, head, between the legs and under the arms). In coarse bodies, kMaxHandEdge limits the edge
+/// length of head and hands, so that face and fingers keep their shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
   const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kMaxHandEdge * unit);
   const double wrist = joints[joint_index(Joint::left_hand)].x(),

@@ -11,7 +11,7 @@ namespace weft::character {
 /// Build of a mannequin. The mannequin stands on z = 0 with z up, faces -y and has its left side at x > 0.
 struct MannequinBuild {
   double height = 1.75;       ///< [m]
-  double girth = 1;           ///< factor on widths and depths, except of head, hands and feet; 0.9 to 1.3
+  double girth = 1;           ///< factor on widths and depths, except head, hands, feet; 0.8 to 1.5
   double masculinity = 0;     ///< 0: waist, hips and bust of a woman; 1: shoulders, chest and waist of a man
   double edge_length = 0.02;  ///< edge length of the triangles [m]; shorter where the body is thin or strongly curved
 };
@@ -19,8 +19,9 @@ struct MannequinBuild {
 /// Positions of the joints at rest [m]: arms 45° from the vertical, legs slightly apart.
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build);
 
-/// Makes the body: closed, exactly symmetric (bit for bit), with at most four influences per vertex. Nodes and bones
-/// are the joints in their order; at rest, the axes of all nodes are those of the world.
+/// Makes the body: closed, exactly symmetric (bit for bit), with at most four influences per
+/// vertex. Nodes and bones have the order of Joint; at rest, the axes of all nodes are those of the
+/// world.
 Character make_mannequin(const MannequinBuild& build);
 
 }  // namespace weft::character

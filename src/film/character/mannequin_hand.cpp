@@ -18,9 +18,9 @@ constexpr Finger kRelaxedFingers[] = {
     {66.3, -2.35, 3.8, 3.5, 0.82, 19, 28},
 };
 constexpr double kPlateRoot = 16,
-                 kPlateTip = 41;  ///< bends of the plates between fingers, means of the fingers [degrees]
+                 kPlateTip = 41;  ///< bends of the plates [degrees]: means over the fingers
 constexpr double kClosing =
-    0.040;  ///< convergence of a finger per distance from the middle [1/cm]; fingers touch up to the tips
+    0.040;  ///< slope of a finger toward the middle of the hand per distance from the middle [1/cm]
 
 /// Adds a rod with round ends.
 void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& along, const Vec3& across, double length,

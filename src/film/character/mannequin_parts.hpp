@@ -34,8 +34,9 @@ void add_head(BlendedBody& body, const Scale& scale);
 /// Adds the hand of the arm with the frame `arm`, whose origin is the shoulder, and its mirror image.
 void add_hand(BlendedBody& body, const Scale& scale, const LoftFrame& arm);
 
-/// Distance from the hairline, negative inside the hair, on a body of the height kTableHeight [cm]. The hairline is the
-/// same on both sides of the head. `backward`: the y coordinate.
+/// Distance from the hairline, negative inside the hair, on a body of the height kTableHeight [cm].
+/// The hairline is the same on both sides of the head. `backward`, `up`: the y and the z
+/// coordinate.
 double hairline_distance(double backward, double up);
 
 /// Centre of the knot of hair (backward, up) and its approximate radius [cm].

@@ -132,7 +132,7 @@ void add_foot(BlendedBody& body, const Scale& s, const Vec3& ankle) {
   frame.along = Vec3(std::sin(out), -std::cos(out), 0);
   frame.u = Vec3(std::cos(out), std::sin(out), 0);
   frame.v = Vec3::UnitZ();
-  // In these rows, the depth to the front is the height above the centre, that to the back the height below it.
+  // In these rows, the fifth value is the height above the centre, the sixth the height below it.
   const Rows rows{{-3.0, 0, 2.6, 2.7, 4.0, 3.4, 2.3},   {0, 0, 2.6, 3.0, 5.4, 3.4, 2.2},
                   {4, 0.1, 2.4, 3.2, 4.9, 3.2, 2.2},    {8, 0.2, 2.1, 3.7, 3.8, 2.9, 2.2},
                   {12, 0.1, 1.7, 4.3, 2.7, 2.5, 2.3},   {15, 0, 1.5, 4.4, 1.9, 2.2, 2.4},

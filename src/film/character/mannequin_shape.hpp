@@ -9,7 +9,7 @@ namespace weft::character {
 /// Body height that the tables refer to [cm].
 inline constexpr double kTableHeight = 175;
 
-/// The body as a field [m], negative inside.
+/// The body as a field [m], negative inside. Its feet reach below the floor, z = 0.
 BlendedBody mannequin_body(const MannequinBuild& build);
 
 }  // namespace weft::character

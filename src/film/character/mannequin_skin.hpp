@@ -11,7 +11,7 @@ namespace weft::character {
 std::array<double, kJointCount> mannequin_weights(const std::array<Vec3, kJointCount>& joints, double height,
                                                   const Vec3& p);
 
-/// From 0 at `low` to 1 at `high`, twice continuously differentiable.
+/// Smooth step: 0 up to `low`, 1 from `high` on; twice continuously differentiable.
 double smooth_ramp(double x, double low, double high);
 
 }  // namespace weft::character

@@ -21,9 +21,14 @@ double clip_time(const Timing& timing, double t);
 
 struct Playing {
   Timing timing;
-  bool loop = false;  ///< repeats the clip; each repetition (round) continues the horizontal travel of the one before
-  double crossfade = 0;  ///< overlap in which a round blends into the next [s of clip time]; at most half of the clip
-  std::optional<Pose> stance = {};  ///< pose until `motion_start`, then blended into the clip; absent: that at `start`
+  /// Repeats the clip. Each repetition (round) continues the horizontal travel of the one before.
+  bool loop = false;
+  /// Overlap in which a round blends into the next [s of clip time]; at most half of the clip is
+  /// used.
+  double crossfade = 0;
+  /// Pose until `motion_start`, then blended into the clip within Timing::blend; absent: the pose
+  /// of the clip at Timing::start.
+  std::optional<Pose> stance = {};
 };
 
 /// The poses of a body that plays a clip in a scene.
@@ -45,7 +50,8 @@ class Performance {
   Affine parent_of_root(const Pose& pose) const;
   /// Translates a pose by the vector `by` in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
-  /// Horizontal displacement of the clip from pose a to pose b, in the world [m].
+  /// Horizontal displacement of `root_` from pose a to pose b, in the world [m]; zero if there is
+  /// no root.
   Vec3 displacement_between(const Pose& a, const Pose& b) const;
 
   const Character& character_;
@@ -58,7 +64,8 @@ class Performance {
   Vec3 shift_{0, 0, 0};   // horizontal displacement that moves the start of the clip to the position of `stance` [m]
 };
 
-/// Keys per second of the channel with the most keys; 0 for a clip that does not move.
+/// Mean rate of the keys of the channel with the most keys: (keys - 1) / duration [1/s]; 0 if the
+/// duration is 0.
 double key_rate(const Clip& clip);
 
 }  // namespace weft::character

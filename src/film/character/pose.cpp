@@ -9,7 +9,7 @@
 namespace weft::character {
 namespace {
 
-/// Vertices per parallel task, which takes some hundred microseconds.
+/// Vertices per parallel task. A task takes some hundred microseconds.
 constexpr std::size_t kVerticesPerTask = 2048;
 
 Vec3 between(const Vec3& a, const Vec3& b, double weight) {

@@ -18,8 +18,9 @@
 namespace weft::character {
 namespace {
 
-/// Skeletons are the same if their joint positions differ by less than this fraction of the sum of all bone lengths (3
-/// mm in an adult). They face the same way if the rotations above the hips differ by less than kSameAngle [rad].
+/// Skeletons are the same if no joint position differs by more than kSameLength times the sum of
+/// all bone lengths (3 mm in an adult). They face the same way if the rotations above the hips
+/// differ by at most kSameAngle [rad].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
 /// Largest joint angles without a warning [degrees], with a margin for noise and for limbs that are pushed. People bend
@@ -86,7 +87,7 @@ bool same_skeleton(const Rig& a, const Rig& b) {
   return size_b > 0;
 }
 
-/// World rotation of the parent of the hips.
+/// World rotation of the parent of the hips at rest.
 Quat rotation_above_hips(const Rig& rig) {
   const Index above = rig.character.nodes[rig.joints[joint_index(Joint::hips)]].parent;
   const Pose rest = rest_pose(rig.character);
@@ -338,7 +339,6 @@ class Retargeter {
     lower = (turns.lower * lower).normalized();
   }
 
-  /// Moves hands as near to other parts of the body as they are in the motion.
   void keep_hands_near(std::vector<Frame>& frames) const {
     double trunk = 0;  // largest length of the trunk in the motion [m]
     for (const Posture& posture : postures_) trunk = std::max(trunk, theirs_.trunk(posture).norm());
@@ -446,7 +446,7 @@ class Retargeter {
     }
   }
 
-  /// Warns if the rest pose of the body does not stand upright, since all its rotations are relative to this pose.
+  /// Warns if a knee is bent in the rest pose of the body: all rotations are relative to this pose.
   void check_rest(std::vector<std::string>& warnings) const {
     double largest = 0;
     for (const bool right : {false, true}) {
@@ -471,7 +471,7 @@ class Retargeter {
   const Posture rest_;
   const std::vector<double> times_;
   std::vector<Posture> postures_;  // of the motion, at `times_`
-  double ratio_ = 1;               // ratio of lengths, body / motion
+  double ratio_ = 1;               // ratio of leg lengths, body / motion; 1: unknown
   bool same_ = false;              // whether both skeletons are the same
   Footsteps steps_;
   std::array<double, 2> toe_length_{};    // [m]

@@ -15,8 +15,9 @@ constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.
 // An arm that is bent by less than the first angle hangs; by more than the second, it reaches for something [rad].
 constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
 
-// A hand rests on the hips if it moves relative to them by less than kMaxRestMotion [arm lengths] within kRestTime [s]
-// before and after: 5 cm in 0.2 s. In walking and running, hands move by 20 to 60 cm in this time.
+// A hand rests on the hips if it moves relative to them by less than kMaxRestMotion [arm lengths]
+// within kRestTime [s] before and after: 5 cm within 0.1 s to either side. In walking and running,
+// hands move by 20 to 60 cm in 0.2 s.
 constexpr double kMaxRestMotion = 0.09, kRestTime = 0.1;
 
 class HandDisplacement {
@@ -44,9 +45,10 @@ class HandDisplacement {
   }
 
  private:
-  /// Adds the displacement that restores the position of the hand relative to a target: the point at `fraction` of the
-  /// way from joint `a` to joint `b`. `distance`: see kHandsDistance. `ratio`: scales the offset from the target to the
-  /// body.
+  /// Adds the displacement that restores the position of the hand relative to a target: the point
+  /// at `fraction` of the way from joint `a` to joint `b`. `distance`: see kHandsDistance. `ratio`:
+  /// factor on the offset of the hand from the target, body / motion. `max_weight`: weight within
+  /// `distance`.
   void add_target(std::size_t a, std::size_t b, double fraction, double distance, double ratio, double max_weight = 1) {
     if (!both_[a] || !both_[b] || !(distance > 0)) return;
     const auto place = [&](const Places& of) -> Vec3 { return (1 - fraction) * of[a] + fraction * of[b]; };

@@ -17,14 +17,16 @@ struct Proportions {
   double their_arm = 0;  ///< length of the arm of the motion, from shoulder to wrist [m]
 };
 
-/// Displacements of the left and the right hand [m]. They move each hand to its position in the motion, scaled to the
-/// body, relative to three targets: the other hand, the other elbow and the hips. The displacement by a target applies
-/// fully up to a distance of 7 to 22 cm (touching.cpp), then fades, and vanishes at twice that distance. Since it is a
-/// continuous function of all positions, contact intervals need not be detected. The hips are a target only if
-/// the hand rests on them and the arm is bent, not hanging. `theirs`: joints of the motion, rotated to the heading of
-/// the body. `ours`: joints of the body. `both`: joints that both skeletons have; a hand moves only if the hand,
-/// lower-arm and upper-arm joints of its side are among them. `rests`: weight, 0 to 1, of each hand resting on the
-/// hips.
+/// Displacements of the left and the right hand [m]. They move each hand to its position in the
+/// motion, scaled to the body, relative to three targets: the other hand, the other elbow and the
+/// hips. The displacement by a target applies fully if the wrist of the motion is within a limit of
+/// the target: 7 to 22 cm for an arm of 0.55 m (touching.cpp). Beyond, the displacement fades, and
+/// it vanishes at twice the limit. Since it is a continuous function of all positions, contact
+/// intervals need not be detected. The hips are a target only if the hand rests on them and the arm
+/// is bent, not hanging. `theirs`: joints of the motion, rotated to the heading of the body.
+/// `ours`: joints of the body. `both`: joints that both skeletons have; a hand moves only if the
+/// hand, lower-arm and upper-arm joints of its side are among them. `rests`: weight, 0 to 1, of
+/// each hand resting on the hips.
 std::array<Vec3, 2> displace_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
                                    const Proportions& proportions, const std::array<double, 2>& rests);
 

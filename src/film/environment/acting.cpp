@@ -40,7 +40,7 @@ constexpr double kDressingRate = 25;
 /// Maximum size of the key frames of one character [bytes]. A larger one suggests a mistyped rate.
 constexpr std::size_t kMaxKeyFrameBytes = std::size_t{8} << 30;
 
-/// Maximum jump of a vertex from the end to the start of a clip that is not visible [m].
+/// Maximum jump of a vertex from the end of a loop to its start without a warning [m].
 constexpr double kMaxInvisibleGap = 1e-3;
 
 /// Maximum relative difference of feet and body speed without a warning: feet slide 5 cm in a step of 0.7 m.
@@ -125,7 +125,8 @@ character::Clip travel(const Cast& cast, const scene::SkeletonMotion& acting, co
   return std::move(traveled.clip);
 }
 
-/// Moves the soles of a body to the height of its file's origin, so that a retargeted motion walks on the floor.
+/// Moves soles that are kMaxSoleOffset or more off the height of the file's origin to this height,
+/// so that a retargeted motion walks on the floor.
 void put_on_floor(const Cast& cast, Body& body) {
   const Vec3 up = cast.up();
   std::vector<Vec3> x(body.character.mesh.positions.size());
@@ -197,7 +198,6 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
   return body;
 }
 
-/// Makes a body, with its clip if it plays one.
 template <class Source>
 Body make_playing_body(const Cast& cast, const Source& source) {
   Body body = make_body(cast, source);
@@ -255,7 +255,7 @@ KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kMinKeyRate, kMaxKeyRate));
   if (!settings.keys_per_second && (grows || changes_stance)) times.rate = std::max(times.rate, kDressingRate);
   times.first = static_cast<long>(std::floor((grows ? begin : cast.motion_start()) * times.rate));
-  // Adds a key after the end, so that the velocity at the end is defined.
+  // From the last key on, a body stands still: adds a key after the end, so it moves until then.
   const double end = moves ? duration : begin + settings.grow;
   times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
   return times;

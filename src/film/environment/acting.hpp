@@ -49,21 +49,22 @@ struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0 [m]
   KeyFrames keys;            ///< of the vertices, followed (if the body has bones) by the points of all FollowerPoints
   std::vector<Part> parts;   ///< see parts_of() (body_parts.hpp)
-  std::vector<Index> limbs;  ///< per vertex, by shells_of_limbs(); of a sequence of meshes: connected components
+  std::vector<Index> limbs;  ///< per vertex: shells_of_limbs() or, for mesh sequences, component
   std::vector<std::string> warnings;
   std::vector<std::string> notes;                                 ///< changes made to the body, for the summary
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< from its file; null if the file has none
 };
 
-/// Reads the files of a character and computes its key frames. They begin when the character begins to grow or move.
-/// They end at the end of the scene or, if the character only grows, when it has grown. A character that does neither
-/// has one key. If a body with bones plays a clip, its skin leaves space for `cloths` near it
-/// (character::LimbClearance). Throws Error(asset_unreadable, scene_invalid) that names the scene line, the file, and
-/// the mesh, bone or clip.
+/// Reads the files of a character and computes its key frames. The first key is at or just before
+/// the time at which the character begins to grow or move. The last key is just after the end of
+/// the scene or, if the character only grows, just after it has grown. A character that does
+/// neither has one key. If a body with bones plays a clip, its skin leaves space for `cloths` near
+/// it (character::LimbClearance). Throws Error(asset_unreadable, scene_invalid) that names the
+/// scene line, the file, and the mesh, bone or clip.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowerPoints> following = {}, std::span<const ClothAtStart> cloths = {});
 
-/// A body with bones at the start of a run, before the preroll.
+/// A body with bones at the start of the run, which is the start of the preroll.
 struct StandingBody {
   mesh::Mesh mesh;                          ///< in the world [m]
   std::vector<std::optional<Vec3>> joints;  ///< positions of joint_names() in the world [m]; absent: unknown

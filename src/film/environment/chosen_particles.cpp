@@ -20,7 +20,7 @@ namespace {
 
 using model::WeightedParticle;
 
-// Minimum fraction of a particle that counts: half a level of an 8-bit picture.
+// Minimum fraction at which a particle belongs to a region: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
 // Minimum fraction at which a pin without a strength holds a particle. Such a pin holds its particles fully.
 constexpr double kMinHeldFraction = 0.5;
@@ -225,8 +225,8 @@ class RestDistances {
       neighbours_;  // per particle: its neighbours and their distances [m]
 };
 
-/// Text that proposes other bounds for a region that lies between two rows of particles. Empty if the region is not
-/// given by bounds alone.
+/// Text that proposes other bounds for a region that holds no particle, such as one between two
+/// rows of particles. Empty if the region is not given by bounds alone.
 std::string nearest_row(const scene::ClothPart& part, const ClothDetails& details) {
   if (!part.panel.empty() || !part.edge.empty() || part.mask || part.vertex_color != scene::VertexColor::none ||
       !part.vertex_group.empty() || details.fractions.empty())

@@ -10,10 +10,12 @@
 
 namespace weft::environment {
 
-/// Adds pins (without their motion), weights and attachments to a cloth whose rest shape is already made. `file`: the
-/// data of the mesh file; empty for cloth without one. Throws Error(scene_invalid) for a region that holds no particle,
-/// and for a panel, an edge, UVs, colours or a group that the cloth does not have. The message begins with `where` or,
-/// for attachments, with the scene file and their name.
+/// Adds pins (without their motion), weights and attachments to a cloth whose rest shape is already
+/// made. `file`: the data of the mesh file; empty for cloth without one. Throws
+/// Error(scene_invalid) for a region that holds no particle, and for a panel, an edge, UVs, colours
+/// or a group that the cloth does not have. The message begins with `where` or, for attachments,
+/// with the scene file and their name. Throws Error(asset_unreadable) for a mask that cannot be
+/// read.
 void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
                       const std::string& where, MadeCloth& made);
 

@@ -16,9 +16,10 @@ std::vector<character::Ground> static_grounds(const Cast& cast);
 /// Height of the lowest of the points `x` over the ground [m].
 double height_over(const character::Ground& ground, std::span<const Vec3> x);
 
-/// Clearance between limbs [m]: `room` of the character. Without this key: what the thickest cloth of the scene needs,
-/// but 0 for characters that do not collide, and for the mannequin without a motion file, whose walk keeps the arms off
-/// the body.
+/// Clearance between limbs [m]: `room` of the character. Without this key: kLayersBetweenLimbs
+/// (clearance.cpp) times the largest contact thickness of the cloths, but 0 for characters that do
+/// not collide, and for the mannequin without a motion file, whose walk keeps the arms off the
+/// body.
 double clearance_between_limbs(const Cast& cast);
 
 /// Nearness of cloth to each point of the skin: 1 up to a distance of 2.5 cm, then falling linearly to 0 at 5 cm.

@@ -9,8 +9,9 @@
 
 namespace weft::environment {
 
-/// Makes the mass, inertia, start velocities and release time of an obstacle with a mass or a density. `mesh`: of the
-/// obstacle. Throws Error(scene_invalid) if the mesh encloses no volume.
+/// Makes the mass, inertia, start velocities and release time of an obstacle with a mass or a
+/// density. `mesh`: of the obstacle. Throws Error(scene_invalid) if the mesh has a border or
+/// encloses no volume.
 std::shared_ptr<const model::Dynamics> make_dynamics(const scene::Scene& scene, const scene::Obstacle& obstacle,
                                                      const mesh::Mesh& mesh);
 

@@ -18,8 +18,9 @@
 namespace weft::environment {
 namespace {
 
-/// Makes the mesh of an obstacle in its own coordinates. Boxes have their sizes along the axes of the scene, and files
-/// their own orientation; the axes of other shapes follow the up axis.
+/// Makes the mesh of an obstacle in its own coordinates. Boxes have their sizes along the axes of
+/// the scene. Cones, tori, cylinders, half pipes and planes are turned to the up axis. axes_of()
+/// gives the axes of files.
 struct MakeMesh {
   const scene::Scene& scene;
   const scene::Obstacle& obstacle;

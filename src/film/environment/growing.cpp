@@ -60,8 +60,9 @@ std::vector<Opening> openings_of(const model::Cloth& cloth, const garment::Weare
   return openings;
 }
 
-/// Angle from hanging at which straight arms point through the sleeves [degrees], as a mean over both sides. The end of
-/// a sleeve is an opening beside the shoulder and above the hips. Absent if there is no such opening on both sides.
+/// Angle from hanging at which straight arms point through the sleeves [degrees], as a mean over
+/// both sides. The end of a sleeve is an opening beside the shoulder and above the hips. Absent if
+/// one side has no such opening or no arm joints.
 std::optional<double> angle_of_sleeves(const model::Cloth& cloth, const garment::Wearer& wearer) {
   double sum = 0;
   const std::vector<Opening> openings = openings_of(cloth, wearer);
@@ -96,8 +97,9 @@ bool is_pierced_by_arm(const model::Cloth& cloth, const garment::Wearer& wearer)
   return false;
 }
 
-/// The number of the character that wears a garment; absent if the garment is not from a pattern or not untangled, or
-/// if the character has no bones, no `dressing`, or would still grow at frame 0.
+/// The number of the character that wears a garment. Absent if the garment is not from a pattern or
+/// not untangled, if it names no wearer and there are several characters, or if the character has
+/// no bones, no `dressing`, or would still grow at frame 0.
 std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (cloth.shape != scene::ClothShape::pattern || !scene::starts_untangled(cloth)) return std::nullopt;
   for (std::size_t c = 0; c < scene.characters.size(); ++c) {

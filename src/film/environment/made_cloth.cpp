@@ -76,9 +76,9 @@ void use_triangles(mesh::Mesh mesh, MadeCloth& made) {
   made.cloth.mesh = std::move(mesh);
 }
 
-/// Makes cloth from a pattern. A garment stands upright; it is made where its wearer stands if it is fitted to the
-/// wearer or has panels around parts of the wearer. made.details.fractions: position in the bounding box of the
-/// garment, from 0 to 1 across and up.
+/// Makes cloth from a pattern. A garment stands upright; it is made where its wearer stands if it
+/// is fitted to the wearer or has panels around parts of the wearer. made.details.fractions:
+/// position in the bounding box of Garment::sheet.rest, from 0 to 1 along x and z.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);

@@ -17,7 +17,8 @@ namespace weft::environment {
 
 /// Data of a cloth that are not in the simulated model.
 struct ClothDetails {
-  std::vector<Vec2> fractions;  ///< per particle: position in the rest shape, 0 to 1, see make_cloth()
+  /// Per particle: relative position in the cloth, 0 to 1, see make_cloth().
+  std::vector<Vec2> fractions;
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern: particles by "panel.edge"
   std::vector<std::string> panels;                  ///< of a pattern: names
   std::vector<std::int32_t> panel_of;               ///< of a pattern: panel number of each triangle
@@ -28,8 +29,8 @@ struct ClothDetails {
   std::vector<std::string> warnings;
 };
 
-/// A cloth made from its table in the scene alone. Environment then fills in `put_on`, `over`, and the bodies and
-/// motions of its pins.
+/// A cloth made from its table in the scene and, for some patterns, from the body of its wearer.
+/// Environment then fills in `put_on`, `over`, and the bodies and motions of its pins.
 struct MadeCloth {
   model::Cloth cloth;
   ClothDetails details;
@@ -45,8 +46,9 @@ mesh::Grid grid_of(const scene::Cloth& cloth);
 /// other cloths likewise.
 void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 
-/// Makes a cloth as it is at the start. ClothDetails::fractions are along weft and warp for rectangular cloths, in the
-/// (x, y) bounding box for mesh files, across and up in the bounding box for patterns, and along a rope, with 0.5 as
+/// Makes a cloth as it is at the start. ClothDetails::fractions are along weft and warp for
+/// rectangular cloths, along x and y in the bounding box for mesh files, along x and z in the
+/// bounding box of the start shape (garment::Garment) for patterns, and along a rope, with 0.5 as
 /// the second value. Throws Error(asset_unreadable, scene_invalid) with the scene line.
 MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
 

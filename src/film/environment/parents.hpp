@@ -9,9 +9,10 @@
 
 namespace weft::environment {
 
-/// A follower of a part of a character is represented by a frame: an origin, the start position of the follower, and
-/// three points at this distance from it along the axes [m]. The distance is so small that all four points follow the
-/// same skin.
+/// A frame represents a follower (an obstacle or a camera) of a part of a character. The frame has
+/// an origin, which is the start position of the follower, and three points at this distance from
+/// the origin along the axes [m]. The distance is so small that all four points follow the same
+/// skin.
 inline constexpr double kFrameAxis = 1e-3;
 
 /// The rigid motion closest to that of a frame whose origin is the vertex `first` and whose points are the next three

@@ -115,8 +115,9 @@ struct PlaceOnShape {
     return around(s.radius, 2 * kPi * s.tube_radius,
                   [&](const Vec3& x) { return (0.5 + turn_of(x, at_middle)) * upward; });
   }
-  /// The width of the picture runs along the pipe, its height around the pipe (on the inside from the front rim to the
-  /// back rim). The ends of the pipe are treated as sides of a box.
+  /// The width of the picture runs along the pipe, its height around the pipe (on the inside from
+  /// the front rim to the back rim). The ends and the rims of the pipe are treated as sides of a
+  /// box.
   Places operator()(const scene::HalfPipe& s) const {
     const Vec3 middle = corners.middle();
     const double outside = s.radius + s.thickness,

@@ -15,7 +15,7 @@ constexpr double kMinHeight = 0.3, kMaxHeight = 3, kUsualHeight = 1.7;
 constexpr int kMaxIdleNodes = 3;
 // Maximum speed of a body without a warning [m/s]. People run at 3 to 6; only sprinters over 100 m reach 10.
 constexpr double kMaxSpeed = 9;
-// Maximum distance of feet from the floor that is not visible [m].
+// Maximum distance of the lowest point of a body from the floor without a warning [m].
 constexpr double kMaxFloorDistance = 0.05;
 
 }  // namespace

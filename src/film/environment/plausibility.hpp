@@ -16,7 +16,8 @@ namespace weft::environment {
 /// accepted.
 std::optional<std::string> warn_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool scale_given);
 
-/// Warns if all skin of a body is bound to one node, although the clip turns more than three nodes that do not move it.
+/// Warns if all skin of a body is bound to one node, although the clip turns more than three nodes
+/// that do not move the skin.
 std::optional<std::string> warn_of_missing_skin(const character::Character& body, const character::Clip& clip);
 
 /// Warns of an implausible speed of the mean position of the vertices of a body. `vertices`: their number; in `keys`,
@@ -25,9 +26,9 @@ std::optional<std::string> warn_of_missing_skin(const character::Character& body
 std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double begin, double rate, std::size_t count,
                                          std::size_t vertices);
 
-/// Warns if a body is more than 5 cm inside the only floor in at least half of the key frames or, if `alone`, more than
-/// 5 cm above it in all of them. `lowest`: height of its lowest vertex over the floor at each key frame [m]. `alone`:
-/// whether there is no other obstacle to stand on.
+/// Warns if a body is more than 5 cm below the only floor in more than half of the key frames or,
+/// if `alone`, more than 5 cm above it in all of them. `lowest`: height of its lowest vertex over
+/// the floor at each key frame [m]. `alone`: whether there is no other obstacle to stand on.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone);
 
 }  // namespace weft::environment

@@ -17,7 +17,8 @@ class Wearers {
   /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
   /// names no wearer and there are several characters, or if the wearer lacks bones or the joints that define its axes.
   const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
-  /// The character of this name, which must exist. Throws Error(scene_invalid) if it lacks bones or these joints.
+  /// The character of this name, which must exist. Throws Error(scene_invalid) if it lacks bones,
+  /// or has neither two UpperLeg joints nor two UpperArm joints.
   const garment::Wearer& of(const std::string& name, const std::string& where);
 
  private:

@@ -12,12 +12,13 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kStrands = 3;
 constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the grooves between strands [radii of the rope]
-// A ring is a cross-section of the tube: a polygon. Its number of sides for ropes with strands, and without strands.
+// A ring is a polygon: a cross-section of the tube. kSidesOfStrands: its number of sides for ropes
+// with strands; kSidesOfCord: for ropes without strands.
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
 constexpr int kRingsPerStrandTurn = 8;
 constexpr int kMaxRingsPerPiece = 12;
-// Maximum number of rings of a rope with strands. If the strands need more, they are too fine to be visible: the rope
-// is drawn without strands.
+// Maximum number of rings of a rope with strands. If the strands need more rings, they are too fine
+// to be visible, and the rope is drawn without strands.
 constexpr std::size_t kMaxRings = 8000;
 
 bool is_closed(const Surface& chain) {
@@ -41,7 +42,8 @@ Vec3 transport_normal(const Vec3& normal, const Vec3& x, const Vec3& tangent, co
   return d > 0 ? Vec3(n - 2 / d * w.dot(n) * w) : n;
 }
 
-// Triangles between neighbouring rings. The ends of an open tube are closed by triangles to a vertex in their middle.
+// Triangles between neighbouring rings. Triangles to a vertex in the middle of each end close an
+// open tube.
 std::vector<std::array<Index, 3>> tube_faces(Index rings, Index sides, bool closed) {
   std::vector<std::array<Index, 3>> faces;
   const auto vertex = [&](Index ring, Index side) { return ring % rings * sides + side % sides; };
@@ -127,9 +129,10 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
   for (std::size_t r = 1; r < middles.size(); ++r)
     normals.push_back(transport_normal(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
 
-  // `turn`: angle by which the strands wind around the rope from its start to its end [rad]. On a closed rope, the last
-  // ring must continue in the first one. Therefore, `turn` is then a number of whole turns plus `off`, the angle from
-  // the normal transported around the whole rope to the first normal.
+  // `turn`: angle by which the strands wind around the rope from its start to its end [rad]. On a
+  // closed rope, the strands must continue from the last ring to the first. `turn` is then a number
+  // of whole turns plus `off`, the angle from the normal that is transported around the whole rope
+  // to the first normal.
   const double lay = look.thread_spacing, length = tube.chain->uv[1].x() * pieces;
   const bool has_strands = tube.sides == kSidesOfStrands && lay > 0;
   double turn = has_strands ? kTurn * length / lay : 0;

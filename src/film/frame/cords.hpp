@@ -8,15 +8,16 @@
 
 namespace weft::frame {
 
-/// Whether a surface is the chain of particles of a rope. Such a surface has one triangle (a, b, b) for each piece of
-/// the rope, from particle a to particle b. In its appearance, `thickness` is the diameter of the rope, and
-/// `thread_spacing` is the lay length of its strands (0: a round cord without strands).
+/// Whether a surface is a chain: the particles of a rope, with one triangle (a, b, b) for each
+/// piece of the rope, from particle a to particle b. In the appearance of a chain, `thickness` is
+/// the diameter of the rope, and `thread_spacing` is the lay length of its strands (0: a round cord
+/// without strands).
 inline bool is_chain(const Surface& surface) {
   return surface.kind == ObjectKind::rope && surface.appearance.thickness > 0;
 }
 
-/// Sweeps tubes along Catmull-Rom splines through the particles of chains (see is_chain()). A tube has the same
-/// triangles in all frames. Not thread-safe.
+/// Sweeps a tube along the Catmull-Rom spline through the particles of each chain (see is_chain()).
+/// A tube has the same triangles in all frames. Not thread-safe.
 class Cords {
  public:
   /// Returns the snapshot with tubes in place of chains, or `snapshot` itself if it has no chains.

@@ -1,4 +1,5 @@
-// The data of one frame. The renderer, the mesh writer and the frame cache get nothing else from the simulation.
+// The data of one frame: all data that the renderer, the mesh writer and the frame cache get from
+// the simulation.
 #pragma once
 
 #include <algorithm>
@@ -23,18 +24,19 @@ struct ObjectInfo {
   std::size_t vertices = 0, faces = 0;
 };
 
-/// A picture for surfaces: top row first, four bytes (R, G, B, A) per pixel, sRGB colours, alpha not premultiplied.
+/// A picture for surfaces.
 struct Texture {
   int width = 0, height = 0;  ///< [pixels], at least 1
-  std::vector<std::uint8_t> rgba;
+  std::vector<std::uint8_t> rgba;  ///< R, G, B, A of each pixel, top row first; sRGB, alpha not
+                                   ///< premultiplied
 };
 
 /// A picture on a surface, and how it is mapped and blended.
 struct Paint {
-  /// How the picture continues beyond its edge. once: not at all; the area beyond is transparent.
+  /// How the picture continues beyond its edge. once: it does not; the area beyond is transparent.
   enum class Wrap { repeat, clamp, mirror, once };
-  /// ignored: the whole picture is opaque. over_color: transparent parts show the colour of the surface. cutout:
-  /// transparent parts are holes in the surface.
+  /// Effect of the alpha channel. ignored: the whole picture is opaque. over_color: transparent
+  /// parts show the colour of the surface. cutout: transparent parts are holes in the surface.
   enum class Alpha { ignored, over_color, cutout };
   std::shared_ptr<const Texture> texture;
   /// Maps (u, v, 1) of the surface to coordinates of the picture: 0 to 1 from left to right and from bottom to top.
@@ -55,19 +57,23 @@ struct Finish {
 /// The appearance of a surface. Colours are sRGB, 0 to 1.
 struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
-  Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: colour of the side away from weft × warp
+  Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: colour of the side opposite to weft × warp
   double roughness = 0.6;          ///< from 0 (mirror-like) to 1 (matte)
-  double thread_spacing = 0;       ///< distance of drawn threads, or lay length of a rope [m]; 0: no threads or strands
+  double thread_spacing = 0;       ///< distance between drawn threads, or lay length of a rope [m];
+                                   ///< 0: no threads or strands
   Finish finish;                   ///< cloth only
-  double metal = 0;                ///< not for cloth: fraction of metal; at 1, all light is reflected, in `color`
-  double coat = 0;                 ///< not for cloth: strength of a clear coat, from 0 to 1 (reflects like glass)
+  double metal = 0;                ///< not for cloth: from 0 (no metal) to 1 (metal, which reflects
+                                   ///< in `color`)
+  double coat = 0;                 ///< not for cloth: strength of a clear coat, from 0 to 1 (as
+                                   ///< glass)
   double thickness = 0;            ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
   double hem = 0;                  ///< width of the folded and sewn borders of cloth [m]; 0: cut borders without hem
   bool checker = false;            ///< faint checkerboard of 0.5 m tiles on the floor, which shows the scale
-  /// The picture covers `color` if its alpha is over_color, or if its alpha is ignored and it wraps `once`. Else it is
-  /// multiplied by `color`.
+  /// If the picture's alpha is over_color, or if its alpha is ignored and its wrap is `once`, the
+  /// picture covers `color`. Otherwise, the picture is multiplied by `color`.
   Paint paint;
-  /// true: the back of cloth shows the picture too, paler by `back_paleness`; false: the back has `back_color`.
+  /// Whether the back of cloth shows the picture, too, paler by `back_paleness`. If false, the back
+  /// has `back_color`.
   bool back_painted = true;
   double back_paleness = 0;  ///< from 0 (as the front) to 1 (white)
 };
@@ -75,34 +81,40 @@ struct Appearance {
 /// A group of triangles of a surface with its own appearance: a panel of a garment, a material of a character's file.
 struct SurfacePart {
   std::string name;
-  Appearance appearance;  ///< its roughness, threads and checker equal those of the surface
+  Appearance appearance;  ///< its colours and picture are drawn; all other properties are those of
+                          ///< the surface
 };
 
-/// The constant data of an object over a run, shared by all snapshots.
+/// The data of an object that do not change in a run. All snapshots share them.
 struct Surface {
   std::string name;
   ObjectKind kind = ObjectKind::cloth;
   bool visible = true;
   bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon; computed cameras ignore it
-  std::vector<std::array<Index, 3>> triangles;  ///< for drawing and collision; counter-clockwise seen from the front
-  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if cloth does not collide with it; empty: all 0
+  std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise seen from the front; of a
+                                                ///< rope: see is_chain()
+  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if nothing collides with it;
+                                                ///< empty: all 0
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if they are quads; else empty
-  std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
-  /// Bounding box in world space [m]: of a body over its motion from time 0 to the end of the scene, or of a cloth at
-  /// its start. Absent: unknown.
+  std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp)
+                                                ///< [m]; may be empty
+  /// Bounding box in world space [m]: of a body over its prescribed motion from time 0 to the end
+  /// of the scene, or of a cloth at its start. Absent: unknown.
   std::optional<Box3> run_bounds;
   /// An edge is drawn sharp if the normals of its two faces differ by more than this angle [degrees]. 180: all edges
   /// are smooth, as for cloth.
   double crease_angle = 30;
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles have `appearance`
-  std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into parts; empty if there are none
-  /// Per triangle: (u, v) of its corners for Paint::texture_from_uv, such as metres along the grain of a panel. Empty:
-  /// paints use `uv`.
+  std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into `parts`; empty if there
+                                               ///< are no parts
+  /// Per triangle: (u, v) of its corners for Paint::texture_from_uv, such as metres along the grain
+  /// of a panel. Empty: pictures are mapped by `uv`.
   std::vector<std::array<Vec2, 3>> paint_uv;
 };
 
-/// Whether a surface has a picture, or parts whose colours differ from its own.
+/// Whether a surface or one of its parts has a picture, or a part has colours that differ from
+/// those of the surface.
 inline bool is_painted(const Surface& surface) {
   const Appearance& own = surface.appearance;
   return own.paint.texture || std::ranges::any_of(surface.parts, [&](const SurfacePart& part) {
@@ -114,7 +126,8 @@ inline bool is_painted(const Surface& surface) {
 /// The data of an object that change from frame to frame.
 struct SurfaceState {
   std::vector<Vec3> positions;  ///< world space [m], one per vertex
-  std::vector<float> heat;      ///< per vertex: value of Stage::heat (strain, or speed [m/s]); empty if it is `none`
+  std::vector<float> heat;      ///< of cloth and ropes, per vertex: quantity of Stage::heat
+                                ///< (strain, or speed [m/s]); empty for Heat::none
 };
 
 /// A camera at one time.
@@ -124,26 +137,30 @@ struct Camera {
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
   double field_of_view = 35;  ///< vertical [degrees]; 0: computed (only if `kind` is track)
   double aperture = 0;        ///< f-number for a film 24 mm high; 0: everything is sharp
-  double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: that of the target
+  double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0:
+                              ///< distance of the target
 
-  /// placed: has the values above. Cameras of the other kinds are computed from all frames of a run, so that the
-  /// subjects are in view. whole: stands still or, if `azimuth` differs between frames, orbits. follow: moves along
-  /// with the subjects at a constant distance. close: moves along with the subjects at a small distance that changes
-  /// smoothly and always shows them. track: stands at `position` and turns toward the subjects.
+  /// placed: the camera has the values above. Cameras of the other kinds are computed from all
+  /// frames of a run, so that the subjects are in view. whole: stands still or, if `azimuth`
+  /// differs between frames, orbits. follow: moves along with the subjects at a constant distance.
+  /// close: moves along with the subjects at a distance that changes smoothly and is as small as
+  /// possible. track: stands at `position` and turns toward the subjects.
   enum class Kind { placed, whole, follow, close, track };
   Kind kind = Kind::placed;
   /// Names of the surfaces to keep in view. If empty: for `whole`, all visible surfaces except infinite floors; for the
   /// other kinds, all characters; without characters, all cloths; without both, as for `whole`.
   std::vector<std::string> subjects = {};
-  /// Horizontal direction from the subjects to the camera [degrees]: 0 is the front of the scene (−y if z is up, +z if
-  /// y is up), 90 is +x.
+  /// Horizontal direction from the subjects to the camera [degrees]: 0 is the direction −y if z is
+  /// up, or +z if y is up; 90 is +x.
   double azimuth = 33;
-  double elevation = 17;   ///< direction from the subjects to the camera: angle above the horizontal [degrees]
+  double elevation = 17;   ///< angle of the direction from the subjects to the camera above the
+                           ///< horizontal [degrees]
   double margin = 0.14;    ///< free space around the subjects, as a fraction of half the picture's width or height
   double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
 };
 
-/// Maximum number of lights of a picture, because each light costs rays at every pixel. Further lights are ignored.
+/// Maximum number of lights of a picture, because each light takes rays at every pixel. Further
+/// lights are ignored.
 inline constexpr int kMaxLights = 4;
 
 /// A light at one time. Sun: parallel light along `direction`. Spot: from `position` toward `target`.
@@ -157,7 +174,8 @@ struct Light {
   double cone_angle = 45;          ///< full opening [degrees] (spot)
   Vec3 color{1, 1, 1};             ///< sRGB
   double intensity = 1;  ///< at 1, a white matte surface that faces the light (spot: at its target) appears white
-  double softness = 2;   ///< angular width of the source, seen from the scene [degrees]; blurs shadows
+  double softness = 2;   ///< angular width of the source, seen from the scene [degrees]; a larger
+                         ///< one blurs shadows more
 };
 
 /// Settings of all pictures of a run: environment, exposure and display of heat.
@@ -167,16 +185,19 @@ struct Stage {
   enum class Look { studio, stage, daylight, clay, wire, strain };
   Vec3 up{0, 0, 1};
   Look look = Look::studio;
-  // The look sets each of the next three values that is absent.
+  // If one of the next three values is absent, `look` determines it.
   std::optional<Vec3>
-      sky_color;  ///< sRGB; light from above; without a floor, also tints the look's backdrop if it is grey
+      sky_color;  ///< colour of the light from above, sRGB; without a floor, also tints the
+                  ///< backdrop if that of the look is grey
   std::optional<Vec3> ground_color;  ///< sRGB; light reflected from below
   /// Fraction of the light that comes from the surroundings, 0 to 1; the rest comes from the lights.
   std::optional<double> sky_intensity;
   double exposure = 0;     ///< exposure compensation; positive: brighter [stops]
-  double motion_blur = 0;  ///< shutter angle [degrees, 360 per frame]; 0: everything is sharp
+  double motion_blur = 0;  ///< shutter angle [degrees]; 360 is the time of a frame; 0: everything
+                           ///< is sharp
   Heat heat = Heat::none;
-  double heat_max = 0;  ///< value at the hot end of the scale (strain, or speed [m/s]); 0: maximum of the frame
+  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each
+                        ///< frame
 };
 
 /// One frame, never changed after it is made.

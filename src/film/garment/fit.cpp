@@ -11,10 +11,12 @@
 namespace weft::garment {
 namespace {
 
-// Height of the hip joints of a wearer without legs, as a fraction of the body height.
+// Height of the hip joints as a fraction of the body height, for a wearer that lacks the joints of
+// a leg.
 constexpr double kHipHeightRatio = 0.52;
-// Heights, as fractions of the distance from hip joints to neck: lower end of the hips, lowest waist, highest waist,
-// and armpits. Above the armpits, sections include the shoulders.
+// Heights above the hip joints, as fractions of the distance from hip joints to neck: lower end of
+// the hips, lowest waist, highest waist, and armpits. Above the armpits, sections include the
+// shoulders.
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
 // Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
@@ -33,8 +35,9 @@ Measures measure(const Wearer& wearer) {
   if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
   const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
   const auto girth = [&](double s) { return torso.girth(s, 0); };
-  // A waistband slides off skin that is too inclined. Where the girth changes faster than kMaxGirthSlope with height, a
-  // body part ends, such as the ball between chest and hips of a puppet.
+  // Where the girth changes faster than kMaxGirthSlope with height, the skin is too inclined to
+  // hold a waistband. A body part can end there, such as the ball between chest and hips of a
+  // puppet.
   const auto is_upright = [&](double s) {
     return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
            kMaxGirthSlope * kSpacing;

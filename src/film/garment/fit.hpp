@@ -8,23 +8,27 @@
 
 namespace weft::garment {
 
-/// Measures a wearer in its pose. Girths are those of convex sections of the trunk, without the arms. Waist: the
-/// narrowest section between the heights kLowestWaist and kHighestWaist (fit.cpp); sections whose girth changes fast
-/// with height are excluded, except the lowest one. Chest: the widest section from the waist to the armpits. Hip: the
-/// widest section from kLowestHip to the waist.
+/// Measures a wearer in its pose. Girths are those of convex sections of the body without the arms.
+/// Waist: the narrowest section between the heights kLowestWaist and kHighestWaist (fit.cpp);
+/// sections whose girth changes fast with height are excluded, except the lowest one. Chest: the
+/// widest section from the waist to the armpits. Hip: the widest section from kLowestHip to the
+/// waist. Height: that of the crown, rounded down to 1 cm. Throws Error(scene_invalid) if the body
+/// without the arms has no skin.
 Measures measure(const Wearer& wearer);
 
-/// Factors (x: across, y: up) on the lengths of a pattern. Across: the largest ratio wearer's girth / drawn girth among
-/// the girths that the pattern states, so that the garment is nowhere tighter than drawn. Up: wearer's neck height /
-/// neck height of the drawn body (kNeckHeightRatio of its height); 1 if the pattern states no height. Neck heights are
-/// compared, since the height of the head varies much between bodies. If the pattern states only a height, both factors
-/// are the ratio of neck heights. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
+/// Factors (x: across, y: up) on the lengths of a pattern. Across: the largest ratio wearer's girth
+/// / drawn girth among the girths that the pattern states, so that the garment is nowhere tighter
+/// than drawn. Up: wearer's neck height / neck height of the drawn body (kNeckHeightRatio of its
+/// height); 1 if the pattern states no height. Neck heights are compared, since the height of the
+/// head varies much between bodies. If the pattern states only a height, both factors are the ratio
+/// of neck heights. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
 /// pattern states no measures.
 Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
-/// Returns a warning if the wearer's hips are too narrow to hold up the waist of the garment after scaling by
-/// `factors`; else an empty string. Checks only patterns that state a waist but no chest measure, such as skirts and
-/// trousers.
+/// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the
+/// waist girth of the garment after scaling by `factors`: the garment would slide down. Otherwise
+/// returns an empty string. Checks only patterns that state a waist but no chest measure, such as
+/// skirts and trousers.
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
 
 }  // namespace weft::garment

@@ -23,9 +23,9 @@ namespace {
 constexpr double kClearanceRatio = 0.6;
 // Panel edges shorter than this fraction of the spacing become points: narrow triangles there would be very stiff.
 constexpr double kPointEdgeRatio = 0.25;
-// Minimum area of a triangle after an edge flip / area of a lattice square; smaller ones would be needles.
+// Minimum area of a triangle after an edge flip / area of a lattice square.
 constexpr double kMinFlippedArea = 0.02;
-// Maximum number of particles of one garment.
+// Maximum number of particles of one garment, estimated as area of the panels / spacing².
 constexpr double kMaxParticles = 1e6;
 
 /// Makes a garment. A point belongs to the mesh of one panel; points are numbered through all panels. A vertex of the
@@ -121,9 +121,10 @@ class Sewing {
     return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Joins the points of both edges of each seam. For flat panels, uses the direction in which the ends of both edges
-  // start closer together. For bent panels, and for closed edges such as a whole outline, uses the direction in which
-  // the fronts of both panels face outward.
+  // Joins the points of both edges of each seam, except closures. The points of the second edge are
+  // taken in one of two directions. For flat panels, this is the direction in which the ends of
+  // both edges start closer together. For bent panels, and for closed edges such as a whole
+  // outline, it is the direction in which the fronts of both panels face outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
@@ -147,9 +148,9 @@ class Sewing {
     }
   }
 
-  /// Flips inner edges of a panel that connect the same two vertices as an edge of another panel: this happens if two
-  /// panels are sewn together around a corner, and in both a triangle cuts off the corner. Of two such edges, flips
-  /// that in the panel of higher index.
+  /// Flips inner edges of a panel that connect the same two vertices as an edge of another panel.
+  /// The cause of these edges: two panels are sewn together around a corner, and in both a triangle
+  /// cuts off the corner. Of two such edges, flips that in the panel of higher index.
   void flip_shared_edges() {
     constexpr int kMaxFlipRounds = 8;  // rarely, edges remain; check_surface() then refuses the pattern
     for (int round = 0; round < kMaxFlipRounds; ++round) {
@@ -233,7 +234,7 @@ class Sewing {
           joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // The drawing of a panel from the inside shows the back of the cloth: exchange left and right.
+        // A panel drawn from the inside shows the back of the cloth: exchange left and right.
         if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
@@ -351,8 +352,9 @@ class Sewing {
     }
   }
 
-  // Adds the ties of closures. Uses the direction in which the ends of both edges start closer together; if an edge is
-  // closed, the direction in which the fronts of both panels face outward.
+  // Adds the ties of closures. Of the two directions of the second edge, uses the one in which the
+  // ends of both edges start closer together; if an edge is closed, the one in which the fronts of
+  // both panels face outward.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {

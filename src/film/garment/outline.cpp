@@ -11,7 +11,7 @@ namespace {
 
 // Maximum number of curves in path data; the drawn outline of a panel has about twenty.
 constexpr std::size_t kMaxCurves = 10000;
-// Larger coordinates are treated as damaged data.
+// Maximum absolute value of a number in path data; a larger number is reported as a mistake.
 constexpr double kMaxCoordinate = 1e6;
 // Number of straight pieces for measuring the length of a curve; relative error for a quarter circle: 2e-6.
 constexpr int kPiecesPerCurve = 256;
@@ -41,7 +41,8 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
     outline.push_back(straight(from, to));
     return;
   }
-  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. Too small radii are enlarged.
+  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. Radii that
+  // are too small to reach both end points are enlarged.
   const Vec2 half = turn.inverse() * Vec2(0.5 * (from - to));
   const double radius_ratio = half.cwiseQuotient(r).norm();
   if (radius_ratio > 1) r *= radius_ratio;
@@ -67,7 +68,6 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
   }
 }
 
-/// Reads path data command by command.
 class PathReader {
  public:
   explicit PathReader(std::string_view data) : data_(data) {}
@@ -169,7 +169,8 @@ class PathReader {
     } while (result_.mistake.empty() && number_follows());
   }
 
-  // Whether the pen is at the start, up to rounding of the digits in the data.
+  // Whether the pen is at the start, within 1e-6 of the diagonal of the outline: coordinates in the
+  // data are rounded.
   bool is_at_start() const { return (pen_ - first_).norm() <= 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm()); }
 
   void close() {
@@ -263,8 +264,8 @@ ParsedPath parse_path(std::string_view data) {
 }
 
 bool has_corner(const Curve& before, const Curve& after) {
-  // Distance in the parameter over which tangents are measured. Control points may coincide at the ends, where the
-  // derivative is then 0.
+  // Step of the curve parameter over which tangents are measured. The derivative at an end is no
+  // measure: it is 0 if control points coincide there.
   constexpr double kEndOffset = 1e-3;
   const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
   return std::abs(angle_between(in, out)) > kMinCornerAngle;

@@ -32,16 +32,17 @@ std::from_chars_result parse_number(std::string_view text, double& value);
 
 struct ParsedPath {
   Outline outline;
-  std::string mistake;  ///< such as: expected a number, got "x" at character 12; empty: none
+  /// Such as: expected a number, got "x" at character 12; empty if there is none.
+  std::string mistake;
 };
 struct ParsedPaths {
   std::vector<Outline> outlines;  ///< one or more, if there is no mistake
   std::string mistake;
 };
 
-/// Reads closed outlines from path data of SVG 1.1 (section 8.3), in the units of the data. Each outline ends with Z or
-/// at its start point. An arc becomes cubic curves of at most a quarter turn each (maximum error: 3e-4 of the radius).
-/// Curves of zero length are dropped.
+/// Reads closed outlines from path data of SVG 1.1 (section 8.3), in the units of the data. Each
+/// outline ends with Z or at its start point. An arc becomes cubic curves of at most a quarter turn
+/// each (maximum error: 3e-4 of the radius). Curves of zero length are dropped.
 ParsedPaths parse_paths(std::string_view data);
 
 /// As parse_paths(), but reports a mistake if the data have several outlines.
@@ -50,7 +51,8 @@ ParsedPath parse_path(std::string_view data);
 /// Whether two consecutive curves meet at an angle above kMinCornerAngle (outline.cpp).
 bool has_corner(const Curve& before, const Curve& after);
 
-/// For each curve, the number of its edge. Edges extend from corner to corner; edge 0 starts at the first corner.
+/// For each curve, the number of its edge. Edges extend from corner to corner; edge 0 starts at the
+/// first corner. Without corners, all curves belong to edge 0.
 std::vector<std::size_t> edges_between_corners(const Outline& outline);
 
 /// Number of points of each curve in sample_points().

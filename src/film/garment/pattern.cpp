@@ -26,9 +26,10 @@ using scene::TableBuilder;
 using scene::Type;
 using scene::within;
 
-// Maximum deviation of a fold edge from a straight line / its length; allows for rounded coordinates.
+// Maximum distance of control points of a fold edge from a straight line, as a fraction of the
+// edge's length; allows for rounded coordinates.
 constexpr double kMaxFoldDeviation = 1e-3;
-// Maximum size of a panel [m].
+// Maximum width and height of a panel [m].
 constexpr double kMaxPanelSize = 100;
 
 const Table& panel_rules() {
@@ -102,9 +103,10 @@ const Table& panel_rules() {
   return kTable;
 }
 
-// Writes the edge name of each curve to `names`; all pieces of an arc get one name. `text` has one name per curve or,
-// in a drawing (`drawn`), one name per edge from corner to corner, since drawing programs cut edges into many curves.
-// Returns a description of a mistake, or an empty string.
+// Appends the edge name of each curve to `names`; all pieces of an arc get one name. `text` has one
+// name per curve or, in a drawing (`drawn`), one name per edge from corner to corner, since drawing
+// programs cut edges into many curves. If `text` is empty, the names are 1, 2, 3 and so on, one per
+// curve. Returns a description of a mistake, or an empty string.
 std::string name_curves(const std::string& text, const Outline& outline, bool drawn, std::vector<std::string>& names) {
   std::istringstream stream(text);
   std::vector<std::string> words;
@@ -207,7 +209,8 @@ void copy_from_original(const Panel& from, const std::string& entry, const Findi
   if (!is_given("fabric.density")) panel.reinforcement.density = from.reinforcement.density;
 }
 
-/// The outline of a panel. Reports a mistake to `in_drawings` if the outline is in a drawing, else to `findings`.
+/// Reads the outline of a panel. If there is a mistake, returns nothing, and reports the mistake to
+/// `in_drawings` if the outline is in a drawing, else to `findings`.
 std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& path, Findings& findings,
                                        std::vector<std::string>& in_drawings) {
   if (panel.path.empty()) try {
@@ -289,7 +292,7 @@ void derive_edges(Panel& panel, const std::string& path, Findings& findings, std
                                                    scene::in_quotes(edge.name)));
 }
 
-/// Checks that names of edges exist, and that seams use each edge once.
+/// Checks that names of edges exist, and that no edge is in two seams.
 class EdgeNames {
  public:
   EdgeNames(const Pattern& pattern, Findings& findings) : findings_(findings) {
@@ -299,7 +302,8 @@ class EdgeNames {
     }
   }
   void check(const std::string& name, const std::string& key) {
-    // A panel with an invalid outline has no edges, and its mistake is already reported: then report no unknown edge.
+    // A panel with a mistake in its outline has no edges. If there is such a panel, report no
+    // unknown edges: the mistake itself is already reported.
     if (has_invalid_panel_ || findings_.has_mistake(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));

@@ -31,10 +31,13 @@ struct Panel {
   std::string path;            ///< SVG path data of the outline in metres, y upward; empty: see `file`
   std::filesystem::path file;  ///< SVG drawing with the outline; empty: see `path`
   std::string id;              ///< id, label or number of the element in the drawing
-  std::string edge_names;      ///< one name per curve, separated by spaces, in drawing order; empty: 1 2 3 ...
-  std::string fold;            ///< edge at which the outline is mirrored to give the whole panel; empty: none
-  double grain = 0;            ///< angle of the warp, counter-clockwise from the panel's y axis [degrees]
-  std::string mirror_of;       ///< panel of which this one is the mirror image; empty: none
+  /// Names of the curves, separated by spaces, in drawing order. For a `file`, the text may instead
+  /// have one name for each edge from corner to corner. Empty: the names in the drawing; without
+  /// those, the numbers 1, 2, 3 and so on.
+  std::string edge_names;
+  std::string fold;       ///< mirroring the outline at this edge gives the whole panel; empty: none
+  double grain = 0;       ///< warp direction, counter-clockwise from the panel's y axis [degrees]
+  std::string mirror_of;  ///< panel of which this one is the mirror image; empty: none
   /// Part around which the panel starts bent. If any panel of the pattern has a part or an `angle`, `none` means the
   /// torso. Otherwise all panels start flat, in front of and behind the wearer.
   Around around = Around::none;
@@ -42,8 +45,8 @@ struct Panel {
   /// `side`, the outside for arms, else the front.
   std::optional<double> angle;
   int layer = 0;  ///< number of layers of panels between this panel and the skin of its part
-  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel 0, for a bent panel the position at
-  /// which its seams are shortest.
+  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel (0, 0); for a
+  /// bent panel 0 across, and up the position at which its seams are shortest.
   std::optional<Vec2> position;
   double rotation = 0;  ///< rotation of the drawing at the start, counter-clockwise [degrees]
   Vec2 scale{1, 1};     ///< factors on the lengths of the start shape, across and up the drawing
@@ -51,11 +54,12 @@ struct Panel {
   /// sewn.
   bool turned = false;
 
-  mesh::Reinforcement reinforcement;  ///< such as an ironed-on lining (fusing), or a heavier fabric
+  /// Fabric of the panel relative to that of the garment, such as an ironed-on lining (fusing).
+  mesh::Reinforcement reinforcement;
 
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
 
-  /// Whether the panel is drawn as seen from the inside of the garment.
+  /// Whether the drawing shows the inner side of the cloth.
   bool from_inside() const { return (side == Side::back) != turned; }
 };
 
@@ -63,12 +67,14 @@ struct Panel {
 /// the longer edge is spread evenly (eased in). A seam with `buttons`, `open`, `closed` or `tearing_load` is a closure:
 /// its edges stay separate, and ties (mesh::Tie) hold their points together while the closure is closed.
 struct Seam {
-  std::string a, b;                    ///< the edges, as "panel.edge"
-  int buttons = 0;                     ///< number of ties; 0: one tie for each pair of points, as in a zip
+  std::string a, b;  ///< the edges, as "panel.edge"
+  /// Number of ties, at most one for each pair of points; 0: one for each pair, as in a zip.
+  int buttons = 0;
   std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]; absent: never
   double strength = 2;                 ///< maximum force of each tie [N]; unused if there is a `tearing_load`
   std::optional<double> tearing_load;  ///< force per length at which ties break for ever [N/m]; absent: never
-  double allowance = 0.02;             ///< width of the seam allowances, both sides together [m]
+  /// Width of the seam allowances, both sides together [m]; unused for closures.
+  double allowance = 0.02;
 
   bool is_closure() const { return buttons > 0 || open || closed || tearing_load; }
 };
@@ -98,7 +104,7 @@ struct Pattern {
   /// Start distance of flat front and back panels from the wearer's coronal plane, which separates front from back [m].
   /// The distance decreases to 0 toward the seams that join front and back.
   double depth = 0.16;
-  double gap = 0.015;  ///< distance of bent panels from the skin at the start [m]
+  double gap = 0.015;  ///< distance of bent panels of layer 0 from the skin at the start [m]
   std::vector<Panel> panels;
   std::vector<Seam> seams;
   std::vector<Elastic> elastics;
@@ -127,7 +133,8 @@ struct ReadPattern {
 };
 
 /// Reads and checks a pattern file and its drawings. The file is TOML, or a specification in JSON
-/// (garment/specification.hpp). Does not throw, whatever the files contain.
+/// (garment/specification.hpp). Mistakes, including unreadable files, are in the result. Throws
+/// Error(asset_unreadable) only if a parser throws an unexpected exception.
 ReadPattern read_pattern(const std::filesystem::path& file);
 
 /// Reads a pattern that must be free of mistakes. Otherwise throws Error with all mistakes after `where`, which names

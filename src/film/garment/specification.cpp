@@ -22,7 +22,8 @@ namespace {
 using nlohmann::json;
 using scene::Findings;
 
-// Larger coordinates are treated as damaged data.
+// Numbers in lists of a file must be smaller than this in absolute value, such as coordinates in
+// units of the file.
 constexpr double kMaxSpecCoordinate = 1e5;
 constexpr double kDefaultUnitsPerMetre = 100;  // if the file states no unit: centimetres
 // Height above the floor of the origin in files of the Garment-Pattern-Generator, the predecessor of GarmentCode [m].
@@ -35,7 +36,7 @@ constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .
 // file counts as one of the predecessor if it has the predecessor's format of curves, or if its lowest point is below
 // this height [m]. The limit is negative, since flat trousers may end below the floor.
 constexpr double kMinLowestPanel = -0.2;
-// Minimum height above the floor at which the lowest point of a pattern starts [m].
+// Minimum height above the floor at which the lowest point of a GarmentCode pattern starts [m].
 constexpr double kMinStartHeight = 0.02;
 
 /// The axis direction of the drawing (up, down, left or right) that is nearest to `direction`.
@@ -97,7 +98,8 @@ class Reader {
     mistake(path, fmt::format("expected \"{}\" of a specification of GarmentCode, got none", name));
     return nullptr;
   }
-  /// The numbers of a list with `count` entries. Reports a mistake and returns nothing if `value` is no such list.
+  /// The numbers of a list. If `value` is no list of `count` numbers below kMaxSpecCoordinate,
+  /// reports a mistake and returns nothing.
   std::optional<std::vector<double>> numbers(const json& value, std::size_t count, const std::string& key) {
     std::vector<double> list;
     if (value.is_array())
@@ -301,8 +303,9 @@ class Reader {
         }
   }
 
-  /// Direction toward the trunk in the drawing of an arm panel. Files draw arm panels in any of four orientations;
-  /// therefore the direction follows from the edges that are sewn to the trunk or to a panel nearer to it.
+  /// Direction toward the trunk in the drawing of an arm panel. Files draw arm panels in any of
+  /// four orientations. Therefore the direction follows from the edges that are sewn to the trunk
+  /// or to a limb panel nearer to the trunk. Returns (0, 1) if there are no such edges.
   Vec2 direction_to_trunk(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     Vec2 cap(0, 0);
@@ -330,7 +333,7 @@ class Reader {
     if (arm)
       up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
-      up = panel.is_limb() ? nearest_axis(height) : height.normalized();  // files may spread the legs
+      up = panel.is_limb() ? nearest_axis(height) : height.normalized();  // legs may be drawn apart
     Eigen::Matrix2d turn;
     turn << up.y(), -up.x(), up.x(), up.y();
     Eigen::Affine2d map = Eigen::Affine2d::Identity();
@@ -345,7 +348,8 @@ class Reader {
         for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
     const bool from_predecessor = is_predecessor_ || lowest < kMinLowestPanel;
     pattern.measures = from_predecessor ? kPredecessorBody : kBody;
-    // Trousers are drawn lower than they are worn: raise those that end below the floor.
+    // Trousers are drawn lower than they are worn. If a GarmentCode pattern would start lower than
+    // kMinStartHeight, raise it to this height.
     const double floor = from_predecessor ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& of = panels_[p];
@@ -395,8 +399,9 @@ class Reader {
     }
   }
 
-  /// Places each turned panel on top of the panels to which right_wrong stitches join it, one layer above. Both edges
-  /// of such a seam then run in the same direction.
+  /// Places each turned panel on top of the panels to which right_wrong stitches join it, one layer
+  /// above. Both edges of such a seam run in the same direction, so that their points correspond in
+  /// order.
   void place_turned_panels(Pattern& pattern) const {
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       Panel& panel = pattern.panels[p];

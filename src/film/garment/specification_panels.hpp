@@ -34,29 +34,34 @@ struct SpecPanel {
   Vec3 translation{0, 0, 0};  // [m]
   // derive_geometry() sets points, mirrored, outward, middle and area; find_turned_panels() sets turned; the reader
   // (specification.cpp) sets around, limbs_to_trunk and worn.
-  std::vector<std::vector<Vec2>> points;  // along each edge, without its end
+  std::vector<std::vector<Vec2>> points;  // sample points per edge, without its end
   bool mirrored = false;                  // drawn clockwise, that is, as seen from the inside
   Vec3 outward{0, 0, 1};                  // normal that points away from the body
   Vec3 middle{0, 0, 0};                   // of the bounding box of the outline, in space [m]
   Around around = Around::torso;
-  int limbs_to_trunk = -1;  // number of limb panels between this one and the trunk; -1: unknown
-  double area = 0;          // [m²]
-  bool turned = false;      // folded over like a lapel; see Panel::turned
-  Eigen::Affine2d worn = Eigen::Affine2d::Identity();  // map from the drawing to the panel as worn
+  // Number of limb panels between this one and the trunk; -1: this is no limb panel, or stitches do
+  // not join it to the trunk.
+  int limbs_to_trunk = -1;
+  double area = 0;      // [m²]
+  bool turned = false;  // folded over like a lapel; see Panel::turned
+  // Map from the drawing to the panel as worn, seen from outside.
+  Eigen::Affine2d worn = Eigen::Affine2d::Identity();
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
   bool is_limb() const { return around >= Around::left_arm; }
 };
 
-/// SVG path data of a panel whose points are transformed by `map`.
+/// SVG path data of a panel whose points are transformed by `map`, which must preserve lengths
+/// (radii are not scaled).
 std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map);
 
 /// Sets `points`, `mirrored`, `outward`, `middle` and `area` from the edges and the placement of a panel.
 void derive_geometry(SpecPanel& panel);
 
-/// Sets `turned` of all panels. The right_wrong stitches split each connected set of panels into two sides; the panels
-/// of the side with the smaller area are turned. If a closed chain of stitches would turn a panel over, returns the
-/// index of one of its stitches instead.
+/// Sets `turned` of all panels. The right_wrong stitches split each connected set of panels into
+/// two sides; the panels of the side with the smaller total area are turned. If a closed chain of
+/// stitches would turn a panel over, returns the index of one of its stitches; otherwise returns
+/// nothing.
 std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches);
 
 }  // namespace weft::garment

@@ -11,8 +11,9 @@
 namespace weft::garment {
 namespace {
 
-// Weight of the term that holds each vertex at the start position of its panel, relative to the weight of an edge. It
-// is small: only the positions of panels without a seam to others depend on it noticeably.
+// Weight of the term that holds each vertex at the start position of its panel, relative to the
+// weight of an edge. It is small: it determines where each connected set of panels starts, and
+// hardly changes lengths.
 constexpr double kAnchorWeight = 1e-4;
 // Number of smoothing rounds of inflate().
 constexpr int kSmoothingRounds = 10;
@@ -37,7 +38,8 @@ std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) 
   return sides;
 }
 
-// In each round, moves the vertices with `free` set halfway to the previous mean of their neighbours.
+// In each round, moves each vertex with `free` set halfway to the mean position of its neighbours
+// before the round.
 void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
   for (int round = 0; round < kSmoothingRounds; ++round) {
     const std::vector<Vec3> before = x;
@@ -81,7 +83,7 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
     d = free[v] ? std::min(d, depth) : 0;
     x[v] = {plane[v].x(), side_sign[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
   }
-  // The rims of openings keep their positions.
+  // Smoothing keeps the rims of openings at their positions.
   std::vector<mesh::Triangle> all;
   for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());
   for (const mesh::Edge& edge : mesh::collect_edges(all).edges)

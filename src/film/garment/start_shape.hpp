@@ -22,11 +22,12 @@ struct LaidPanel {
 /// over the panels.
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices);
 
-/// Separates front and back panels in depth, which gives a pillow with round edges. Front panels move to −f(d) and back
-/// panels to +f(d), where d is the distance in the plane to the nearest seam between front and back: f(d) = √(d (2
-/// depth − d)) for d < depth, else f = depth. Then a few smoothing rounds move each vertex toward its neighbours,
-/// except vertices on these seams and on the rims of openings. Front and back cannot intersect, since depths are ≤ 0 in
-/// front and ≥ 0 at the back. Returns (across, depth, up) [m].
+/// Separates front and back panels in depth, which gives a pillow with round edges. Front panels
+/// move to −f(d) and back panels to +f(d), where d is the distance in the plane to the nearest seam
+/// between front and back. f(d) = √(d (2 depth − d)) for d < depth, else f(d) = depth. Then a few
+/// smoothing rounds move each vertex toward its neighbours, except vertices on these seams and on
+/// the rims of openings. Front and back cannot intersect, since depths are ≤ 0 in front and ≥ 0 at
+/// the back. Returns (across, depth, up) [m].
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
 
 }  // namespace weft::garment

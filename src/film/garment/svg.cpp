@@ -27,8 +27,8 @@ namespace weft::garment {
 namespace {
 
 constexpr double kMetresPerPixel = 0.0254 / 96;
-// Maximum distance from a seam line to the outline of its seam allowance, on each side of a panel [m]. Allowances are
-// 10 to 30 mm wide, and wider at corners.
+// Maximum distance between the bounding boxes of a seam line and of its seam allowance, on each
+// side of a panel [m]. Allowances are 10 to 30 mm wide, and wider at corners.
 constexpr double kMaxAllowance = 0.06;
 // Maximum count of numbers read from one attribute.
 constexpr std::size_t kMaxNumbers = 20000;
@@ -134,7 +134,8 @@ class Drawing {
   pugi::xml_document document_;
 };
 
-// The numbers of a text, separated by white space or commas. Returns nothing if the text contains anything else.
+// The numbers of a text, separated by white space or commas. Returns nothing if the text contains
+// anything else or more than kMaxNumbers numbers.
 std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   std::vector<double> numbers;
   for (;;) {
@@ -149,7 +150,8 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   }
 }
 
-// A length such as "210mm", converted to metres. Returns nothing for percentages and invalid text.
+// A length such as "210mm", converted to metres. Returns nothing for lengths ≤ 0, percentages,
+// units relative to a font, and invalid text.
 std::optional<double> parse_length(std::string_view text) {
   double value = 0;
   const auto [end, error] = parse_number(text, value);

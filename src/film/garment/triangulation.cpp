@@ -9,11 +9,13 @@
 namespace weft::garment {
 namespace {
 
-// Minimum distance of lattice points from the outline [spacings]. The strip between lattice and outline is then 0.6 to
-// 1.6 spacings wide, so that its triangles have no very small or very large angles.
+// Minimum distance of lattice points from the outline [spacings]. The strip between lattice and
+// outline is then about 0.6 to 1.6 spacings wide, so that its triangles have no very small or very
+// large angles.
 constexpr double kMinOutlineDistance = 0.62;
-// Shift of each lattice row relative to the row below [spacings]. It makes the Delaunay diagonal of each square unique.
-// It is large compared with rounding errors, but its sum over all rows is too small to change angles visibly.
+// Shift of each lattice row relative to the row below, during triangulation only [spacings]. It
+// makes the Delaunay diagonal of each square unique. It is large compared with rounding errors; its
+// sum over all rows is small compared with the spacing.
 constexpr double kRowShift = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) {
@@ -75,8 +77,9 @@ class Delaunay {
  private:
   const Vec2& point(Index i) const { return points_[at(i)]; }
 
-  // Finds the triangle that contains p. Starts from the triangle found last and crosses edges that separate the current
-  // triangle from p. If this path leaves the polygon, searches all triangles.
+  // Finds the triangle that contains p. Starts from the triangle found last and crosses edges that
+  // separate the current triangle from p. If this path leaves the polygon or does not end, searches
+  // all triangles for the one in which p is deepest.
   Index locate(const Vec2& p) const {
     Index t = last_;
     for (std::size_t steps = 0; steps < triangles_.size(); ++steps) {
@@ -131,8 +134,9 @@ class Delaunay {
       for (std::size_t side : {0U, 1U}) stack_.emplace_back(t, side), stack_.emplace_back(s, side);
     }
   }
-  // Whether to flip edge ab between triangles abc and bad: if the quadrilateral adbc is convex, and d is inside the
-  // circumcircle of abc by more than rounding errors.
+  // Whether to flip the edge between the triangles (a, b, c) and (b, a, d). This is so if the
+  // quadrilateral a, d, b, c is convex and d is inside the circumcircle of (a, b, c) by more than
+  // rounding errors.
   bool should_flip(Index a, Index b, Index c, Index d) const {
     const Vec2 &pa = point(a), &pb = point(b), &pc = point(c), &pd = point(d);
     if (orientation(pc, pa, pd) <= 0 || orientation(pd, pb, pc) <= 0) return false;

@@ -14,22 +14,23 @@
 namespace weft::garment {
 namespace {
 
-// If the scales along u and v differ by at most this ratio, one scale is used for both: hanging cloth is some percent
-// longer in one direction.
+// If the scales along u and v differ by at most this ratio, one scale is used for both: hanging
+// cloth is stretched by some percent in one direction.
 constexpr double kMaxScaleDifference = 0.05;
-// UVs are in one of the units below if more than kMinFractionInUnit of all edges (weighted by length in the UVs) are as
-// long as in the mesh within kUnitTolerance. For comparison, fractions measured with a tolerance of 5 %: 35 to 67 % for
-// garments that start sewn around a body with strongly stretched seams, and 4 % for charts of a body.
+// UVs are in one of the units below if more than kMinFractionInUnit of all edges (weighted by
+// length in the UVs) are as long as in the mesh within kUnitTolerance. With a tolerance of 5 %, the
+// measured fraction is 35 to 67 % for garments that start sewn around a body with strongly
+// stretched seams, and 4 % for charts of a body.
 constexpr double kUnitTolerance = 0.02, kMinFractionInUnit = 0.2;
 constexpr std::array<std::pair<double, const char*>, 4> kUnits{
     {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}}};
-// Triangles that are longer or shorter in the mesh than in the UVs by more than this factor have no usable shape in the
-// UVs. (Cloth that starts around a body before sewing can have triangles 36 times as long as in its pattern.)
+// Triangles that are longer or shorter in the mesh than in the UVs by this factor or more have no
+// usable shape in the UVs. (Cloth that starts around a body before sewing can have triangles 36
+// times as long as in its pattern.)
 constexpr double kMaxSizeRatio = 100;
 // Rounds of iteratively reweighted least squares for the scale.
 constexpr int kScaleRounds = 30;
-// Tolerance for `fitting_edge_fraction`. Even if seams are pulled together, half of all edges of cloth keep their
-// lengths within it.
+// Relative tolerance for `fitting_edge_fraction`.
 constexpr double kFittingEdgeTolerance = 0.05;
 
 struct UvEdge {
@@ -83,9 +84,10 @@ double median_scale(const std::vector<UvEdge>& edges) {
   return 1;
 }
 
-/// Fits the lengths (su, sv) of a UV unit along u and v, so that (su du)² + (sv dv)² is the squared length of edges in
-/// the mesh. Minimises the sum of absolute relative errors by iteratively reweighted least squares. `even`: scale at
-/// which the iteration starts. Returns nothing if the edges do not determine both lengths.
+/// Fits the lengths (su, sv) of a UV unit along u and v, so that (su du)² + (sv dv)² is the squared
+/// length of edges in the mesh. Minimises the sum of absolute relative errors of squared lengths,
+/// weighted by length in the UVs, by iteratively reweighted least squares. `even`: scale at which
+/// the iteration starts. Returns nothing if the edges do not determine both lengths.
 std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, double even) {
   Vec2 squares = Vec2::Constant(even * even);
   for (int round = 0; round < kScaleRounds; ++round) {
@@ -181,7 +183,8 @@ void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& res
   }
 }
 
-/// Weighted quantile: the value below which `fraction` of the weight lies. `values`: pairs of value and weight.
+/// Weighted quantile: the smallest value such that values up to it have at least `fraction` of the
+/// total weight; 0 if there are no values. `values`: pairs of value and weight.
 double quantile(std::vector<std::pair<double, double>> values, double fraction) {
   std::ranges::sort(values);
   double total = 0, sum = 0;

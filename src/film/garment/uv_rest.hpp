@@ -21,9 +21,9 @@ struct UvRest {
   std::string unit;                 ///< name of the unit, such as "centimetres"; empty: the scale is fitted or given
   std::size_t islands = 0;
   std::size_t mirrored = 0;  ///< number of triangles that are clockwise in the UVs; `material` mirrors them
-  /// Number of triangles whose rest shape is their shape in the mesh, because they have no UVs, have no area in the
-  /// UVs, are a hundred times longer or shorter there than in the mesh, or are too flat there (`flattest` of
-  /// rest_from_uv()).
+  /// Number of triangles whose rest shape is their shape in the mesh. A triangle is unusable if it
+  /// has no UVs or no area in the UVs, if it is a hundred or more times longer or shorter there
+  /// than in the mesh in some direction, or if it is too flat there (`flattest` of rest_from_uv()).
   std::size_t unusable = 0;
   /// Area of `unusable` triangles in the mesh, as a fraction of the area of the mesh. A triangle that is too flat in
   /// the UVs counts only with the area that it lacks there, since small triangles can be too flat even in UVs that fit.
@@ -32,7 +32,8 @@ struct UvRest {
   /// directions. These are its median and its 95 % quantile over all triangles, weighted by area. Unusable triangles
   /// are left out, except those that are only too flat.
   double median_stretch = 0, stretch_quantile_95 = 0;
-  /// Fraction of all edges, weighted by length in the UVs, whose lengths in mesh and panel differ by at most 5 %.
+  /// Fraction of all edges with a length in the UVs, weighted by this length, whose lengths in mesh
+  /// and panel differ by at most 5 %.
   double fitting_edge_fraction = 0;
 
   /// Whether the UVs are panels of cloth, not charts of another surface: `fitting_edge_fraction` ≥ 0.5 and
@@ -43,12 +44,13 @@ struct UvRest {
   std::string describe() const;
 };
 
-/// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or empty, for an empty result. If `scale` is not
-/// given, it is the unit (metres, centimetres, millimetres or inches) at which most edges are as long as in the mesh.
-/// If no unit fits more than a fifth of the edges, scales along u and v are fitted separately; if these two differ by
-/// at most 5 % or are undetermined, the median scale of all edges replaces both. `flattest`: minimum height of a
-/// triangle in the UVs, relative to the longest edge of all triangles there. A flatter triangle is unusable if it is
-/// higher in the mesh.
+/// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or empty, for an empty
+/// result. If `scale` is not given, it is the unit (metres, centimetres, millimetres or inches) at
+/// which most edges are as long as in the mesh within 2 %. If no unit fits more than a fifth of the
+/// edges, scales along u and v are fitted separately. If these two differ by at most 5 % or are
+/// undetermined, the median scale of all edges replaces both. `flattest`: minimum height of a
+/// triangle in the UVs, relative to the longest edge of all triangles there. A flatter triangle is
+/// unusable if it is higher in the mesh.
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
                     double flattest = 0);
 

@@ -11,8 +11,8 @@
 namespace weft::garment {
 namespace {
 
-// In this fraction of the upper arm, next to the shoulder, sections would cut the skin obliquely; the nearest section
-// beyond replaces them.
+// In this fraction of the upper arm, next to the shoulder, sections would cut the skin obliquely;
+// the nearest section farther down the arm replaces them.
 constexpr double kShoulderFraction = 0.25;
 // Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
 constexpr double kWristExtension = 0.3;
@@ -20,7 +20,8 @@ constexpr double kWristExtension = 0.3;
 constexpr double kHeadFraction = 0.6;
 // Dome of the head's tube: height of its end above the crown [m], and ratio of its narrowest section to the widest.
 constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
-// Minimum number of points at which the skin's edges cross the plane of a section.
+// Minimum number of crossings of triangle sides with the plane of a section (a side shared by two
+// triangles counts twice); with fewer, there is no section.
 constexpr std::size_t kMinSectionPoints = 6;
 
 double radians(int direction, int directions) {
@@ -190,7 +191,8 @@ Tube::Tube(const Wearer& wearer, Around part) {
         axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
     sections_.push_back(section);
   }
-  // Narrow the tube to a dome above the head, so that seams that end at the crown of a hood start near the crown.
+  // Above the widest section, narrow the tube to a dome, so that seams that end at the crown of a
+  // hood start near the crown.
   if (part == Around::head)
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       const double height =

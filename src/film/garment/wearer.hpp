@@ -17,8 +17,8 @@ enum class Region : std::uint8_t { trunk, left_arm, right_arm, left_leg, right_l
 /// Joints of an arm, from shoulder to wrist, or of a leg, from hip to ankle [m].
 using Limb = std::array<Vec3, 3>;
 
-/// Height of the joint at the base of the mannequin's neck, as a fraction of the body height. It is also assumed for
-/// the bodies for which patterns are drawn.
+/// Height of the joint at the base of the mannequin's neck, as a fraction of the body height. The
+/// bodies for which patterns are drawn are assumed to have the same ratio.
 inline constexpr double kNeckHeightRatio = 0.83;
 
 /// A body at the start, in its own axes: x to its left, y to its back, z up, origin on the floor below its hips [m].
@@ -34,7 +34,8 @@ struct Wearer {
 /// Part of the body around which a panel starts bent. The tubes of the parts:
 /// - torso, neck: with a vertical axis, around the body without the arms;
 /// - body: with a vertical axis, around the body with the arms; each section contains the section above it;
-/// - head: with a vertical axis; at each height the widest section of the head, which narrows to a dome above it;
+/// - head: with a vertical axis; at each height the widest section of the head; above the height of
+///   this section, the tube narrows to a dome;
 /// - arm: around the arm alone;
 /// - leg: around the leg and, from the hip to the neck, around the same half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
@@ -56,8 +57,9 @@ class Tube {
   /// Girth [m] of the section at s, moved outward by `outward` [m]. Beyond the ends of the tube, the end sections
   /// continue. In the dome of the head, this is the girth before narrowing.
   double girth(double s, double outward) const;
-  /// The point at `length` along the section at s, moved outward by `outward` [m]. `length` [m] counts from the
-  /// direction `angle` [rad]: 0 is the front, π/2 the wearer's left.
+  /// The point at `length` along the section at s, moved outward by `outward` [m]. `length` [m]
+  /// counts from the direction `angle` [rad]: 0 is the front, π/2 the wearer's left. In the dome of
+  /// the head, `length` and `outward` shrink with the section.
   Vec3 at(double s, double angle, double length, double outward) const;
   /// Direction of increasing s.
   Vec3 along(double s) const;

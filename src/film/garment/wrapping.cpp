@@ -21,7 +21,8 @@ namespace {
 constexpr double kLayerDistance = 0.01;
 // Additional width of a ring with a closure or a slit [m], so that the two edges of the opening start apart.
 constexpr double kOpeningSlack = 0.03;
-// Sleeves: minimum distance from the skin at the start [m]; narrowing toward the trunk at which the cap begins [m].
+// For sleeves [m]: minimum distance from the skin at the start; the cap begins where the ring is
+// narrower by this width than farther down the arm.
 constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
 // For the position of a panel from its seams: number of sample intervals along a seam, and of iterations.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
@@ -33,8 +34,8 @@ double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Position of point `p` of a panel on the tube of its part: length across and height [m], as seen from outside.
-/// `position`: that of the origin of the panel.
+/// Position of point `p` of a panel on the tube of its part: length across and height [m], as seen
+/// from outside. `position`: start position of the panel's origin.
 Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) {
   const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
   const Vec2 q = position + turned;
@@ -49,8 +50,8 @@ class PanelPlacer {
       if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
   }
 
-  /// Sets the positions of all panels: first those that the pattern states, then the others from seams. Returns a panel
-  /// without either, or null.
+  /// Sets the positions of all panels: first those that the pattern states, then the others from
+  /// seams. Returns the first panel that still has no position, or null.
   const Panel* find_positions() {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     update_eases();
@@ -124,7 +125,8 @@ class PanelPlacer {
     }
     return of_part;
   }
-  // Whether the ring around a part has a closure or a slit. A closure between two parts (a fly) belongs to no ring.
+  // Whether the ring around a part has a closure or a slit. A closure that joins panels of two
+  // parts, such as a fly, belongs to no ring.
   bool has_opening(Around part) const {
     std::set<std::pair<std::size_t, std::size_t>> sewn;  // panels and their edges
     for (const Seam& seam : pattern_.seams) {
@@ -133,7 +135,7 @@ class PanelPlacer {
       const bool around = part_of(pattern_.panels[a.first]) == part && part_of(pattern_.panels[b.first]) == part;
       if (seam.is_closure() && around) return true;
     }
-    // A slit is an edge that continues a seam but is not sewn.
+    // An unsewn edge that continues a sewn edge without a corner is a slit.
     for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
       const std::vector<PanelEdge>& edges = pattern_.panels[p].edges;
       for (std::size_t e = 0; e < edges.size() && part_of(pattern_.panels[p]) == part; ++e) {
@@ -206,7 +208,6 @@ class PanelPlacer {
       }
     if (pairs.empty()) return std::nullopt;
     const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
-    // Start at the end of the tube with the largest s.
     Vec2 position(0, tube.high());
     for (int round = 0; round < kSeamRounds; ++round) {
       double sum = 0;
@@ -314,7 +315,8 @@ void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> tria
     if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
   for (const mesh::Edge& edge : edges.edges) {
     const auto [a, b] = edge.vertices;
-    // A vertex on the rim is smoothed along the rim only: it has no inner neighbours.
+    // A vertex on the rim is smoothed along the rim only: inner vertices do not count as its
+    // neighbours.
     if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
     if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
   }

@@ -22,7 +22,8 @@ struct SheetSize {
   bool is_writable() const;
 };
 
-/// Size of the sheet that contact_sheet() makes of `pictures` (at least one). Does not read the pixels of the pictures.
+/// Size of the sheet that contact_sheet() makes of `pictures` (at least one) with `columns` (at
+/// least 1). Does not read the pixels of the pictures.
 SheetSize contact_sheet_size(std::span<const SheetPicture> pictures, int columns);
 
 /// Lays out pictures of one size in rows under a heading. The size of the text is proportional to the width of the

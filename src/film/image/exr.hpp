@@ -27,7 +27,7 @@ struct Layers {
 /// those of Rec. 709, which sRGB shares. Throws Error(output_failed) with the reason.
 void write_exr(const std::filesystem::path& file, const Layers& layers, const Metadata& metadata = {});
 
-/// Size [pixels] of a file, and those of its attributes that are texts.
+/// Size of the picture in a file [pixels], and those attributes of the file that are texts.
 struct ExrHeader {
   int width = 0, height = 0;
   Metadata metadata;

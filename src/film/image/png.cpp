@@ -157,8 +157,8 @@ bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x80; });
 }
 
-// Whether a key is allowed in PNG: 1 to 79 printable characters without spaces at the ends. libpng would silently
-// change other keys.
+// Whether a key has 1 to 79 printable ASCII characters without spaces at the ends, as PNG requires.
+// libpng would silently change other keys.
 bool is_key(std::string_view key) {
   const bool printable = std::all_of(key.begin(), key.end(), [](unsigned char c) { return c >= 32 && c < 127; });
   return printable && !key.empty() && key.size() < 80 && key.front() != ' ' && key.back() != ' ';

@@ -14,9 +14,10 @@ class CameraMounts {
  public:
   CameraMounts(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Moves each camera that follows an obstacle or part. The snapshot must contain the cameras as their keys place
-  /// them. Transforms position and target by the motion of the obstacle or part since the start. Takes time linear in
-  /// the number of vertices of the followed obstacles.
+  /// Moves each camera that follows an obstacle or part. The snapshot must contain the cameras as
+  /// their keys place them. Transforms position and target by the motion of the obstacle or part
+  /// since the start of the run; without scene::Camera::follow_rotation, only by its translation.
+  /// Takes time linear in the number of vertices of the followed obstacles.
   void move(frame::FrameSnapshot& snapshot) const;
 
  private:

@@ -15,10 +15,10 @@ struct PlanItem {
   std::string reason;
 };
 
-/// Lists the parts without building the simulation. Reads the files of characters (for the size of their key
-/// frames and what cloth passes through), and builds the cloths from meshes and from fitted patterns (for their rest
-/// shapes); it reads and builds nothing else. If a file or cloth
-/// cannot be used, throws Error with the code asset_unreadable or scene_invalid.
+/// Lists the parts without building the simulation. Reads the files of characters, for the size of
+/// their key frames and for the parts that do not collide. Builds the cloths from meshes, for the
+/// source of their rest shapes, and those from fitted patterns, for their fit. Reads and builds
+/// nothing else. Throws Error(asset_unreadable, scene_invalid) if a file or cloth cannot be used.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
 /// Whether anything in the scene can collide.

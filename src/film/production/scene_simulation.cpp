@@ -52,7 +52,8 @@ frame::SnapshotPtr SceneSimulation::snapshot() const {
   return current_;
 }
 
-// The quantity that heat colours show, per cloth and particle; empty until all cloths are put on.
+// The quantity that heat colours show, per cloth and particle; empty without heat colours, and
+// until all cloths are put on.
 std::vector<std::vector<float>> SceneSimulation::heat() const {
   std::vector<std::vector<float>> heat;
   for (std::size_t c = 0; c < model().cloths.size() && heat_ != scene::HeatQuantity::none && all_put_on(); ++c) {

@@ -45,7 +45,8 @@ std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame:
   return chosen(is_subject);
 }
 
-/// Weights of a Gaussian from its centre outward; both sides together sum to 1. `width`: standard deviation [entries].
+/// Weights of a Gaussian, from its centre to one side. `width`: standard deviation [entries]. The
+/// sum of the centre and of both sides is 1.
 std::vector<double> gaussian(double width) {
   std::vector<double> weights{1};
   double sum = 1;
@@ -135,14 +136,16 @@ frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string&
   return result;
 }
 
-/// Places one camera for all frames, at the smallest distance that shows every frame.
+/// Places one camera for all frames, at the smallest distance from which the subjects of every
+/// frame are in view.
 void CameraPath::compute_fixed_camera() {
   FrustumFit all = frames_.front().fit;
   for (const Frame& frame : frames_) all.add(frame.fit);
   for (Frame& frame : frames_) all.place(frame.camera, subject_bounds_.center());
 }
 
-/// Lets the camera orbit the centre of all subjects, at the smallest distance that shows every frame.
+/// Lets the camera orbit the centre of all subjects, at the smallest constant distance from which
+/// the subjects of every frame are in view.
 void CameraPath::compute_orbit() {
   const Vec3 center = subject_bounds_.center();
   double distance = kMinEyeDistance;
@@ -158,8 +161,9 @@ double CameraPath::frames_in(double seconds) const {
   return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;
 }
 
-/// Gaussian means of the subjects' centres over neighbouring frames. At both ends, point reflection continues the
-/// trajectory of the centre. Thus, if the subjects move steadily, the camera does too, from the first frame on.
+/// Gaussian means of the subjects' centres over neighbouring frames. Beyond both ends of the run,
+/// point reflection continues the trajectory of the centre. Thus, if the centre moves at a constant
+/// velocity, the means do too, from the first frame on.
 std::vector<Vec3> CameraPath::smooth_centers() const {
   const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));
   const auto last = static_cast<std::ptrdiff_t>(frames_.size()) - 1;
@@ -178,9 +182,10 @@ std::vector<Vec3> CameraPath::smooth_centers() const {
   return smooth;
 }
 
-/// Moves the camera with the centre of the subjects. Each frame needs a certain distance to show its subjects. Kind
-/// `follow` keeps the largest of these distances. Kind `close` takes for each frame the maximum of the needed distances
-/// within the kernel, then smooths these maxima with the kernel; thus no frame gets less than it needs.
+/// Moves the camera with the centre of the subjects. Each frame needs a certain distance to show
+/// its subjects. Kind `follow` keeps the largest of these distances. Kind `close` first takes, for
+/// each frame, the largest of the distances of the frames that the kernel covers. It then smooths
+/// these maxima with the kernel. Thus, no frame gets a smaller distance than it needs.
 void CameraPath::compute_following_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   const auto count = static_cast<std::ptrdiff_t>(frames_.size());
@@ -210,8 +215,9 @@ void CameraPath::compute_following_camera() {
   }
 }
 
-/// Keeps the camera in place and turns it towards the centre of the subjects. If the scene gives no field of view,
-/// chooses one that shows the subjects' boxes in all frames, at most kMaxFieldOfView.
+/// Keeps the camera in place and turns it towards the centre of the subjects. If the scene gives no
+/// field of view, chooses one that shows the subjects' boxes in all frames, but at least 1 degree
+/// and at most kMaxFieldOfView.
 void CameraPath::compute_tracking_camera() {
   const std::vector<Vec3> centers = smooth_centers();
   double tangent = 0;

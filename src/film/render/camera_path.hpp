@@ -16,19 +16,23 @@ class CameraPath {
   /// `aspect`: width / height of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
-  /// Whether the camera is computed, so that no frame can be drawn until all are known. Throws as find_camera() does.
+  /// Whether the camera is computed from the frames of the run, instead of placed by the scene.
+  /// Throws as find_camera() does.
   static bool is_computed(const frame::FrameSnapshot& snapshot, const std::string& camera);
 
   /// To compute the camera, call add_frame() with every frame of the run, in order, and then compute_cameras().
   void add_frame(const frame::FrameSnapshot& snapshot);
   void compute_cameras();
 
-  /// The camera of a frame. A computed camera requires at least one added frame; the result is the camera of the last
-  /// added frame that is not later than `snapshot` or, if all are later, of the first added frame.
+  /// The camera of a frame. Throws as find_camera() does. If the camera is computed, call
+  /// compute_cameras() before, with at least one added frame. The result is then the camera of the
+  /// last added frame that is not later than `snapshot` or, if all are later, of the first added
+  /// frame.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:
-  /// One frame: the points that must be in view (`fit`), the bounding box of these points, and the camera.
+  /// One frame: its camera, the positions of the eye from which the subjects are in view (`fit`),
+  /// and the bounding box of the subjects [m].
   struct Frame {
     int number = 0;
     double time = 0;
@@ -48,12 +52,13 @@ class CameraPath {
   double aspect_;
   std::vector<Frame> frames_;
   Vec3 up_ = Vec3::UnitZ();        // upward axis of the scene
-  std::optional<Box3> cloth_box_;  // box that limits how far a camera of kind `whole` follows cloth (kClothRange)
+  std::optional<Box3> cloth_box_;  // kind `whole` need not show cloth beyond it (kClothRange)
   Box3 subject_bounds_;            // bounds of the subjects of all frames
   bool azimuth_changes_ = false;   // the azimuth differs between frames
 };
 
-/// The camera for a single frame, computed from this frame alone.
+/// The camera of a frame: placed by the scene, or computed from this frame alone. Parameters: as
+/// for CameraPath. The result has the kind `placed`.
 frame::Camera camera_of(const frame::FrameSnapshot& snapshot, const std::string& camera, double aspect);
 
 }  // namespace weft::render

@@ -108,7 +108,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
-      // Ray through the pixel, one metre long along the view axis.
+      // Ray through the centre of the pixel. It advances one metre along the view axis.
       const Vec3 along = view.axes.forward + (2 * here.x() / width_ - 1) * view.tan_half_width * view.axes.right +
                          (2 * here.y() / height_ - 1) * view.tan_half_height * view.axes.up;
       const Hit& hit = hits_[static_cast<std::size_t>(y) * width_ + x];

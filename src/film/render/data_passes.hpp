@@ -16,24 +16,28 @@ struct Before {
   const frame::FrameSnapshot& snapshot;
   View view;
 
-  /// Earlier positions of `surface`, found by its name; null if `snapshot` has no such surface with `count` vertices.
+  /// Earlier positions of the surface with the name of `surface`. Null if `snapshot` has no surface
+  /// with this name and `count` vertices.
   const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 
-/// Finds the nearest triangle of each pixel by rasterising on the CPU in single precision. Then intersects the pixel's
-/// ray with the plane of this triangle in double precision. Holes that pictures cut into cloth (lace) count as cloth.
+/// Finds the nearest triangle of each pixel by rasterising on the CPU in single precision. Then
+/// intersects the pixel's ray with the plane of this triangle in double precision. Holes that
+/// pictures cut into a surface (as in lace) count as part of the surface.
 class DataPasses {
  public:
   DataPasses(int width, int height) : width_(width), height_(height) {}
 
   /// Appends these channels to `layers`, as 32-bit floats:
   /// - depth.Z: distance along the view axis [m]; infinite where nothing is visible
-  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, towards the viewer
+  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, of the visible side; 0 where
+  ///   nothing is visible
   /// - id.object: 0 for nothing, 1 for the floor, 2 + i for surface i of the picture; id.part: 1 + k for part k of that
   ///   surface, 0 if it has no parts
-  /// - uv.U, .V: Surface::uv (weft, warp) [m]; 0 without
-  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the motion of the
-  ///   camera; a surface without `before`->positions() counts as still; 0 without `before`
+  /// - uv.U, .V: Surface::uv (weft, warp) [m]; 0 if the surface has none
+  /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the
+  ///   motion of the camera; a surface for which `before`->positions() is null counts as still; 0
+  ///   if `before` is absent, and for the backdrop
   /// - heat.V: strain or speed (Stage::heat), only if a surface has heat values
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);

@@ -9,10 +9,11 @@
 
 namespace weft::render {
 
-/// Calls write(index, covered, depth, weight_b, weight_c) for each texel of the triangle's bounding box inside the
-/// `width` x `height` texels, row by row; never for a triangle seen edge-on. `covered`: whether the triangle covers the
-/// texel's centre. `weight_b`, `weight_c`: barycentric weights of b and c. Corners: x, y [texels]; z is the depth,
-/// which is interpolated linearly.
+/// Rasterises a triangle. Corners: x, y [texels]; z is the depth, which is interpolated linearly.
+/// Calls write(index, covered, depth, weight_b, weight_c), row by row, for each texel inside the
+/// `width` x `height` texels whose centre is in the bounding box of the triangle. `index`: that of
+/// the texel, row by row. `covered`: whether the triangle covers the texel's centre. `weight_b`,
+/// `weight_c`: barycentric weights of b and c. Does nothing if the triangle is seen edge-on.
 template <class Write>
 void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, int width, int height,
                    const Write& write) {
@@ -34,7 +35,7 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
     const float b_first = (dx * c_y - c_x * dy) / area, c_first = (b_x * dy - dx * b_y) / area;
     for (int x = x0; x <= x1; ++x) {
       const float step = static_cast<float>(x - x0), to_b = b_first + step * b_step, to_c = c_first + step * c_step;
-      // The tolerance closes gaps from rounding.
+      // The tolerance closes gaps that rounding would leave between neighbouring triangles.
       const bool covered = std::min(std::min(to_b, to_c), 1 - to_b - to_c) >= -1e-5f;
       write(y * width + x, covered, a.z() + to_b * depth_b + to_c * depth_c, to_b, to_c);
     }

@@ -8,7 +8,8 @@
 namespace weft::render {
 namespace {
 
-/// Distributes the rasteriser's CPU time evenly over the pictures that are being drawn. `sums`: the time of each.
+/// Distributes the rasteriser's CPU time evenly over the pictures that are being drawn. `sums`: the
+/// rasteriser time of each of these pictures [s].
 struct RasteriserTime {
   std::mutex mutex;
   std::vector<double*> sums;

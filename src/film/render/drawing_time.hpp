@@ -1,5 +1,5 @@
-// CPU time of drawing: the sum over the drawing thread, the rasteriser threads and the threads that help in its loops.
-// A concurrent simulation or encoder does not count.
+// CPU time of drawing: the sum over the drawing thread, the rasteriser threads, and the threads
+// that help in loops of the drawing thread. A concurrent simulation or encoder does not count.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace weft::render {
 
-/// CPU seconds that other threads have spent in loops of the calling thread.
+/// CPU seconds that other threads have spent in calls of drawing_for() by this thread.
 inline thread_local double helper_cpu_seconds = 0;
 
 /// parallel_for() for drawing: CPU time of helping threads counts as the caller's.
@@ -28,8 +28,9 @@ void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
   helper_cpu_seconds += helped;
 }
 
-/// CPU time of one picture, from construction on. All pictures of the process share the rasteriser threads: pictures
-/// that are drawn at the same time split the time of these threads equally.
+/// CPU time of one picture, from the construction of the timer on. All pictures of the process
+/// share the rasteriser threads. If several timers exist, the time of these threads is split
+/// equally among them.
 class DrawingTimer {
  public:
   DrawingTimer();
@@ -41,7 +42,7 @@ class DrawingTimer {
 
  private:
   double start_seconds_;                   // CPU time of this thread at construction
-  mutable double rasteriser_seconds_ = 0;  // rasteriser time of this picture; each timer updates that of all timers
+  mutable double rasteriser_seconds_ = 0;  // [s]; updated when any timer is read
 };
 
 }  // namespace weft::render

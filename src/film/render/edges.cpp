@@ -8,7 +8,8 @@ namespace weft::render {
 namespace {
 
 constexpr double kLineOpacity = 0.62;  // fraction by which a line lowers sRGB values
-// An edge is hidden if it is behind the visible surface by more than this fraction of its distance from the eye.
+// An edge is hidden if it is farther from the eye than the visible surface by more than this
+// fraction of its own distance.
 constexpr double kDepthTolerance = 4e-3;
 
 std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {

@@ -28,10 +28,12 @@ frame::Camera automatic_camera();
 /// Axes of a computed camera, from its azimuth and elevation.
 ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
-/// The positions from which an eye with given axes has all points in its picture. t = (1 - margin) tan(half of the
-/// field of view), horizontal or vertical. In the eye's axes (z forward), a point (x, y, z) keeps the margin to the
-/// left and right edges of the picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points together require t
-/// cz - cx <= min(t z - x) = low and t cz + cx <= min(t z + x) = high. The same holds for y.
+/// The positions from which an eye with given axes has all points in its picture, at least a margin
+/// away from the edges of the picture. Let t be (1 - margin) tan(half of the field of view),
+/// horizontal or vertical. In the eye's axes (z forward), a point (x, y, z) keeps the margin to the
+/// left and right edges of the picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points
+/// keep it if t cz - cx <= low = min(t z - x) and t cz + cx <= high = min(t z + x). The same holds
+/// for y.
 class FrustumFit {
  public:
   FrustumFit() = default;
@@ -43,12 +45,14 @@ class FrustumFit {
   void add(const FrustumFit& other);
 
   const ViewAxes& axes() const { return axes_; }
-  /// Smallest distance from `center` [m] at which an eye that looks at `center` has all points in its picture.
+  /// Smallest distance from `center` [m] at which an eye that looks at `center` along the view axis
+  /// has all points in its picture.
   double distance(const Vec3& center) const;
-  /// Sets position and target of the camera. The eye is as far forward along the view axis as keeps all
-  /// points in the picture, but at least 0.05 m before the depth of `center`.
-  /// The points are centred in the direction of the picture (horizontal or vertical) that needs the larger distance.
-  /// The target is on the view axis, at the depth of `center`.
+  /// Sets position and target of the camera. Depth is the coordinate along the view axis. The eye
+  /// has the largest depth at which all points are in the picture, but at least 0.05 m less depth
+  /// than `center`. Of both directions of the picture (horizontal and vertical), the points are
+  /// centred in the one that needs the larger distance. The target is on the view axis, at the
+  /// depth of `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:

@@ -22,8 +22,9 @@ int laid(const frame::Appearance& look) {
   return 1;
 }
 
-// Depth offset of refined cloth towards the viewer [m], about the distance of its curved triangles from the simulated
-// faces. Without this offset, parts of the surfaces below the cloth would be visible.
+// Depth offset of refined cloth towards the viewer [m]. Parts of the curved triangles lie behind
+// the simulated faces, by up to max_midpoint_offset(). Without the offset, surfaces below the cloth
+// would be visible there.
 constexpr float kDepthOffset = 1.5e-3f;
 float nearer(const SurfaceBuffers& surface) {
   return surface.refined() ? kDepthOffset : 0.0f;
@@ -126,7 +127,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
     const GeometryProgram& program = use({});
     gl_->Uniform1f(program.surface, kFloor);
     gl_->Uniform1f(program.nearer, 0);
-    // The floor is invisible from below. It writes neither its normal, which is constant, nor rest coordinates.
+    // The floor is invisible from below. It writes only distance and surface number.
     gl_->Enable(GL_CULL_FACE);
     for (const GLuint unused : {0, 1, 3, 4}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     floor->draw();
@@ -179,7 +180,8 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
   check_framebuffer(*gl_, target_, "geometry buffer");
 }
 
-/// If any surface of the picture is painted, the shaders of all surfaces write whether a pixel is painted.
+/// If any surface of the picture is painted, the shaders of all surfaces write the paint of each
+/// pixel, which is 0 for surfaces that are not painted.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
   const auto use_for = [&](int laid) -> const GeometryProgram& {
     const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});

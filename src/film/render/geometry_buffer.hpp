@@ -22,15 +22,17 @@ class GeometryBuffer {
  public:
   GeometryBuffer(const Gl& gl, int width, int height);
 
-  /// Draws, as seen from `eye`, the floor (if not null) and all surfaces except those flagged in `left_out` (empty: no
-  /// exceptions). `far`: distance stored where nothing is visible [m]. Binds the results to texture units: normal and
-  /// heat to 4, rest coordinates to 5, seen() to 8, colours to 10 if something is painted, trims to 11 if cloth has
-  /// trims.
+  /// Draws the floor (if not null) and all surfaces except those flagged in `left_out` (empty: no
+  /// exceptions), in the view of the bound frame block. `eye`: position of the eye of this view
+  /// [m]. `far`: distance stored where nothing is visible [m]. Binds the results to texture units:
+  /// normal and heat to 4, rest coordinates to 5, seen() to 8; if painted(), colours to 10; if
+  /// trimmed(), trims to 11.
   void draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, const FloorBuffers* floor,
             const Vec3& eye, double far);
-  /// Depth peeling, for translucent cloth: draws the nearest layer of the surfaces flagged in `left_out` over the
-  /// result of draw(), as PixelClass::cloth. The new layer replaces that of the previous call. `deeper`: draws the
-  /// nearest layer behind that of the previous call.
+  /// Depth peeling, for translucent cloth: draws the nearest layer of the surfaces flagged in
+  /// `left_out` over the result of draw(). The pixels of the layer get PixelClass::cloth, all
+  /// others PixelClass::backdrop. The new layer replaces that of the previous call. If `deeper` is
+  /// true, draws the nearest layer behind that of the previous call.
   void draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper);
 
   /// Whether frame::is_painted() holds for a surface of the last picture.
@@ -42,8 +44,10 @@ class GeometryBuffer {
 
   /// Reads back what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
-  /// Reads back, for each pixel that shows a surface, the world normal towards the viewer, of length 1 + rise() [m]
-  /// (shaders/geometry.frag); w: heat. Other pixels have arbitrary values.
+  /// Reads back, for each pixel that shows a surface other than the floor, the world normal on the
+  /// visible side. Its length is 1 + h, where h [m] is the height of the smooth surface above the
+  /// triangle along this normal (rise() in shaders/geometry.frag). w: heat. Other pixels have
+  /// arbitrary values.
   void read_normals(std::vector<Eigen::Vector4f>& normals) const;
 
   /// Distance and surface number of each pixel; see Seen.

@@ -24,8 +24,9 @@ std::vector<Instant> instants(double shutter, bool lens, int count) {
   for (int k = 0; k < count; ++k) {
     Instant instant;
     instant.back = shutter / 360 * (k + 0.5) / count;
-    // Points spread evenly over the disc (Vogel 1979). The factor 5 changes their order, so that position on the lens
-    // and time do not correlate. Each point occurs once, because `count` is a power of two if `lens` is true.
+    // Points spread evenly over the disc (Vogel 1979). The factor 5 changes their order, so that
+    // position on the lens and time do not correlate. Each point occurs once, because `count` is
+    // not a multiple of 5.
     const int place = 5 * k % count;
     if (lens)
       instant.lens = std::sqrt((place + 0.5) / count) * Vec2(std::cos(golden * place), std::sin(golden * place));

@@ -14,13 +14,16 @@ struct Instant {
   Vec2 lens{0, 0};  ///< point on the lens [radii of the lens]
 };
 
-/// `count` instants, evenly spread over the time in which the shutter is open. This time is `shutter` degrees long
-/// (360: the time between two frames) and ends at the drawn frame. If `lens` is true, the instants are also spread over
-/// the lens; else, all are at its centre. The result is empty if `shutter` is 0 and `lens` is false.
+/// `count` instants, evenly spread over the time in which the shutter is open. This time is
+/// `shutter` degrees long (360: the time between two frames) and ends at the drawn frame. If `lens`
+/// is true, the instants are also spread over the lens, and `count` must not be a multiple of 5;
+/// else, all are at its centre. The result is empty if `shutter` is 0 and `lens` is false.
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
-/// Interpolates linearly between a frame (back = 0) and the one before (back = 1): time, positions, and direction,
-/// position, target and intensity of lights. Surfaces and lights that `before` lacks stay as in `now`.
+/// Interpolates linearly between a frame (back = 0) and the one before (back = 1): time, positions,
+/// and direction, position, target and intensity of lights. Surfaces and lights are matched by
+/// index. A surface stays as in `now` if the surface of `before` has another name or number of
+/// vertices, or does not exist. Lights that `before` lacks stay as in `now`.
 frame::FrameSnapshot between(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, double back);
 /// Interpolates position, target and field of view of a camera in the same way.
 frame::Camera between(const frame::Camera& now, const frame::Camera& before, double back);

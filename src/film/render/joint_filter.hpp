@@ -9,16 +9,19 @@
 
 namespace weft::render {
 
-/// Averages each of `planes` over 5 x 5 points, first along rows, then along columns. `step`: distance between these
-/// points [points]. A neighbour on another surface has no weight. On the same surface, it has more weight if it is near
-/// the tangent plane of the point and if its normal is similar; if `step` exceeds 1, also if its value is similar. The
-/// weight does not depend on the distance within the tangent plane: otherwise, floors at oblique view would be averaged
-/// along rows only, which would be visible as streaks. `scratch`: as many planes as `planes`; overwritten.
+/// Averages each of `planes` (at most four) over 5 x 5 points, first along rows, then along
+/// columns. `step`: distance between these points [points], at most 4. A neighbour on another
+/// surface, or on the other side of the surface, has no weight. Else, it has more weight if it is
+/// near the tangent plane of the point and if its normal is similar. If `step` exceeds 1, it also
+/// has more weight if its values in all planes are similar. The weight does not depend on the
+/// distance within the tangent plane: otherwise, floors at oblique view would be averaged along
+/// rows only, which would be visible as streaks. `scratch`: as many planes as `planes`;
+/// overwritten.
 void smooth(std::span<Plane> planes, std::span<Plane> scratch, const PixelPoints& points, int step);
 
-/// Averages `plane` over 5 x 5 points in a single pass, only at points whose `wanted` is above 0, and only over
-/// neighbours whose `known` is above 0. The weights are as in smooth(), but also fall with distance. `scratch`:
-/// overwritten.
+/// Averages `plane` over 5 x 5 points in a single pass, only at points whose `wanted` is above 0.
+/// The weights are as in smooth(), but also fall with distance in space, and are multiplied by
+/// `known` (0 or 1) of the neighbour. `scratch`: overwritten.
 void smooth_where(Plane& plane, Plane& scratch, const Plane& wanted, const Plane& known, const PixelPoints& points,
                   int step);
 

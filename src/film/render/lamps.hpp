@@ -6,8 +6,8 @@
 
 namespace weft::render {
 
-/// Directions from eight points toward a lamp, and the relative intensity of the lamp at these points: 1 for a sun; for
-/// a spot, 1 at its target.
+/// Directions from eight points toward a lamp, and the relative intensity of the lamp at these
+/// points. The intensity is 1 for a sun. For a spot, it is 1 at its target and 0 outside its cone.
 struct Toward {
   Lanes3 direction;  ///< unit length
   Lanes distance;    ///< distance of the lamp [m]; 1e30 for suns

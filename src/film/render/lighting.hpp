@@ -14,8 +14,9 @@ namespace weft::render {
 
 using frame::kMaxLights;
 
-/// The first kMaxLights lights of the snapshot. If it has none, the lights of the look: a warm key light from above and
-/// left of the camera; for the look `stage`, also a rim light from the right, behind the subjects.
+/// The first kMaxLights lights of the snapshot. If the snapshot has none: the lights of the look.
+/// All looks have a warm key light from the left, above and behind the camera. The look `stage`
+/// also has a rim light from the right, above and behind the subjects.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
                                            const ViewAxes& camera, const Vec3& up);
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kDivisor = 2;
 
-/// Reduces detail, since reflections are blurred.
+/// Traces shadows and surroundings at points twice as far apart, because reflections are blurred.
 QualitySettings plainer(QualitySettings quality) {
   quality.shadow_divisor *= kDivisor;
   quality.ambient_divisor *= kDivisor;

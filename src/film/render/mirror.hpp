@@ -1,4 +1,5 @@
-// Reflections in a glossy floor: the subjects as seen from below it, drawn small.
+// Reflections in a glossy floor: the subjects as seen by the eye mirrored at the floor, drawn with
+// half the width and height of the picture.
 #pragma once
 
 #include <span>
@@ -24,11 +25,11 @@ class Mirror {
     std::span<const TracedLight::Surface> traced;
     const ReflectedLight& light;
     double heat_scale;
-    bool painted;  ///< whether pictures on surfaces are shown
+    bool painted;  ///< whether pictures and colours of parts are shown
   };
-  /// Draws the subjects from `view`, a mirrored() view, whose frame block is `block`. The light block must be bound.
-  /// Binds the picture to texture unit 13 and its distances to unit 14. Leaves the frame block and other units bound to
-  /// the data of this pass.
+  /// Draws the subjects from `view`, a mirrored() view, whose frame block is `block`. The light
+  /// block must be bound. Binds the picture to texture unit 13 and its distances to unit 14.
+  /// Afterwards, the frame block and the other texture units are bound to data of this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }

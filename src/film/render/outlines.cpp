@@ -14,18 +14,18 @@ namespace {
 
 constexpr int kWordBits = 64;
 
-// Offsets of the samples from the pixel's lower left corner: Direct3D's pattern of 16 samples. No two samples share one
-// of the 16 rows or columns, so that nearly horizontal and vertical edges also have 17 levels of coverage. (With eight
-// samples, an edge that moves slightly back and forth over a sample flickers visibly.)
+// Offsets of the samples from the pixel's lower left corner: Direct3D's pattern of 16 samples,
+// shifted by 1/32. No two samples share one of the 16 rows or columns, so that nearly horizontal
+// and vertical edges also have 17 levels of coverage.
 constexpr float kOffsetX[] = {19 / 32.f, 15 / 32.f, 11 / 32.f, 25 / 32.f, 7 / 32.f, 21 / 32.f, 27 / 32.f, 23 / 32.f,
                               13 / 32.f, 17 / 32.f, 9 / 32.f,  5 / 32.f,  1 / 32.f, 31 / 32.f, 29 / 32.f, 3 / 32.f};
 constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 32.f, 27 / 32.f, 23 / 32.f, 7 / 32.f,
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
-// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance is linear.
-// 1 / distance has a step where a surface ends, and a kink where a surface folds. At a crease seen head-on, the change
-// of slope from pixel to pixel, relative to 1 / distance, is the tangent of the crease angle times the angle of a
-// pixel.
+// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance
+// is linear. Where a surface ends, 1 / distance has a step; where a surface folds, the slope of 1 /
+// distance changes. Beside a face seen head-on, this change [per pixel], relative to 1 / distance,
+// is the tangent of the crease angle times the angle of a pixel.
 constexpr double kMinCreaseTangent = 0.4;
 // A sample takes the colour of its pixel if the point that the pixel shows is in the plane of the sample's triangle, up
 // to this tolerance [multiples of `kink_`].
@@ -50,7 +50,8 @@ struct Edge {
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
 
-// Opacity threshold of each sample [sixteenths]. The thresholds of consecutive samples differ much.
+// Order of the opacity thresholds: that of sample s is (kThresholdOrder[s] + 1/2) / 16. The
+// thresholds of consecutive samples differ much.
 constexpr int kThresholdOrder[] = {0, 8, 12, 4, 10, 2, 6, 14, 9, 1, 5, 13, 3, 11, 15, 7};
 
 /// The opacity of a triangle at points of the rendered picture. If an attribute is linear over the triangle, then
@@ -235,13 +236,14 @@ void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
   }
 }
 
-/// Each sample has its own threshold, so that the fraction of samples that show the surface equals its opacity.
+/// Samples the triangles of a mesh with holes. Each sample has its own opacity threshold, so that
+/// the fraction of samples that show the surface is its opacity, rounded to sixteenths.
 void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const View& view) {
   for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
     const PaintedRange& range = mesh.holes->ranges()[r];
     const Opacity* opacity = mesh.holes->opacity(r);
     for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
-      // Triangles that cross the near plane are omitted.
+      // Triangles with a corner nearer than the near plane are omitted.
       if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) < view.near) continue;
       if (opacity == nullptr) {
         sample(vertices_[a], vertices_[b], vertices_[c], surface);
@@ -256,7 +258,7 @@ void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const Vie
   }
 }
 
-/// Writes the floor to samples behind all surfaces, if the eye is above it.
+/// Writes the floor to all samples that show nothing nearer, if the eye is above the floor.
 void Outlines::sample_floor(const Floor& floor, const View& view) {
   const double height = floor.normal.dot(view.eye - floor.point);
   if (height <= 0) return;
@@ -279,10 +281,12 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
   }
 }
 
-/// The source of each sample: the pixel from which the sample takes its colour. This is the sample's own pixel if it
-/// shows the sample's surface in the plane of the sample's triangle. Else it is that neighbour with the same surface
-/// whose point is nearest to this plane, so that samples on each side of an edge take colours from their own side.
-/// Without such a neighbour, it is the own pixel.
+/// The source of each sample: the pixel from which the sample takes its colour. If the sample's own
+/// pixel shows the same surface, in the plane of the sample's triangle and on the same side of a
+/// crease, this pixel is the source. Else, the source is the pixel, among the own pixel and its
+/// eight neighbours, whose point on the same surface is nearest to this plane; an own pixel on the
+/// other side of a crease is excluded. Thus, samples on each side of an edge take colours from
+/// their own side. If no pixel qualifies, the own pixel is the source.
 std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t slot, std::span<const Seen> seen) const {
   const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
@@ -310,8 +314,9 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
     // Most samples belong to the same triangle as the sample before, and then have the same source.
     if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
         slope_y != samples.slope_y[s - 1]) {
-      // Distance of the point that pixel (i, j) shows from the sample's plane along the view axis, relative to the
-      // distance from the eye. 1e9 if the pixel shows another surface; 0 for the backdrop.
+      // Distance of the point that pixel (i, j) shows from the sample's plane along the view axis,
+      // relative to the distance from the eye. 1e9 if the pixel shows another surface than the
+      // sample; 0 if both show the backdrop.
       const auto off_plane = [&](int i, int j) {
         const Seen& there = seen[index(i, j)];
         if (there.surface != surface) return 1e9f;

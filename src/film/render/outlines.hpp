@@ -61,7 +61,7 @@ class Outlines {
   std::array<std::size_t, kSamples> find_sources(std::size_t slot, std::span<const Seen> seen) const;
   Vertex to_picture(const Eigen::Vector4d& clip) const;
 
-  int width_, height_, words_;  // words_: bit words in a row
+  int width_, height_, words_;  // words_: number of words of `bits_` in a row
   float kink_ = 0;              // minimum second difference of 1 / distance at a fold, relative to 1 / distance
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
   std::vector<int> first_;      // by word of `bits_`: index in `pixels_` of the first pixel of the word

@@ -15,7 +15,8 @@
 
 namespace weft::render {
 
-/// One channel of a picture: a number per pixel. Each row has a border, so that neighbours can be read without a check.
+/// One channel of a picture: a number per point. Each row has a border at both ends, so that
+/// neighbours in the row can be read without a check.
 class Plane {
  public:
   static constexpr int kBorder = 8;  ///< border on either side of each row [numbers]: as many as a packet has lanes
@@ -47,7 +48,8 @@ class PixelPoints {
   int height() const { return height_; }
   int divisor() const { return divisor_; }
 
-  /// What a point of row y shows: Kind::nothing if x is up to Plane::kBorder beyond an end of the row.
+  /// What point x of row y shows. x may lie up to Plane::kBorder beyond either end of the row; the
+  /// result is then Kind::nothing.
   Kind kind(int x, int y) const { return static_cast<Kind>(static_cast<int>(kinds_.row(y)[x])); }
   /// The next four functions return values of eight points of row y, from x on. kinds(): values of Kind as numbers.
   Lanes kinds(int x, int y) const { return Eigen::Map<const Lanes>(kinds_.row(y) + x); }
@@ -60,7 +62,7 @@ class PixelPoints {
   const float* surfaces(int y) const { return surface_.row(y); }
   const float* position(int axis, int y) const { return position_[axis].row(y); }
   const float* normal(int axis, int y) const { return normal_[axis].row(y); }
-  /// Points per metre, perpendicular to the view axis.
+  /// Points per metre at the distance of each point, perpendicular to the view axis.
   const float* densities(int y) const { return density_.row(y); }
 
  private:

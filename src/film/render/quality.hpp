@@ -13,9 +13,9 @@ struct QualitySettings {
   int ambient_rays;      ///< rays per point for the light from surroundings and surfaces
   int instants;          ///< number of sharp pictures averaged for depth of field; maximum number for motion blur alone
   bool refines;          ///< draws cloth with few triangles as a smooth surface with four times as many triangles
-  bool trims;            ///< draws hems, seams and edges of cloth, and translucent cloth
+  bool trims;            ///< draws hems, seams and thickness of cloth, and translucent cloth
   bool mirrors;          ///< glossy floors reflect the subjects
-  bool spots_on_grid;    ///< the light of spots on open floor may be interpolated on a grid, as that of suns
+  bool spots_on_grid;    ///< the light of spots on open floor may be interpolated on a grid
 };
 
 QualitySettings quality_settings(Quality quality);

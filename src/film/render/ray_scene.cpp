@@ -20,7 +20,8 @@ float random_fraction(unsigned ray, unsigned triangle) {
   return static_cast<float>(((state >> 22u) ^ state) >> 8) / 16777216.0f;
 }
 
-/// Opacity of a triangle at barycentric coordinates u, v: that of the mesh, times that of its picture if it cuts holes.
+/// Opacity of a triangle at barycentric coordinates u, v: that of the mesh, times that of the
+/// picture if the picture cuts holes.
 float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) {
   if (mesh.holes == nullptr) return mesh.opacity;
   const auto ranges = mesh.holes->ranges();
@@ -64,7 +65,8 @@ void put(const Rays& rays, RTCRay8& to) {
 
 }  // namespace
 
-// One build uses the same Embree kernels on every processor, so that its pictures do not depend on the processor.
+// A build of this program uses the same Embree kernels on every processor, so that the hits do not
+// depend on the processor.
 #ifdef __AVX2__
 constexpr const char* kKernels = "isa=avx2";
 #else

@@ -62,10 +62,10 @@ class RayScene {
   /// stay valid while rays are traced. Throws std::bad_alloc, or Error(internal) with the number of Embree's error.
   void build(std::span<const DrawnMesh> meshes);
 
-  /// 1 for each wanted ray that a surface stops, else 0. A surface with holes or an opacity below 1 stops a random
-  /// fraction of the rays that hit it. This fraction is the opacity at the point.
+  /// 1 for each wanted ray that a surface stops, else 0. A surface with holes or an opacity below 1
+  /// stops a ray at random, with a probability equal to the opacity at the hit point.
   Lanes blocked(const Rays& rays) const;
-  /// The nearest surface that stops each wanted ray. Translucent surfaces stop a random fraction, as in blocked().
+  /// The nearest surface that stops each wanted ray. Surfaces stop rays at random as in blocked().
   Hits nearest(const Rays& rays) const;
 
  private:

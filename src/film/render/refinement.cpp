@@ -29,7 +29,6 @@ Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& no
   Vec3 off = along.dot(normal_b) * normal_b - along.dot(normal_a) * normal_a;
   off *= 0.125;
   if (off.norm() > max_offset) off *= max_offset / off.norm();
-  // The sum is zero if the normals are opposite.
   const Vec3 normal = sum.squaredNorm() > 1e-6 ? Vec3(sum.normalized()) : normal_a;
   return {0.5 * (a + b) + off, normal};
 }

@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Assumed open fraction of the surroundings at the point that a ray hits. From there, only rays to lamps are traced.
+// Fraction of the surroundings that is assumed to be unoccluded at the point that a ray hits,
+// because only rays to lamps are traced from there.
 constexpr float kOpenAtHits = 0.6f;
 constexpr float kMinSlope = 0.02f;  // the floor is ignored for rays that descend less steeply [m/m]
 
@@ -30,7 +31,7 @@ Vector3f MeanColors::of(const frame::Appearance& look, bool back) {
   const bool cuts = paint.alpha == frame::Paint::Alpha::cutout;
   const auto [known, added] = means_.try_emplace({paint.texture, cuts}, Vector3f::Zero());
   if (added) {
-    // The mean of about 500 pixels is accurate enough.
+    // A sample of some 500 to 1,000 pixels is accurate enough.
     const std::size_t pixels = paint.texture->rgba.size() / 4, step = std::max<std::size_t>(1, pixels / 499);
     Vec3 sum = Vec3::Zero();
     double covered = 0;

@@ -17,8 +17,9 @@
 
 namespace weft::render {
 
-/// Mean linear colours of appearances. A picture with Alpha::over_color is ignored; in others, holes do not count. Each
-/// picture is averaged only once.
+/// Mean linear colours of appearances, of the front or of the `back`. A picture with
+/// Alpha::over_color is ignored. In a picture with Alpha::cutout, each pixel counts by its opacity.
+/// Each picture is averaged only once.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back);
@@ -30,7 +31,7 @@ class MeanColors {
 /// Albedo of both sides of a surface, by ranges of its drawn triangles.
 struct ReflectingSurface {
   struct Range {
-    std::size_t end;  ///< triangle after the last one
+    std::size_t end;  ///< index of the last triangle, plus 1
     Eigen::Vector3f front, back;
   };
   std::vector<Range> ranges;  ///< the last range also covers all further triangles
@@ -52,8 +53,9 @@ class ReflectedLight {
 
   struct Arriving {
     Lanes open = Lanes::Zero();  ///< 1 if the ray hits no surface; the floor counts as part of the surroundings
-    /// The radiance along the ray is `open` times that of the surroundings, plus `light`: all of the radiance if the
-    /// ray hits a surface; negative if it hits shaded floor, because the surroundings contain the floor fully lit.
+    /// The radiance along the ray is `open` times that of the surroundings, plus `light`. If the
+    /// ray hits a surface, `light` is all of the radiance. If the ray hits shaded floor, `light` is
+    /// negative, because the surroundings contain the floor fully lit.
     Lanes3 light;
   };
   Arriving arriving(const Rays& rays) const;

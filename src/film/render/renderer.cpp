@@ -26,7 +26,7 @@
 namespace weft::render {
 namespace {
 
-// Cloth is refined if all cloths together have at most this number of triangles; finer meshes look smooth without it.
+// Cloth is refined up to this number of triangles of all cloths; finer meshes are smooth enough.
 constexpr std::size_t kMaxRefinedTriangles = 20000;
 constexpr std::size_t kMaxPeeledLayers = 4;  // maximum number of drawn layers of translucent cloth
 // Motion blur averages so many sharp pictures (at most `instants`) that each covers at most this motion [pixels].

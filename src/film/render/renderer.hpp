@@ -22,7 +22,7 @@ struct Settings {
   std::string camera;          ///< name; empty: the scene's first camera; if it has none, automatic_camera()
   int threads = 0;             ///< number of threads of the software rasteriser; 0: its default
   bool layers = false;         ///< whether layers() will be called; pictures are then sharp, without blur
-  bool needs_image16 = false;  ///< whether image16() will be called
+  bool needs_image16 = false;  ///< whether the caller will call image16(); unused by Renderer
   std::optional<frame::Stage::Look> look;  ///< overrides the look of the scene
   std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides Stage::motion_blur
 
@@ -45,10 +45,13 @@ class Renderer {
 
   /// Sets the camera of a run. If this is not called, a computed camera is derived from the first drawn frame alone.
   void set_camera_path(CameraPath path);
-  /// `before`: the previous frame, for motion blur and for the motion in layers(); null: no motion.
+  /// Draws a frame. `before`: the previous frame, for motion blur and for the motion in layers();
+  /// null: no motion. Throws as find_camera() and heat_shown() do, and Error(internal) if OpenGL
+  /// reports an error or `snapshot` is inconsistent.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
-  /// Moves out the last picture as linear layers for compositors; they are empty in a second call, and without
-  /// Settings::layers. Channels R, G, B and A hold the surfaces alone, premultiplied.
+  /// Moves out the last picture as linear layers for compositors. The result has no channels
+  /// without Settings::layers, and in a second call for the same picture. Channels R, G, B and A
+  /// hold the surfaces alone, premultiplied.
   /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor and no
   /// translucent cloth, channel caught.A holds the alpha of the surfaces over the floor's shadow (black, with the
   /// fraction of blocked light as alpha). All layers of DataPasses follow.

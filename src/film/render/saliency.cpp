@@ -11,7 +11,7 @@
 namespace weft::render {
 namespace {
 
-// Number of rows of the grid on which occlusion is computed. In a picture of 16:9, a cell covers 1/9216 of the area.
+// Number of rows of the grid on which occlusion is computed.
 constexpr int kRows = 72;
 // Value of v in Saliency::motion at which the result is 1/2 [√(area of the cloth) per second].
 constexpr double kHalfScoreRate = 0.5;

@@ -11,10 +11,11 @@ namespace weft::render {
 struct Saliency {
   double coverage = 0;  ///< fraction of the picture that shows unoccluded cloth
   double folding = 0;   ///< 0: all cloth is flat; 1: the normals of the faces cancel each other
-  /// v / (v + 1/2). v: mean speed of the vertices relative to their mean velocity [√(area of the cloth) per second].
+  /// v / (v + 1/2). v: mean over the cloths, weighted by area, of the mean speed of the vertices of
+  /// a cloth relative to their mean velocity [√(area of this cloth) per second].
   double motion = 0;
 
-  /// Cloth outside the picture scores 0. Folding and motion each weigh at most as much as coverage.
+  /// 0 if no cloth is visible in the picture. Folding and motion each add at most the coverage.
   double score() const { return coverage * (1 + folding + motion); }
 };
 

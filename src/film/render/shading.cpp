@@ -49,8 +49,8 @@ void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corn
   gl.VertexArrayAttribBinding(array.name(), 0, 0);
 }
 
-/// The grid for slowly varying colours: cells with two triangles each. For the light of the floor, the error of
-/// interpolation is below half a level of 255, except if fades_steeply().
+/// The grid for slowly varying colours: cells with two triangles each. If fades_steeply(), the grid
+/// is too coarse for the floor.
 struct Grid {
   std::vector<Eigen::Vector2f> corners;
   std::vector<GLuint> triangles;
@@ -72,7 +72,8 @@ struct Grid {
   }
 };
 
-/// Replaces the colours of an appearance with clay.
+/// Replaces colours, roughness and finish of an appearance with those of clay, without threads,
+/// hem, metal and coat.
 frame::Appearance clay(const frame::Appearance& look) {
   frame::Appearance plain = look;
   plain.color = Vec3(0.74, 0.72, 0.69);

@@ -45,15 +45,18 @@ class Shading {
     bool heat = false;        ///< heat replaces the colours of cloth
     auto operator<=>(const Features&) const = default;
   };
-  /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture. Call before draw().
+  /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture.
+  /// Does nothing if the floor has no picture. Call before draw().
   void set_floor(const std::optional<Floor>& floor, double tint);
-  /// Computes the colours of the picture. `materials`: in the order of the surfaces. `heat_scale`: 1 / value at the hot
-  /// end of the scale, or 0 if cloth has its own colours. `subjects`: area that contains all surfaces. Outside
-  /// `shaded_floor`, the floor has neither shadow nor occlusion. The frame and light blocks, the textures of
-  /// TracedLight and those of the geometry buffer must be bound.
+  /// Computes the colours of the picture. `materials`: in the order of the surfaces. `heat_scale`:
+  /// 1 / value at the hot end of the scale, or 0 if cloth has its own colours. `subjects`: area
+  /// that contains all surfaces. Outside `shaded_floor`, the floor is drawn without shadow,
+  /// occlusion and reflected light. The frame and light blocks, the textures of TracedLight and
+  /// those of the geometry buffer must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
             std::span<const PixelArea> shaded_floor);
-  /// Draws the whole floor again, without shadow and occlusion. Call after draw() of the same picture.
+  /// Draws the whole floor again, without shadow, occlusion and light from other surfaces. Call
+  /// after draw() of the same picture.
   void draw_open_floor(const Features& features);
   /// Draws cloth only and writes its opacity to alpha. Call after draw() of the same picture.
   void draw_layer(Features features, const PixelArea& subjects);
@@ -93,8 +96,9 @@ class Shading {
   Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
 };
 
-/// Fraction of the light that a surface stops at normal incidence. It is below 1 only for sheer cloth: dense weaves
-/// scatter light to the other side, but nothing is visible through them.
+/// Fraction of the light that a surface stops at normal incidence. It is below 1 only for cloth
+/// whose Finish::sheer exceeds 0.5. Denser weaves scatter light to the other side, but nothing is
+/// visible through them.
 double opacity_of(const frame::Surface& surface);
 
 /// Whether a body shows skin where no picture covers its colour: a character, such as the mannequin, whose first part

@@ -91,7 +91,8 @@ void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& v
   }
 }
 
-/// Stores for each tile the longest motion in this tile and its neighbours. Pixels of tiles without motion stay sharp.
+/// Stores for each tile the longest motion in this tile and its eight neighbours. If this motion is
+/// below kMinMotion, the pixels of the tile stay sharp.
 void Smear::dilate_motions() {
   const int columns = (width_ + kTile - 1) / kTile, rows = (height_ + kTile - 1) / kTile;
   std::vector<Eigen::Vector2f> tiles(static_cast<std::size_t>(columns) * rows, Eigen::Vector2f::Zero());
@@ -111,9 +112,11 @@ void Smear::dilate_motions() {
                tiles[static_cast<std::size_t>(other) * columns + beside]);
 }
 
-/// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
-/// Motion Blur", 2012. A sample takes the colour at its own position in two cases: the surface there moves across the
-/// pixel, or the surface at the pixel is nearer and its motion uncovers the sample. Else, it takes the pixel's colour.
+/// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction
+/// Filter for Plausible Motion Blur", 2012. Compares the surface at the sample with the surface at
+/// the pixel. If the nearer of the two moves as far as from the sample to the pixel, the sample
+/// takes the colour at its own position, because this surface crosses the pixel or uncovers the
+/// sample. Else, the sample takes the pixel's colour.
 Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;

@@ -1,5 +1,5 @@
-// Motion blur: the mean of several sharp pictures. Each sharp picture is first smeared: each pixel is averaged along
-// the motion of what it shows. Thus few pictures suffice.
+// Motion blur: the mean of several sharp pictures. Each sharp picture is first smeared: each pixel
+// is averaged along the longest motion of the surfaces near it. Thus few pictures suffice.
 #pragma once
 
 #include <span>
@@ -40,7 +40,7 @@ class Smear {
 
   int width_, height_;
   std::vector<PixelMotion> motions_;
-  std::vector<Eigen::Vector2f> dilated_motions_;  // longest motion in a tile and its neighbours
+  std::vector<Eigen::Vector2f> dilated_motions_;  // per tile, see dilate_motions()
 };
 
 }  // namespace weft::render

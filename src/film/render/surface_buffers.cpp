@@ -131,7 +131,8 @@ void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
 
 /// Appends the strips along borders after all other vertices and triangles.
 void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
-  // `points`: one drawn vertex for each surface vertex and, if the surface is refined, the midpoints of the rims.
+  // `points`: the positions of the surface vertices and, if the surface is refined, the midpoints
+  // of the rims.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
   std::vector<Vec3> points = state_.positions, normals(vertex_count_);

@@ -30,8 +30,9 @@ class SurfaceBuffers {
   bool refined() const { return refinement_.has_value(); }
   bool trimmed() const { return trims_.has_value() && detail_.trims; }
 
-  /// Copies the state of a frame. Throws Error(internal) if a triangle names a vertex without a position. `rim`: width
-  /// of the strips along borders [m], 0 for none.
+  /// Copies the state of a frame. Throws Error(internal) if a triangle names a vertex without a
+  /// position. `rim`: width of the strips along borders [m], 0 for none; ignored without
+  /// Detail::rims.
   void update(const frame::SurfaceState& state, double rim = 0);
   void draw() const;
   void draw(const PaintedRange& range) const;
@@ -82,7 +83,7 @@ class SurfaceBuffers {
   frame::SurfaceState state_;  // of the last frame
 };
 
-/// Two triangles that extend to the horizon, counter-clockwise as seen from the side to which `normal` points.
+/// A square of two triangles for the floor. Its front is the side to which `normal` points.
 class FloorBuffers {
  public:
   explicit FloorBuffers(const Gl& gl);

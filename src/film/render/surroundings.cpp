@@ -114,7 +114,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
     case Look::stage:
       around.sky = Vec3::Constant(0.2);
       around.horizon = Vec3::Constant(0.1);
-      // Rim lights: strips from the sides and behind.
+      // Rim lights: narrow boxes opposite the first light and at the side; also a box overhead.
       around.boxes = {box(-0.9, 0.6, 0.5, 14, 3), box(-0.3, -1, 0.5, 14, 2.2), box(0.3, 0.2, 1, 10, 1.5)};
       break;
     case Look::daylight:
@@ -125,11 +125,13 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
     default:
       around.sky = Vec3::Constant(0.4);
       around.horizon = Vec3::Constant(0.3);
-      // A large box overhead, a fill from the other side, a strip behind.
+      // A large box overhead, a fill light at the side, and a narrow box opposite the first light.
       around.boxes = {box(0.2, 0.1, 1, 5, 1.2), box(-0.4, -1, 0.5, 4, 1.1), box(-1, 0.8, 0.45, 14, 2.0)};
       break;
   }
-  // Scales sky and boxes so that a horizontal surface receives the style's fraction of all light.
+  // Scales sky and boxes so that a horizontal surface receives the style's fraction of all light,
+  // in the sky's colour. For `daylight` without Stage::sky_color, all channels have the same
+  // factor, which keeps the blue of the sky.
   const Vec3 flat = at(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));
   const bool tinted = stage.look == Look::daylight;

@@ -40,13 +40,15 @@ struct Surroundings {
   Vec3 up = Vec3::UnitZ(), sky = Vec3::Zero(), horizon = Vec3::Zero(), ground = Vec3::Zero();
   std::array<Box, kBoxes> boxes;
 
-  /// Light from direction `toward` (unit), blurred as by a reflection with roughness squared `alpha`. Same as
-  /// surroundings() in shaders/surroundings.glsl.
+  /// Light from direction `toward` (unit), blurred as by a reflection with roughness squared
+  /// `alpha`. surroundings() in shaders/surroundings.glsl has the same formula, but less light from
+  /// below (pack_frame()).
   Vec3 light(const Vec3& toward, double alpha) const;
 };
 
-/// The surroundings of a style, scaled so that an unoccluded horizontal surface receives the style's fraction of all
-/// light. The boxes are placed relative to the first light, as a photographer places them. `ground`: light from below.
+/// The surroundings of a style, scaled so that an unoccluded horizontal surface receives the
+/// style's fraction of all light. The boxes are placed relative to the first light. `ground`: light
+/// from below.
 Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
                       std::span<const frame::Light> lights, const Vec3& ground);
 

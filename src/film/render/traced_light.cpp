@@ -102,9 +102,10 @@ std::vector<Vector3f> cosine_directions(int rays) {
   return all;
 }
 
-/// Sets `wanted` in the tiles that may contain penumbrae: those in which two known values differ or a value is between
-/// 0 and 1, and their neighbours. Whole tiles are marked, because near the rim of a penumbra the results of single rays
-/// are the same at most points.
+/// Sets `wanted` to `known` in the tiles that may contain penumbrae, and to 0 elsewhere. These are
+/// the tiles in which two known values differ or a value is between 0 and 1, and their neighbours.
+/// Whole tiles are marked, because near the rim of a penumbra the results of single rays are the
+/// same at most points.
 void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted) {
   const int width = points.width(), height = points.height();
   const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
@@ -136,8 +137,9 @@ void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& poi
   });
 }
 
-/// Keeps a point in `wanted` only if its value is between 0 and 1, or if a known value at most two points away differs.
-/// `low`, `high`: scratch, overwritten.
+/// Keeps a point in `wanted` only if, among the known points at most two rows and columns away
+/// (including itself), two values differ or a value is between 0 and 1. `low`, `high`: scratch,
+/// overwritten.
 void keep_mixed(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted, Plane& low,
                 Plane& high) {
   constexpr int kNeighbors = 2;
@@ -378,8 +380,8 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
   upload(mirrored_, points, *mirrored_texture_, 2, Eigen::Vector4f::Zero());
 }
 
-/// Interpolates four planes at all pixels and uploads them as a texture. Marks the tiles in which the values of a floor
-/// pixel differ from `on_open_floor`.
+/// Interpolates four planes at all pixels and uploads them as a texture. Marks the tiles in which a
+/// value of a floor pixel differs from `on_open_floor` by more than kMinFloorChange.
 void TracedLight::upload(std::span<const Plane> planes, const PixelPoints& points, const Texture& texture, GLuint unit,
                          const Eigen::Vector4f& on_open_floor) {
   texels_.resize(static_cast<std::size_t>(width_) * height_);

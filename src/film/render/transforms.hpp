@@ -1,4 +1,5 @@
-// Matrices from world to view and clip space. View space: right, up, backward [m]; clip space: that of OpenGL, -w to w.
+// Matrices from world to view and clip space. View space: right, up, backward [m]. Clip space: x
+// and y from -w to w, z from 0 (infinitely far) to w (near plane).
 #pragma once
 
 #include <numbers>
@@ -18,8 +19,9 @@ struct ViewAxes {
   Vec3 right, up, forward;
 };
 
-/// Axes of a viewer who looks along `forward`, with `up` upright in the picture. If the two are parallel, `right` is x,
-/// as in views from the front of a scene; `up` must not be x. If `forward` is zero, the direction is arbitrary.
+/// Axes of a viewer who looks along `forward`, with `up` upright in the picture. If the two are
+/// parallel, `right` is x, as in views from the front of a scene; `up` must not be x. If `forward`
+/// is zero, the viewer looks in an arbitrary direction perpendicular to `up`.
 ViewAxes view_axes(const Vec3& forward, const Vec3& up);
 
 /// view_from_world for a viewer at `eye`.

@@ -14,8 +14,9 @@ std::uint64_t key(Index a, Index b) {
 
 constexpr double kMaxSmoothCosine = 0.87;  // cosine of 30 degrees; a border that turns by more has a corner
 
-/// Assigns the two kinds of borders alternately to the sides between corners. On a closed border, the first side begins
-/// at a corner. If the number of sides is odd, the first and last side have the same kind.
+/// Assigns the two kinds of borders alternately to the sides between corners. On a closed border
+/// with corners, the first side begins at a corner. If the number of sides is odd, the first and
+/// last side have the same kind.
 template <class Segment>
 void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::size_t> chain, std::span<const Vec2> uv) {
   const auto direction = [&](std::size_t k) { return Vec2(uv[segments[chain[k]].b] - uv[segments[chain[k]].a]); };
@@ -36,8 +37,9 @@ void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::si
   }
 }
 
-/// Joins consecutive edges to chains, and stores the arc length at the start of each edge. A seam is measured only
-/// along its first side, and both sides get the same arc lengths.
+/// Joins consecutive edges to chains, stores the arc length at the start of each edge, and assigns
+/// border kinds to each chain. A seam is measured only along its first side, and both sides get the
+/// same arc lengths.
 template <class Segment>
 void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::unordered_multimap<Index, std::size_t> by_start;
@@ -61,8 +63,9 @@ void measure_arc_lengths(std::vector<Segment>& segments, std::span<const Vec2> p
         std::swap(twin.a, twin.b);
         twin.start = segments[i].start;
       }
-      // If several edges continue the chain, takes one in the same panel, else the one with the lowest index. Thus the
-      // result does not depend on the order of the map.
+      // If several edges continue the chain, prefers those that start at the same place, that is,
+      // in the same panel. Of these, takes the one with the lowest index, so that the result does
+      // not depend on the order of the map.
       std::size_t next = segments.size();
       const auto [from, to] = by_start.equal_range(segments[i].to);
       const auto rank = [&](std::size_t k) { return std::pair(segments[k].a != segments[i].b, k); };

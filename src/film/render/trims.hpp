@@ -47,7 +47,7 @@ class Trims {
     Index from, to;          // ends, as indices of vertices
     double start = 0;        // arc length of its start along its border or seam [m]
     bool other = false;      // is an `other_border`
-    std::int32_t twin = -1;  // same edge on the other side of a seam
+    std::int32_t twin = -1;  // index of the same edge on the other side of a seam; -1: none
   };
   /// All lines of one kind, with lookup by index into places_ ("by place").
   struct Lines {
@@ -79,9 +79,10 @@ struct RimStrip {
   std::vector<std::int32_t> owner;  ///< by triangle: the triangle of the surface at its border
 };
 
-/// Width of the strips [m]: the thickness of the cloth, doubled at a hem. If it covers less than 2.5 pixels at the
-/// vertex nearest to the eye, in a picture with `rows` rows, it is reduced. If less than a pixel would remain, the
-/// result is 0, because thinner strips appear as separate dots.
+/// Width of the strips [m]: the thickness of the cloth, doubled if the cloth has a hem. If this is
+/// less than 2.5 pixels at the vertex nearest to the eye, in a picture with `rows` rows, the width
+/// is reduced. If less than a pixel would remain, the result is 0, because thinner strips appear as
+/// separate dots.
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows);
 
 /// The strips of a surface in one frame, `thickness` [m] wide; `normals` by vertex.

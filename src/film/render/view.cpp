@@ -19,7 +19,7 @@ constexpr double kReflectedGround = 0.5;
 constexpr double kMaxGain = 1.8;           // limit on the increase of direct light; darker scenes are meant to be dark
 constexpr double kMaxWhiteBalance = 0.08;  // limit on the relative change of a channel by the white balance
 
-/// Map from the world to picture coordinates, from the corners of a triangle in both.
+/// Map from the world to picture coordinates, computed from the corners of a triangle in both.
 Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, const std::array<Vec2, 3>& places) {
   const Vec3 p = x[1] - x[0], q = x[2] - x[0];
   Mat3 axes;
@@ -175,7 +175,8 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   const double radius = 0.5 * scene_bounds.diagonal().norm();
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
-  // If Style::horizon is coloured, the backdrop has the style's colours. If it is grey, they are factors on open floor.
+  // If Style::horizon is coloured, the backdrop has the colours of the style. If it is grey, these
+  // colours are factors on the colour of open floor.
   const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
 
   FrameUniform frame;

@@ -32,7 +32,10 @@ struct View {
   Mat4 view_from_world = Mat4::Identity(), clip_from_world = Mat4::Identity();
 };
 
-/// Places the near plane as far away as `subjects` and the visible part of `floor` allow.
+/// The view of a camera. `aspect`: width / height of the picture. The near plane is at 0.8 of the
+/// smaller of two distances along the view axis: that of the sphere around `subjects`, and a lower
+/// bound on that of visible floor. But its distance is at least 1 cm, or 1/1000 of the distance of
+/// the far side of this sphere if this is smaller.
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
                const std::optional<Floor>& floor);
 
@@ -83,12 +86,14 @@ struct Lighting {
 Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
                        std::span<const frame::Light> lights);
 
-/// Roughness of the floor, from its appearance and from the style; 1 without a floor. Below kLampMirrorRoughness, the
-/// floor has highlights of lamps (the default floor has none); below kSubjectMirrorRoughness, it reflects the subjects.
+/// Roughness of the floor, from its appearance and from the style; 1 without a floor. Below
+/// kLampMirrorRoughness, the floor has highlights of lamps. Below kSubjectMirrorRoughness, it
+/// reflects the subjects if QualitySettings::mirrors is set.
 double floor_roughness(const Style& style, const std::optional<Floor>& floor);
 inline constexpr double kLampMirrorRoughness = 0.6, kSubjectMirrorRoughness = 0.5;
 
-/// `scene_bounds`: surroundings_bounds() of the run.
+/// The frame block of a picture of width x height pixels. `scene_bounds`: surroundings_bounds() of
+/// the run.
 FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& scene_bounds,
                         const std::optional<Floor>& floor, int width, int height);
 

@@ -32,8 +32,9 @@ struct ErrorEstimate {
   /// to the run is too small compared with the difference of the companion with half the step.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
-  Errors all{};      ///< root of the sum of squares over all parts; unknown errors count as 0
-  double cpu_s = 0;  ///< CPU time of all companions
+  Errors all{};  ///< root of the sum of squares over all parts; unknown errors count as 0
+  /// CPU time of all companions that have not failed [s].
+  double cpu_s = 0;
 
   /// Whether the known errors are only lower bounds. Does not consider parts whose errors are not known.
   bool is_lower_bound() const { return is_chaotic || steps_irregular; }
@@ -48,11 +49,11 @@ struct CompanionOptions {
 
 /// Estimates the difference of a run to the limit of infinitely short, exactly solved steps; with options.mesh, also of
 /// infinitely small cells. Simulates these companions:
-/// - start: particles displaced at random by up to 1 µm at the start,
+/// - start: particles displaced at random by up to 1 µm along each axis at the start,
 /// - solver: a tenth of solver.newton_tolerance; unless this companion fails, the companions below use this tolerance,
 ///   too, and are compared with this companion,
-/// - steps: half of the step, and twice the step unless a step is as long as a frame; if the scene has time.tolerance,
-///   the tolerances that halve and double the steps,
+/// - steps: half of the step, and about twice the step unless a step is as long as a frame; if the
+///   scene has time.tolerance, the tolerances that halve and double the steps,
 /// - mesh: half of the cells along each side, and a quarter if this leaves whole numbers of cells, at least four.
 /// Richardson extrapolation gives the errors of steps and mesh. It uses the observed order, limited to 0.5 to 1 times
 /// the expected order; if a source has only one companion, 0.75 times the expected order. Only the frames in `run` are

@@ -23,7 +23,9 @@ enum class Quantity : std::size_t {
   drift,     ///< as `energy`, but error in the last frame
   centre,    ///< centre of mass in the last frame [m]
   top,       ///< height of the highest particle in the last frame [m]
-  shadow,    ///< projected areas of the cloths in the last frame, seen from above, relative to the cloths' start area
+  /// Projected areas of the cloths in the last frame, seen from above, relative to the surface area
+  /// of the cloths in frame 0.
+  shadow,
   rest_energy,  ///< elastic + gravitational in the last frame, relative to energies_in_play
 };
 inline constexpr std::size_t kQuantities = 8;

@@ -21,7 +21,8 @@ namespace weft::scene {
 
 namespace {
 
-// Maximum number of particles of all rectangles of cloth; their data fit into the memory of a workstation.
+// Maximum number of particles of all rectangles of cloth together: their data fit into the memory
+// of a workstation.
 constexpr long kMaxParticles = 4'000'000;
 
 template <class Entries>
@@ -38,7 +39,8 @@ std::vector<std::string> names_of_all(const Scene& scene) {
   return names;
 }
 
-/// Checks a key that names an entry of a list.
+/// Reports the name that `key` gives if it is not in `names`; an empty name counts as not given.
+/// `kind`: of the named objects, for the message.
 void check_reference(const std::string& name, const std::vector<std::string>& names, const std::string& kind,
                      const std::string& key, Findings& findings) {
   if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
@@ -62,8 +64,8 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-/// Reports key frames that change several angles, at least one of them by more than half a turn: such changes do not
-/// define an axis of rotation.
+/// Reports each key frame that changes several angles, at least one of them by more than half a
+/// turn: such a change does not define an axis of rotation.
 template <class Key>
 void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
@@ -77,7 +79,8 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
   }
 }
 
-/// Decodes a picture, so that its defects are reported together with all other mistakes before any run.
+/// Reports a picture that cannot be decoded, so that this mistake appears together with all others,
+/// before any run.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.has_mistake(key)) return;
   try {
@@ -118,8 +121,9 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // other shapes have no rows of particles
-  // Report a part that lies between two rows of particles, and thus contains no particle. If no row of particles along
-  // an axis is in the part, the lambda returns the position of the nearest row, as a fraction of the size of the cloth.
+  // Report a part that lies between two rows of particles, and thus contains no particle. If the
+  // part contains no row along an axis, the lambda returns the position of the nearest row, as a
+  // fraction of the size of the cloth; else nothing.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -212,7 +216,8 @@ void check_attachments(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports each `over` that names no cloth, and the first `over` that closes a cycle.
+/// Reports each `over` that names no cloth. Also reports the `over` of the first cloth that is worn
+/// over itself, directly or through others.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
@@ -275,7 +280,8 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
-// Checks the keys of an obstacle that forces move. Without mass and density, reports keys that need one of them.
+// For an obstacle with a mass or density, which forces move, reports keys that do not fit. For
+// other obstacles, reports keys that need a mass or density.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :
@@ -319,7 +325,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     check_times(obstacle.motion.keys, path, findings);
     check_rotation_changes(obstacle.motion.keys, path, findings);
     check_dynamics(scene, obstacle, path, findings);
-    // Names must be unique, since they identify objects in pictures, statistics and mesh files.
+    // Names must be unique, because they identify objects in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
       findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or rope has",
                                                   in_quotes(obstacle.name)));
@@ -358,8 +364,9 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports key frames with a focal length if the camera has a field of view, and the reverse: there is no interpolation
-/// between the two. Also reports `sensor_width` and `follow_rotation` without the key that they refine.
+/// Reports key frames with a focal length if the camera has a field of view, and the reverse,
+/// because a camera cannot change between the two. Also reports `sensor_width` without
+/// `focal_length`, and `follow_rotation` without `follow`.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

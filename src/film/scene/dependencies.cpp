@@ -19,17 +19,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger files are skipped: no reader of their formats accepts them.
+/// Maximum size of a dependency [bytes]. Larger files are skipped; no reader of their formats
+/// accepts them.
 constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Longer texts do not count as file names: 255 bytes for the name itself, the rest for its folders.
+/// Maximum length of a file name with its folders. Longer texts do not count as file names.
 constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Whether a text ends like a file name: with a dot and 2 to 12 letters and digits, of which at least one is a letter.
+/// Whether a text may be a file name: it ends with a dot and 2 to 12 letters and digits, of which
+/// at least one is a letter, does not begin with that dot, and is not longer than
+/// kMaxFileNameBytes.
 bool has_extension(std::string_view text) {
   const std::size_t dot = text.rfind('.');
   if (dot == std::string_view::npos || dot == 0 || text.size() > kMaxFileNameBytes) return false;
@@ -38,7 +41,8 @@ bool has_extension(std::string_view text) {
          !std::ranges::all_of(ending, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Decodes %20 and similar escapes of addresses in glTF and Collada files, and replaces \ by /.
+/// Decodes escapes such as %20, which addresses in glTF and Collada files contain. Replaces
+/// backslashes by slashes.
 std::string decode_escapes(std::string_view text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -54,9 +58,9 @@ std::string decode_escapes(std::string_view text) {
   return plain;
 }
 
-/// Possible file names in text or binary content. Splits the content twice: at quotes and control characters; then at
-/// these and at brackets, commas, equals signs and bars. Returns the pieces, and the words of pieces, that have an
-/// extension.
+/// Possible file names in text or binary content. Splits the content twice: first at quotes and
+/// control characters, then also at brackets, commas, equals signs and bars. Returns those pieces,
+/// and those words in pieces, for which has_extension() is true.
 std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {
@@ -96,12 +100,12 @@ class DependencyWalk {
     const std::optional<std::string> content = visit_alone(file, use);
     if (!content) return;
     for (const std::string& name : find_possible_names(*content)) visit(file.parent_path() / name, use);
-    // assimp also reads the motion file of this format, which has the name of the mesh file.
+    // The library assimp also reads the motion file that has the same name with this extension.
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
   }
 
-  /// Visits a file without the files that it names. Returns its content; nothing if visited before, unreadable or too
-  /// large.
+  /// Visits a file without the files that it names. Returns its content; nothing if the file was
+  /// visited before, cannot be read or is too large.
   std::optional<std::string> visit_alone(const fs::path& file, FileUse use) {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return {};

@@ -9,7 +9,7 @@
 
 namespace weft::scene {
 
-/// What a file affects: the simulation, and thus the pictures; or only the pictures.
+/// What a file affects: the simulation and thus also the pictures, or the pictures alone.
 enum class FileUse { simulation, pictures };
 
 using DependencyVisitor = std::function<void(const std::filesystem::path& file, std::string_view content, FileUse use)>;
@@ -18,8 +18,8 @@ using DependencyVisitor = std::function<void(const std::filesystem::path& file, 
 /// scene and the files:
 /// - first the files of obstacles, the files of cloths and the masks of their pins and weights, the masks of
 ///   attachments, and the files of characters; then the pictures of looks and the files of cameras;
-/// - after each file except masks and pictures, the files that it names: drawings of a sewing pattern, buffers of a
-///   glTF file, skeletons, materials.
+/// - after each file except masks and pictures, the existing files whose names occur in it:
+///   drawings of a sewing pattern, buffers of a glTF file, skeletons, materials.
 /// Skips unreadable files and files larger than kMaxDependencyBytes (dependencies.cpp).
 void for_each_dependency(const Scene& scene, const DependencyVisitor& each);
 

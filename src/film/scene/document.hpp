@@ -13,18 +13,21 @@
 
 namespace weft::scene {
 
-/// Maximum size of a scene file [bytes]; a scene with ten thousand key frames has about one megabyte.
+/// Maximum size of a scene file [bytes]. A scene with ten thousand key frames has about one
+/// megabyte.
 inline constexpr std::uintmax_t kMaxFileSize = 16 << 20;
 
-/// Reads a scene file. Reports a mistake without a place and returns nothing if the file is no regular file, too large
-/// or unreadable.
+/// Reads a scene file. If `file` is no regular file, is larger than kMaxFileSize or cannot be read,
+/// reports a mistake without a place and returns nothing.
 std::optional<std::string> read_file(const std::filesystem::path& file, Findings& findings);
 
-/// Parses TOML text. Reports a mistake and returns nothing if the text is empty or not TOML.
+/// Parses TOML text. If the text is empty or no TOML, reports a mistake and returns nothing.
 std::optional<toml::table> parse(std::string_view text, Findings& findings);
 
-/// Sets a value in the document, given as "path.to.key=value". The path names entries of lists by name or index. A
-/// plain word that is no TOML value counts as text.
+/// Sets a value in the document, given as "path.to.key=value". In the path, the name or index of an
+/// entry selects it from a list. Creates missing tables. If the value is no TOML but a plain word,
+/// it counts as text. If the path or the value is not valid, reports a mistake and changes no
+/// value.
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings);
 
 }  // namespace weft::scene

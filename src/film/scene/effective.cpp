@@ -30,7 +30,8 @@ std::string toml_string(const std::string& text) {
   return out + "\"";
 }
 
-/// A value as TOML. fmt writes the fewest digits that give the same double when read.
+/// A value as TOML. fmt writes a number with the fewest digits from which reading gives the same
+/// double.
 std::string toml_value(const Value& value, const Rule& rule) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&value)) return toml_string(*text);
@@ -58,7 +59,8 @@ class Writer {
 
   std::string text;
 
-  /// Writes a table: first its own keys, then its inner tables. `path`: key path of the table, empty for the root.
+  /// Writes a table: first its own keys, then its inner tables and lists. `path`: key path of the
+  /// table; empty: the root.
   void write(const Table& table, void* target, const std::string& path) {
     for_rules(table, target, [&](const Rule& rule) { write_value(rule, target); });
     for_rules(table, target, [&](const Rule& rule) {
@@ -118,7 +120,7 @@ class Writer {
 };
 
 std::string text_of(const Scene& scene, Part part) {
-  // Rules access members through non-const pointers; the copy protects the scene itself.
+  // Rules access members through non-const pointers, so work on a copy.
   Scene copy = scene;
   remove_rope_cloths(copy);
   Writer writer(part);
@@ -137,7 +139,7 @@ class Fnv1a {
   std::uint64_t hash_ = 0xcbf29ce484222325ull;
 };
 
-/// Removes the folders from file names, since hashes must not depend on them.
+/// Removes the folders from file names, because hashes must not depend on folders.
 void keep_file_names(Scene& scene) {
   const auto keep_name = [](std::filesystem::path& path) { path = path.filename(); };
   const auto keep_name_if_any = [&](std::optional<std::filesystem::path>& path) {
@@ -188,8 +190,8 @@ void identify(Scene& scene) {
   keep_file_names(copy);
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
-  // The duration affects the motion of characters: the motion is sampled into key frames up to the end of the film, and
-  // the last key frames influence the interpolation before them.
+  // The duration affects the motion of characters: this motion is sampled into key frames up to the
+  // end of the film, and the last key frames influence the interpolation before them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
   scene.hash = shown.value();
   scene.simulation_hash = simulated.value();

@@ -17,37 +17,39 @@
 //                force is taken as proportional to strain²: then LT is 2/3 (measured: 0.50 to 0.60 for suitings, 0.66
 //                to 0.78 for denims), and the secant is 98.0 N/m / EMT. In fabrics without threads, the force is
 //                taken as proportional to strain, and the secant is 490.3 N/m / EMT.
-//   max_stretch  the limit of forces::Lock. It is chosen so that the sum of the forces of `stretch` and of the lock is
-//                490 N/m at the mean EMT of weft and warp.
+//   max_stretch  the limit of forces::Lock, chosen so that the forces of `stretch` and of the lock
+//                add up to 490 N/m at the mean EMT of weft and warp.
 //   shear        2 G
 //   bend         √(weft · warp), since a Material has one bending stiffness for all directions
 //   bend_friction   HB
-//   All values are rounded to two digits, since none is known more precisely.
+//   All these values are rounded to two digits, because none is known more precisely.
 //
 // Quantities without a measurement are estimated from fibre, weave and weight:
 //   bend         130 µN·m (density / 1 kg/m²)^1.35. This is within 13 % of the medians of 251 fabrics, measured by
 //                cantilever, in nine classes of weight from 30 to 490 g/m² (data set of Feng et al., "Learning-Based
 //                Bending Stiffness Parameter Estimation by a Drape Tester", 2022). Softer or firmer fabrics use
-//                another quantile of their class (Hand). The ratio of warp to weft is the median of the data, 1.4.
+//                another quantile of their class (Hand). For weaves, the ratio of warp to weft is
+//                1.4, the median of the data; for other fabrics, it is 1.
 //   hysteresis   HB / B: cotton 50, wool 25, filaments 18 m⁻¹; measured: 53 and 43 m⁻¹ for broadcloth and denim,
 //                25 m⁻¹ for a tropical (light worsted wool), 19 and 18 m⁻¹ for polyesters
-//   shear        G: cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves of these: 65, 24 to
-//   26, 30.
-//                Fabrics without threads: an isotropic sheet with Poisson's ratio 0.3. For faille alone, G is fitted
-//                to the published drape: 7.5 N/m.
+//   shear        G: cotton 65, wool 26, filaments and knits 30 N/m; measured for plain weaves:
+//                cotton 65, wool 24 to 26, filaments 30. Fabrics without threads: an isotropic
+//                sheet with Poisson's ratio 0.3. For faille alone, G is fitted to the published
+//                drape: 7.5 N/m.
 //   extension    EMT: weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, fabrics
 //                without threads 12 %
 //   thickness    2.2 mm per kg/m²; measured: 1.7 to 4
 //
-// Chosen, not measured: friction (published for cloth on cloth: usually 0.2 to 0.6), contact thickness (several times
-// that of the fabric, which contact cannot resolve), drag, and viscosity of bending. Stretch and shear have no
-// viscosity, since implicit Euler already damps them as a viscosity of half a time step times the stiffness would.
+// Chosen, not measured: friction (published for cloth on cloth: usually 0.2 to 0.6), contact
+// thickness (several times the thickness of the fabric, which contact cannot resolve), drag, and
+// viscosity of bending. Stretch and shear have no viscosity, because implicit Euler already damps
+// them like a viscosity of half a time step times the stiffness.
 
 namespace weft::scene {
 
 namespace {
 
-// Bending viscosity / bending stiffness [s]. Viscosity alone damps a fold within about this time.
+// Bending viscosity / bending stiffness [s]. Without inertia, a fold opens within about this time.
 constexpr double kBendingDampingTime = 0.1;
 
 enum class Fibre { cotton, wool, filament };
@@ -58,7 +60,7 @@ enum class Hand { limp, soft, usual, firm, stiff };
 using Measured = std::optional<double>;
 using Pair = std::optional<std::pair<double, double>>;
 
-/// Published values of a fabric; missing ones are estimated.
+/// Published values of a fabric. Values that are absent are estimated.
 struct Row {
   const char* name;
   const char* what;
@@ -83,7 +85,7 @@ constexpr const char* kMatsudaira =
     "Matsudaira et al., J. Textile Eng. 61(6), 2015, tables 1 and 2, as transcribed in 3fold-motion-engine";
 constexpr const char* kNone = "none found: all estimated";
 
-// In the order of the documentation: cotton and similar fibres, wool, filaments, others.
+// In the order of the documentation: cotton and similar fibres, wool, filaments, leather.
 constexpr Row kRows[] = {
     {.name = "cotton",
      .what = "light plain weave",
@@ -250,7 +252,8 @@ constexpr Row kRows[] = {
      .finish = Finish{0.35, 0.5, 0.1, 0, Threads::none}},
 };
 
-// The finish of a row, else that of its fibre: cotton scatters light, wool is fuzzy, filaments are glossy.
+// The finish of a row; if absent, that of its fibre: cotton scatters light, wool is fuzzy,
+// filaments are glossy.
 Finish finish_of(const Row& row) {
   if (row.finish) return *row.finish;
   return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}
@@ -260,7 +263,8 @@ Finish finish_of(const Row& row) {
 
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  // A quotient of integers is rounded correctly; the result is then the same double as from the text "0.015".
+  // A quotient of integers is rounded correctly. The result is thus the double that a text such as
+  // "0.015" gives.
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
@@ -274,7 +278,8 @@ constexpr std::pair<Measured, Measured> both(const Pair& pair) {
 }
 
 double estimated_bend(const Row& row) {
-  // 10, 25, 50, 75 and 90 % quantiles of a weight class, relative to its median; means over the nine classes.
+  // 10, 25, 50, 75 and 90 % quantiles of a class of weight, relative to its median: means over the
+  // nine classes.
   constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
   return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
 }
@@ -315,8 +320,8 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// The max_stretch for which the force at the strain `extension` is kExtensionLoad: the lock adds the part of this load
-// that exceeds the force of the secant stiffness.
+// The max_stretch for which the force at the strain `extension` is kExtensionLoad: the lock exerts
+// the part of this load that exceeds the force of the secant stiffness.
 double max_stretch_for(Weave weave, double extension) {
   constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
   const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;

@@ -10,7 +10,8 @@
 
 namespace weft::scene {
 
-/// A value, and whether the rules of fabrics.cpp estimate it because no measurement is known.
+/// A value, and whether it is estimated by the rules in fabrics.cpp because no measurement is
+/// known.
 struct MeasuredValue {
   double value = 0;
   bool estimated = false;
@@ -23,15 +24,18 @@ struct Measurements {
   MeasuredValue extension_weft, extension_warp;  ///< EMT: strain at kExtensionLoad [1]
   MeasuredValue shear;                           ///< G: shear force per width / shear angle [N/m]
   MeasuredValue bend_weft, bend_warp;            ///< B: bending stiffness per width [N·m]
-  MeasuredValue hysteresis;  ///< HB / B: residual curvature after unloading [1/m]; HB: moment per width [N]
-  std::optional<std::pair<double, double>> drape;  ///< Cusick's coefficient: smallest and largest published value [1]
+  MeasuredValue hysteresis;  ///< HB / B: residual curvature after unloading [1/m]; HB: moment per
+                             ///< width against a change of curvature [N]
+  std::optional<std::pair<double, double>> drape;  ///< Cusick's drape coefficient: smallest and
+                                                   ///< largest published value [1]
 };
 
 struct Fabric {
-  Material material;  ///< contact thickness, friction and drag are chosen, the other members derived from `measured`
+  Material material;  ///< contact thickness, friction, drag and viscosities are chosen; all other
+                      ///< values follow from `measured`
   Measurements measured;
   Finish finish;       ///< chosen by fibre and weave, not measured
-  bool frays;          ///< cut edges fray, and are therefore drawn with hems
+  bool frays;          ///< whether cut edges fray; they are then drawn with hems
   std::string what;    ///< weave and kind
   std::string source;  ///< publication of the measurements
 };
@@ -41,8 +45,9 @@ struct Fabric {
 /// this load.
 inline constexpr double kExtensionLoad = 490.3, kWornLoad = 19.6;
 
-/// All fabrics. The first is the default: its material equals Material{}.
+/// All fabrics. The first is the default; its material equals Material{}.
 std::span<const Fabric> fabrics();
+/// The fabric of this name; null if there is none.
 const Fabric* find_fabric(std::string_view name);
 std::vector<std::string> fabric_names();
 

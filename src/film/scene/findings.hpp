@@ -14,12 +14,12 @@ namespace weft::scene {
 
 /// A place in the scene file, or an override on the command line.
 struct Place {
-  int line = 0, column = 0;
+  int line = 0, column = 0;   ///< counted from 1; 0: none
   std::string override_text;  ///< see Mistake
 };
 
-/// Place of a node or key of a parsed document. The source path of a node is empty, or the text of the override that
-/// the node comes from.
+/// Place of a node or key of a parsed document. `source`: of the node or key; its path is the text
+/// of the override that gave the node, and empty if the file did.
 Place place_of(const toml::source_region& source);
 
 class Findings {
@@ -28,11 +28,13 @@ class Findings {
   void set_place(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
   /// Whether the scene gives the key.
   bool has(const std::string& key) const { return places_.contains(key); }
-  /// The place of the key or, if it has none, of the nearest table around it that has one; else 1:1.
+  /// The place of the key or, if no place is stored for it, of the innermost table around it that
+  /// has one; else 1:1.
   Place place(std::string key) const;
 
+  /// Adds a mistake. `text`: what was expected, and what was found.
   void report(const std::string& key, Place place, std::string text);
-  /// Reports at the stored place of the key, unless the key already has a mistake.
+  /// Adds a mistake at place(key), unless the key already has a mistake.
   void report(const std::string& key, std::string text);
   bool has_mistake(const std::string& key) const { return has_mistake_.contains(key); }
 
@@ -40,8 +42,8 @@ class Findings {
   void add_entry(const std::string& list, std::string path) { entries_[list].push_back(std::move(path)); }
   const std::string& entry(const std::string& list, std::size_t i) const { return entries_.at(list).at(i); }
 
-  /// Returns and clears the mistakes: first those of the file in its order, then those of overrides, at most
-  /// kMaxMistakes. If there are more, one more entry gives the number of further mistakes.
+  /// Returns and clears the mistakes, at most kMaxMistakes: first those of the file in its order,
+  /// then those of overrides. If there are more, a last entry gives the number of further mistakes.
   std::vector<Mistake> take_mistakes();
 
  private:

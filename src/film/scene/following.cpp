@@ -16,8 +16,8 @@ const Obstacle* obstacle_named(const Scene& scene, const std::string& name) {
   return name.empty() || found == scene.obstacles.end() ? nullptr : &*found;
 }
 
-/// The chain of obstacles that `obstacle` follows: each entry follows the next entry. Each obstacle occurs once. If the
-/// chain is a cycle through `obstacle`, `obstacle` is the last entry.
+/// The obstacle that `obstacle` follows, the one that this follows, and so on; each at most once.
+/// If the chain returns to `obstacle`, `obstacle` is the last entry.
 std::vector<const Obstacle*> parents_of(const Scene& scene, const Obstacle& obstacle) {
   std::vector<const Obstacle*> chain;
   const Obstacle* parent = obstacle_named(scene, obstacle.follow);

@@ -17,7 +17,8 @@ std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Place of a key. toml++ stores no place for the key of an override; the place of its value is used.
+/// Place of a key. For the key of an override, toml++ stores no place; returns the place of its
+/// value instead.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
@@ -27,7 +28,8 @@ bool is_override(const toml::node& node) {
   return !place_of(node.source()).override_text.empty();
 }
 
-/// Whether the file gives the key of `rule`, but an override (--set) gives a key that excludes it and thus replaces it.
+/// Whether the file gives the key of `rule`, but an override (--set) gives a key that excludes and
+/// thus replaces this key.
 bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
   const toml::node* node = table.get(rule.key);
   return node != nullptr && !is_override(*node) && std::ranges::any_of(rules, [&](const Rule& other) {
@@ -90,7 +92,7 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
   };
   read_rules(rules.rules);
   const Variant* variant = rules.variant_of(target);
-  // If the selector has a mistake, report only this: accept the keys of all variants.
+  // If the selector has a mistake, report only this one, and accept the keys of all variants.
   const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
   if (variant != nullptr && !undecided) read_rules(variant->rules);
   report_unknown(table, rules, undecided ? nullptr : variant, path);
@@ -109,8 +111,8 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   }
   findings_.set_place(key, place_of(node->source()));
 
-  // Of two keys that exclude each other, the key from --set replaces the key from the file. If both come from the same
-  // source, report a mistake.
+  // If two keys exclude each other, a key from --set replaces one from the file. If both come from
+  // --set or both from the file, report a mistake.
   const toml::node* excluded = rule.excludes.empty() ? nullptr : table.get(rule.excludes);
   if (excluded != nullptr && is_override(*node) == is_override(*excluded)) {
     findings_.report(key, place_of(node->source()),
@@ -147,7 +149,7 @@ void Reader::read_entries(const toml::node& node, const Rule& rule, void* target
     const std::string by_index = join_path(path, std::to_string(i));
     if (table == nullptr) {
       refuse(element, by_index, "expected a table, got " + describe_node(element));
-      // Append an entry with defaults instead, so that indices match the list.
+      // Append an entry with defaults instead, so that indices match those of the list in the file.
       findings_.add_entry(path, by_index);
       rule.append(target, i);
       continue;

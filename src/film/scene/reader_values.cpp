@@ -103,7 +103,7 @@ Value Reader::read_numbers(const toml::node& node, const Rule& rule, const std::
   }
   std::vector<double> numbers(array->size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    // Report only the first wrong number: one mistake per key.
+    // Report only the first wrong number, because a key has at most one mistake.
     if (!read_number(*array->get(i), rule, path, numbers[i])) return {};
   }
   if (rule.nonzero && std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) < 1e-9; })) {

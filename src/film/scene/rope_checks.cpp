@@ -12,7 +12,8 @@ namespace {
 
 constexpr long kMaxRopeParticles = 1'000'000;  // of all ropes together
 
-// Reports mistakes in the start path of a rope. Returns whether the path is defined, so that the pieces can be checked.
+// Reports mistakes in the start path of a rope. Returns whether start_shape() can be computed, to
+// check the pieces.
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
   if (rope.points.empty()) {
     for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})

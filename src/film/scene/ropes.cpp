@@ -14,7 +14,8 @@ constexpr int kMinRopePieces = 4;
 constexpr int kSplinePieces = 16;  // pieces of a spline between two points
 constexpr int kCatenaryPieces = 512;
 
-// The polyline through the points of a rope. For a closed rope, it returns to the first point.
+// The polyline through the points of a rope. If the rope is closed, the polyline ends at the first
+// point.
 std::vector<Vec3> path_through(const Rope& rope) {
   const std::vector<Vec3>& points = rope.points;
   const auto count = static_cast<int>(points.size()), spans = rope.closed ? count : count - 1;
@@ -26,16 +27,16 @@ std::vector<Vec3> path_through(const Rope& rope) {
   return path;
 }
 
-// A catenary between two ends. `length`: its length [m]; `up`: unit vector.
+// A catenary between two ends, as a polyline. `length`: of the catenary [m]; `up`: unit vector.
 std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, const Vec3& up) {
   const Vec3 chord = to - from;
   const double rise = up.dot(chord);
   const Vec3 along = chord - rise * up;
   const double span = along.norm();
-  // Solve sinh(u) / u = ratio by bisection. Catenary parameter a = span / (2 u): horizontal tension / weight per length
-  // [m].
+  // Solve sinh(u) / u = ratio by bisection. The catenary parameter a = span / (2 u) is the ratio of
+  // the horizontal tension to the weight per length [m].
   const double ratio = std::sqrt(length * length - rise * rise) / span;
-  if (ratio <= 1) return {from, to};  // the length exceeds the chord by rounding errors alone
+  if (ratio <= 1) return {from, to};  // only rounding errors make the length exceed the chord
   double low = 0, high = 1;
   while (std::sinh(high) / high < ratio) high *= 2;
   for (int k = 0; k < 100; ++k) {
@@ -54,7 +55,7 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, cons
   return path;
 }
 
-// Points that divide a polyline into `pieces` of equal length, with both ends.
+// Points that divide a polyline into `pieces` pieces of equal length, both ends included.
 std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
   std::vector<double> arc_lengths{0};
   for (std::size_t k = 1; k < path.size(); ++k)
@@ -74,10 +75,11 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
 
 }  // namespace
 
-// For nylon, polyester, polypropylene and steel (wire with a fibre core), mass and stiffness are from formulas for
-// mooring ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). For comparison, data sheets of
-// Robline for 10 mm give masses of 680 kg/m per m² (polyester) and 430 (polypropylene). The values of cotton and all
-// bending lengths are estimates, based on a limp line of 6 mm with a bending length of 9 cm.
+// For nylon, polyester, polypropylene and steel (wire with a fibre core), mass and stiffness are
+// from formulas for mooring ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py).
+// For comparison: by data sheets of Robline, ropes of 10 mm have a mass of 680 kg/m per m²
+// (polyester) or 430 (polypropylene). The values of cotton and all bending lengths are estimates,
+// based on a limp line of 6 mm with a bending length of 9 cm.
 const std::vector<RopeMaterial>& rope_materials() {
   static const std::vector<RopeMaterial> kMaterials = {
       {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},

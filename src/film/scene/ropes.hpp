@@ -9,16 +9,17 @@
 
 namespace weft::scene {
 
-/// Constants of a kind of rope. `mass` and `stretch` are those of a rope divided by the square of its diameter [m²].
+/// Constants of a kind of rope. `mass` and `stretch` are the values of a rope, divided by the
+/// square of its diameter.
 struct RopeMaterial {
   std::string name;
-  double mass;            ///< [kg/m per m²]
-  double stretch;         ///< stiffness: force per strain [N per m²]
+  double mass;            ///< mass per length / diameter² [kg/m per m²]
+  double stretch;         ///< force per strain / diameter² [N per m²]
   double bending_length;  ///< cube root of (bending stiffness / weight per length) [diameters]
 };
 const std::vector<RopeMaterial>& rope_materials();
 
-/// Mass and stiffness of one rope. Values that the scene omits follow from the material.
+/// Mass and stiffness of one rope. Values that the scene omits follow from material and diameter.
 struct RopeNumbers {
   double mass;     ///< [kg/m]
   double stretch;  ///< stiffness EA: force per strain [N]
@@ -32,24 +33,27 @@ struct RopeShape {
   std::vector<Vec3> places;
   std::vector<double> lengths;
 };
-/// The start shape of a rope. If hangs_slack(), the rope hangs as a catenary. `up`: up axis of the scene.
+/// The start shape of a rope: a catenary if hangs_slack(), else the path through its points or
+/// between its ends. `up`: up axis of the scene.
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
 /// Default length of a piece [diameters].
 inline constexpr double kRopePiece = 3;
 using model::kMinRopePiece;
-/// Minimum horizontal distance between the ends of a rope [diameters], if hangs_slack().
+/// Minimum horizontal distance between the ends of a rope for which hangs_slack() is true
+/// [diameters].
 inline constexpr double kMinRopeSpan = 4;
 /// Whether the scene gives only the ends of a rope, and start_length() exceeds their distance.
 bool hangs_slack(const Rope& rope);
 
-/// Rest length at the start [m]. If the scene gives none, returns nullopt: the length of the path through the points or
-/// between the ends applies.
+/// Rest length at the start that the scene gives: `length` or, without it, that of the first key
+/// [m]. If the scene gives neither, returns nullopt; the rest length is then that of the start
+/// shape.
 std::optional<double> start_length(const Rope& rope);
 
 /// The one-dimensional cloth that is simulated for a rope.
 Cloth as_cloth(const Rope& rope);
-/// Appends the cloths of all ropes to those of the scene.
+/// Appends as_cloth() of each rope to the cloths of the scene.
 void add_rope_cloths(Scene& scene);
 void remove_rope_cloths(Scene& scene);
 

@@ -1,6 +1,6 @@
-// The scene format as data: a table of rules, one for each TOML key. Reading, checking, the JSON schema and the
-// effective scene all use these rules and contain no key, range or default of their own. Defaults are the initialisers
-// of the structs that rules fill.
+// The scene format as data: a table of rules, one for each TOML key. Reader, the JSON schema and
+// the effective scene use these rules and contain no key, range or default of their own. Defaults
+// are the initialisers of the structs that rules fill.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,8 @@
 
 namespace weft::scene {
 
-/// A value as read from TOML or written to it: absent, flag, text, numbers (one, or one per component), or texts.
+/// A value as read from TOML or written to it: absent, flag, text, numbers or texts. Numbers: one,
+/// or one per component; for Type::points, those of all points, one after the other.
 using Value = std::variant<std::monostate, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
 enum class Type {
@@ -19,10 +20,10 @@ enum class Type {
   text,
   texts,   ///< a text, or an array of texts
   name,    ///< name of a list entry; becomes part of key paths and file names
-  file,    ///< path of an existing file, relative to the scene's folder
+  file,    ///< path of an existing file; relative paths start at the scene's folder
   choice,  ///< one of `choices`
   points,  ///< an array of arrays, each with one number for each of `components`
-  number,  ///< one number, or an array of one per component; or one of `choices`, if there are any
+  number,  ///< one number, or an array with one number per component; or one of `choices`, if any
   color,   ///< [r, g, b] from 0 to 1, or "#rrggbb"; sRGB
   table,
   list,  ///< list of tables, [[key]]
@@ -56,7 +57,8 @@ struct Rule {
   std::string documentation;
 
   std::string unit;                     ///< unit of its numbers; empty: none
-  Range range;                          ///< bounds of its numbers; list, keys: of the number of entries
+  Range range;                          ///< bounds of its numbers; list, keys: `high` bounds the
+                                        ///< number of entries
   bool whole = false;                   ///< integers only
   std::vector<std::string> components;  ///< names of the numbers of an array; empty: a single number
   bool single_fills_all = false;        ///< one number may replace the whole array
@@ -65,20 +67,23 @@ struct Rule {
 
   Need need = Need::optional;
   std::string default_note;  ///< documents the default if the initialiser of the struct does not show it
-  std::string excludes;      ///< key that must not be given together with this one
+  std::string excludes;      ///< key that must not be given together with this one; empty: none
   bool simulated = true;     ///< whether the key affects the simulation and its hash
 
-  std::function<Value(void*)> get;  ///< returns monostate if the key is not to be written
+  std::function<Value(void*)> get;  ///< returns monostate if the effective scene omits the key
   std::function<void(void*, const Value&)> set;
 
   const Table* table = nullptr;                     ///< table, list, keys: the rules of an entry
   std::function<void*(void*)> inner;                ///< table: the struct of the inner table
-  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0: not written
+  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write;
+                                                    ///< table: whether to write it (0: no); absent:
+                                                    ///< yes
   std::function<void*(void*, std::size_t)> entry;   ///< list, keys: entry i
   std::function<void*(void*, std::size_t)> append;  ///< list, keys: creates entry i with its defaults
 };
 
-/// Rules that apply only if the selector of the table has the value `name`, such as the keys of one shape.
+/// Rules that apply only if the selector of the table has the value `name`; for example, the keys
+/// of one shape.
 struct Variant {
   std::string name;
   std::vector<Rule> rules;
@@ -92,9 +97,11 @@ struct Table {
   std::vector<Variant> variants;
   std::function<std::shared_ptr<void>()> make;  ///< makes the struct with its defaults
 
+  /// The rule of this key in `rules`, or the variant of this name; null if there is none.
   const Rule* find(std::string_view key) const;
   const Variant* find_variant(std::string_view name) const;
-  /// The variant that the selector in the struct `target` selects; null if the table has no variants.
+  /// The variant that the selector in the struct `target` selects; null if the table has no
+  /// selector.
   const Variant* variant_of(void* target) const;
 };
 

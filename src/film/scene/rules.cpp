@@ -1,5 +1,5 @@
-// The rules of the scene format: every key with its unit, range and documentation. Defaults are the initialisers in
-// scene.hpp. Upper bounds ensure that no single value exhausts memory or time.
+// The rules of the scene format: each key with its unit, range and documentation. Defaults are the
+// initialisers in scene.hpp. Upper bounds ensure that no single value exhausts memory or time.
 #include <array>
 #include <cmath>
 
@@ -19,7 +19,7 @@ namespace weft::scene {
 
 namespace {
 
-/// Rotates a vector from axes with z up to axes with the up axis of the scene.
+/// Converts a vector from axes with z up to axes with the up axis of the scene.
 Vec3 rotate_to_up_axis(UpAxis up, const Vec3& z_up) {
   return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
 }
@@ -392,7 +392,7 @@ void append_camera(Scene& s, std::size_t) {
 }  // namespace
 
 const Table& scene_rules() {
-  // The up axis comes first, since defaults of later keys depend on it.
+  // The up axis comes first, because defaults of later keys depend on it.
   static const Table kTable =
       TableBuilder<Scene>("A scene of Weft: SI units, angles in degrees, colors in sRGB.")
           .choice_by(

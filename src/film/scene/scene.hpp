@@ -1,5 +1,6 @@
-// A checked scene: plain values in SI units, with every default filled in and every name checked. A "key frame" is a
-// value at one time; a "key" alone is a key of the TOML text.
+// A checked scene: plain values with all defaults filled in. Units are SI units, except where
+// another one is given. A "key frame" is a value at one time; a "key" alone is a key of the TOML
+// text.
 #pragma once
 
 #include <cmath>
@@ -62,8 +63,9 @@ struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
   double fps = 25;      ///< frames per second
   double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
-  double step = 0.01;   ///< maximum time step [s]; each frame is divided into equal steps no longer than this
-  /// Allowed local error of positions per step [m], which determines the steps in place of `step`; absent: equal steps.
+  double step = 0.01;   ///< see model::Time::step [s]
+  /// Allowed local error of positions per step [m], which determines the steps in place of `step`;
+  /// absent: `step` does.
   std::optional<double> tolerance = std::nullopt;
   Integrator integrator = Integrator::implicit_euler;
 };
@@ -71,16 +73,18 @@ struct Time {
 /// Colours and picture of an object or of a panel of a cloth. On cloth, the picture is aligned with weft and warp.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
-  std::optional<Vec3> back_color;              ///< sRGB, back of cloth; absent: `color`, paler
+  std::optional<Vec3> back_color;              ///< back of cloth, sRGB; absent: that of the front,
+                                               ///< paler
   std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute path
   double image_width = 0.2;                    ///< width of one tile along weft [m]; the height keeps the proportions
   Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
-  double image_rotation = 0;                   ///< of a tile about that corner, counter-clockwise [degrees]
+  double image_rotation = 0;                   ///< rotation about that corner, counter-clockwise
+                                               ///< [degrees]
   bool image_repeat = true;                    ///< false: one tile, with `color` around it
   bool cutout = false;                         ///< true: transparent parts are holes; false: they show `color`
 };
 
-/// A panel of a pattern with its own colours.
+/// The colours of one panel of a pattern.
 struct PanelPaint : Paint {
   std::string name;
 };
@@ -92,27 +96,34 @@ struct Finish {
 };
 
 struct Look : Paint {
-  std::vector<PanelPaint> panels;  ///< colours of the panels of a pattern
+  std::vector<PanelPaint> panels;  ///< colours of panels that differ from those of the cloth
   bool as_file = true;             ///< characters: use the colours and pictures of their file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;  ///< of threads (cloth; absent: by fabric), or of a clear coat (obstacles; absent: 0)
-  std::optional<double> fuzz, sheer;  ///< cloth only, see Finish; absent: by fabric
+  std::optional<double> gloss;  ///< cloth: gloss of the threads (absent: that of the fabric);
+                                ///< obstacles: strength of a clear coat (absent: 0)
+  std::optional<double> fuzz, sheer;  ///< cloth only, see Finish; absent: those of the fabric
   double metal = 0;                   ///< obstacles only: 0 no metal, 1 metal, which reflects in its own colour
-  std::optional<double> tile_width;   ///< obstacles only: width of one tile [m]; absent: once over the shape
-  double warp_fraction = 0.5;         ///< set by the fabric: fraction of warp among the threads on top
-  Threads threads = Threads::plain;   ///< set by the fabric: pattern of the drawn threads
-  double cloth_thickness = 0;         ///< of the fabric itself, not its contact thickness; ropes: diameter [m]
-  double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: draws no threads
-  std::optional<double> hem;          ///< cloth only: width of drawn hems [m]; 0: none; absent: by fabric and shape
+  std::optional<double> tile_width;   ///< obstacles only: width of one tile [m]; absent: one tile
+                                      ///< covers the shape
+  double warp_fraction = 0.5;         ///< of the fabric: fraction of warp among the threads on top
+  Threads threads = Threads::plain;   ///< of the fabric: pattern of the drawn threads
+  double cloth_thickness = 0;         ///< thickness of the fabric, not its contact thickness;
+                                      ///< ropes: diameter [m]
+  double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: no
+                                      ///< threads are drawn
+  std::optional<double> hem;          ///< cloth only: width of drawn hems [m]; 0: none; absent:
+                                      ///< depends on fabric and shape
   bool checker = false;               ///< infinite planes only: faint grid of 0.5 m tiles
   bool strands = true;                ///< ropes only: drawn with twisted strands
   bool visible = true;
 };
 
-/// Key frame of a pin: the pose in which it holds its particles at one time. The particles rotate about their centroid.
+/// Key frame of a pin: the pose in which the pin holds its particles at one time. The particles
+/// rotate about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;        ///< position: displacement of the centroid; if `in_world`, the centroid's position
+  Pose pose;        ///< its position: the displacement of the centroid or, if `in_world`, the
+                    ///< centroid
   bool in_world = false;
 };
 
@@ -123,20 +134,26 @@ struct PinTrack {
 
 enum class VertexColor { none, red, green, blue, brightness };
 
-/// A part of a cloth: the particles inside [low, high], in fractions of the cloth's rest size along weft and warp.
-/// `mask`, `vertex_color` and `vertex_group` each give a particle a fraction from 0 to 1, the strength of the effect on
-/// it; if several are given, their fractions are multiplied.
+/// A part of a cloth: the particles from `low` to `high`, in fractions of the size of the cloth
+/// along weft and warp. For a mesh, this size is the extent along x and y before the pose is
+/// applied. `mask`, `vertex_color` and `vertex_group` each give a particle a fraction from 0 to 1:
+/// the strength of the effect on the particle. If several of them are given, the fractions are
+/// multiplied.
 struct ClothPart {
-  std::string panel;  ///< pattern: only this panel; low, high and mask refer to it; empty: all
+  std::string panel;  ///< pattern: only this panel, to which low, high and mask then refer; empty:
+                      ///< all panels
   Vec2 low{0, 0}, high{1, 1};
-  std::optional<Vec2> at = {};                   ///< rope: first and last fraction of its length; replaces low, high
-  std::string edge;                              ///< pattern: only this edge, as "panel.edge"; empty: all
+  std::optional<Vec2> at = {};                   ///< rope: both ends of the part, in fractions of
+                                                 ///< its length; replaces low and high
+  std::string edge;                              ///< pattern: only this edge, as "panel.edge";
+                                                 ///< empty: no such limit
   std::optional<std::filesystem::path> mask;     ///< picture whose grey values are fractions; absolute path
   VertexColor vertex_color = VertexColor::none;  ///< mesh: colour channel that gives fractions
   std::string vertex_group;  ///< mesh: vertex group or bone whose weights are fractions; empty: none
 
-  /// Whether a particle at the fractions (u, v) of the rest size is inside. The tolerance kSlack includes particles at
-  /// a bound that the scene gives with nine digits, such as 0.333333333.
+  /// Whether a particle at the fractions (u, v) is from `low` to `high`. Thanks to the tolerance
+  /// kSlack, the part includes particles at a bound that the scene gives with nine digits, such as
+  /// 0.333333333.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
     return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
@@ -146,14 +163,18 @@ struct ClothPart {
 /// A pin: particles that are held in place, or moved.
 struct Pin : ClothPart {
   std::string follow;              ///< body or "<character>.<part>" with which the particles move; empty: none
-  PinTrack motion;                 ///< motion of the particles, if `follow` is empty
+  PinTrack motion;                 ///< used if `follow` is empty
   double release = -1;             ///< time of release [s]; negative: never
-  std::optional<double> strength;  ///< stiffness of the springs that hold the particles [N/m]; absent: rigid
-  /// Distance along the cloth over which the pull on particles around the part fades to 0 [m]; needs `strength`.
+  std::optional<double> strength;  ///< stiffness of the spring of a particle with fraction 1 [N/m];
+                                   ///< absent: particles with a fraction of at least 0.5 are held
+                                   ///< exactly
+  /// Distance from the part, along the cloth at rest, over which the pull on the particles around
+  /// it falls to 0 [m]; needs `strength`.
   double fade = 0;
 };
 
-/// A `follow` divided into the name of the body and, for a part of a character, that of the part (else empty).
+/// The two names in a `follow`: of the body and, for a part of a character, of the part (else
+/// empty).
 struct Followed {
   std::string body, part;
 };
@@ -167,18 +188,24 @@ struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
-/// Springs from particles of a cloth to the nearest points of another cloth or body, such as buttons, pegs and tacks.
+/// Springs from particles of a cloth to points of another cloth or body, such as buttons, pegs and
+/// tacks.
 struct Attachment : ClothPart {
   std::string name, cloth, to;          ///< `to`: the other cloth, rope or body
   double stiffness = 10000;             ///< of the spring of a particle with fraction 1 [N/m]
-  std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance at `begin`
-  double begin = -1e5, release = -1;    ///< times between which the springs act [s]; negative release: for ever
-  std::optional<double> breaking_load;  ///< total force above which all springs break [N]; absent: never
+  std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance of
+                                        ///< their ends at `begin`
+  double begin = -1e5, release = -1;    ///< times between which the springs act [s]; negative
+                                        ///< release: until the end
+  std::optional<double> breaking_load;  ///< sum of the spring forces above which all springs break
+                                        ///< [N]; absent: never
 };
 
-/// At the start: keep the given positions, or move the cloth off surfaces that it touches or crosses.
+/// What the start does if the cloth touches or crosses surfaces: it refuses the scene (as_given),
+/// or moves the cloth off them (untangle).
 enum class ClothStart { as_given, untangle };
-/// quads, aligned_triangles and crossed_triangles are rectangles of cloth; they differ in their meshes.
+/// `quads`, `aligned_triangles` and `crossed_triangles`: rectangles of cloth, which differ in their
+/// meshes.
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern, rope };
 /// Source of the rest shape of a mesh. `automatic`: the UVs if they are panels of cloth (UvRest), else the mesh.
 enum class ClothRest { automatic, mesh, uv };
@@ -189,26 +216,32 @@ struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< rectangles: size along weft and warp [m]
-  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed_triangles add one per cell
+  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed_triangles have one more
+                                                 ///< per cell
   Vec2 grading{1, 1};                            ///< rectangles: last spacing of particles / first spacing
   std::filesystem::path file;                    ///< mesh or sewing pattern; absolute path
   double scale = 1;                              ///< mesh, pattern: factor on all lengths of the file
   FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
   std::string object;                            ///< mesh: name of the object in the file; empty: all objects
   ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
-  std::optional<Vec2> uv_scale;                  ///< metres per unit of the UVs; absent: fitted to the mesh
+  std::optional<Vec2> uv_scale;                  ///< mesh: metres per unit of the UVs; absent:
+                                                 ///< fitted to the mesh
   double edge_length = 0.02;                     ///< pattern: edge length of its mesh [m]
-  std::string wearer;                            ///< pattern: character that wears it; empty: the only one
+  std::string wearer;                            ///< pattern: character that wears it; empty: the
+                                                 ///< only character
   bool fit = false;                              ///< pattern: scale it to the wearer's measures
-  double sewing = 1;         ///< time in which the rest shape changes from the start shape to the flat panels [s]
+  double sewing = 1;         ///< mesh, pattern: time in which the rest shape changes from the start
+                             ///< shape to the flat panels [s]
   int line = 0, column = 0;  ///< place in the scene file, for error messages
-  Pose pose;                 ///< of the middle of a sheet (weft along x, warp along y) or of a file's origin
+  Pose pose;                 ///< of the middle of a rectangle (weft along x, warp along y), or of
+                             ///< the origin of a file
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec3 spin{0, 0, 0};        ///< angular velocity at the start, about the centre of mass [degrees/s]
-  Vec2 start_scale{1, 1};    ///< start lengths along weft and warp / rest lengths
-  std::optional<ClothStart> start;  ///< for surfaces that touch or cross at the start; absent: see starts_untangled()
-  std::vector<std::string> over;    ///< cloths over which this one is worn
-  double start_noise = 0;           ///< maximum random offset of a particle at the start, along each axis [m]
+  Vec2 start_scale{1, 1};    ///< lengths at the start / lengths at rest, along weft and warp
+  std::optional<ClothStart> start;  ///< absent: see starts_untangled()
+  std::vector<std::string> over;    ///< names of cloths directly below this one
+  double start_noise = 0;           ///< maximum random displacement of a particle at the start,
+                                    ///< along each axis [m]
   Material material;
   Pressure pressure;
   Look look;
@@ -217,8 +250,9 @@ struct Cloth {
   std::shared_ptr<const Rope> rope;  ///< the rope for which this cloth is simulated; null: a sheet
 };
 
-/// Whether the start moves this cloth off surfaces that it touches or crosses. (Cloth that is worn `over` other cloth
-/// is always moved off it.) The default is true for patterns, since the program, not the scene, places their panels.
+/// Whether the start moves this cloth off surfaces that it touches or crosses. The default is true
+/// for patterns, because the program, not the scene, places their panels. (Cloth worn `over` other
+/// cloth is moved off that cloth in any case.)
 inline bool starts_untangled(const Cloth& cloth) {
   return cloth.start ? *cloth.start == ClothStart::untangle : cloth.shape == ClothShape::pattern;
 }
@@ -230,22 +264,28 @@ inline long rectangle_particles(const Cloth& cloth) {
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
-/// A thin chain of particles. It is simulated as a one-dimensional cloth; see as_cloth() (ropes.hpp).
+/// A thin chain of particles, simulated as a one-dimensional cloth; see as_cloth() (ropes.hpp).
 struct Rope {
   std::string name;
-  std::vector<Vec3> points;      ///< points that it passes through at the start [m]
-  std::optional<Vec3> from, to;  ///< its ends, if it has no points [m]
-  bool smooth = false;           ///< true: curved through its points; false: straight between them
+  std::vector<Vec3> points;      ///< points through which the rope passes at the start [m]
+  std::optional<Vec3> from, to;  ///< ends of a rope without points [m]
+  bool smooth = false;           ///< true: a smooth curve through the points; false: straight
+                                 ///< between them
   bool closed = false;           ///< true: the last point is joined to the first
-  std::optional<double> length;  ///< rest length [m]; absent: first of `keys`, else start length
+  std::optional<double> length;  ///< rest length [m]; absent: that of the first key or, without
+                                 ///< keys, of the start path
   Interpolation interpolation = Interpolation::cubic;  ///< between `keys`
-  std::vector<RopeKey> keys;                           ///< key frames of its length; empty: constant length
-  std::optional<int> segments;                         ///< number of pieces; absent: by length and diameter
+  std::vector<RopeKey> keys;                           ///< key frames of the rest length; empty: it
+                                                       ///< is constant
+  std::optional<int> segments;                         ///< number of pieces; absent: depends on
+                                                       ///< length and diameter
   double diameter = 0.008;                             ///< contact diameter [m]
   int material = 0;                                    ///< index into rope_materials()
-  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²]; absent: by material
+  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²];
+                                              ///< absent: those of the material
   double damping = 0.01;                      ///< viscosity of stretch and bending / their stiffness [s]
-  double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both objects
+  double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both
+                           ///< coefficients
   double drag = 1.1;       ///< drag coefficient of a cylinder, for motion across the rope
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
   Look look;
@@ -258,15 +298,19 @@ struct Obstacle {
   Shape shape;
   int segments = 48;  ///< round shapes: number of faces around the axis
   Pose pose;
-  PoseTrack motion;        ///< key frames, not relative to `pose`; empty: rests at `pose`
+  PoseTrack motion;        ///< key frames of the pose, in place of `pose`; empty: the obstacle
+                           ///< rests at `pose`
   double mass = 0;         ///< [kg]; 0: follows from `density`
-  double density = 0;      ///< [kg/m³]; 0: follows from `mass`; if both are 0, forces do not move it
-  Vec3 velocity{0, 0, 0};  ///< at the start, if forces and no key frames move it [m/s]
-  Vec3 spin{0, 0, 0};      ///< as `velocity`: angular velocity about the centre of mass [degrees/s]
-  /// Time from which forces move the obstacle; before it, key frames do [s]. Absent: forces always do.
+  double density = 0;      ///< [kg/m³]; 0: follows from `mass`; if both are 0, forces do not move
+                           ///< the obstacle
+  Vec3 velocity{0, 0, 0};  ///< at the start or at `release`, if forces move it and it has at most
+                           ///< one key frame [m/s]
+  Vec3 spin{0, 0, 0};      ///< likewise: angular velocity about the centre of mass [degrees/s]
+  /// If forces move the obstacle: time from which they do [s]; until then, it rests or follows its
+  /// key frames. Absent: forces always do.
   std::optional<double> release;
-  /// Obstacle or "<character>.<part>" with which the obstacle moves: the rigid motion of that body since the start of
-  /// the run is applied in addition to its own motion. Empty: none.
+  /// Obstacle or "<character>.<part>" with which this obstacle moves: the rigid motion of that body
+  /// since the start of the run is applied in addition to the motion of this obstacle. Empty: none.
   std::string follow = {};
   double friction = 0.3;
   bool collide = true;
@@ -281,18 +325,19 @@ inline bool is_dynamic(const Obstacle& obstacle) {
 
 enum class Stance { first, rest };
 
-/// Names of one joint in two files; needed for files without the usual names.
+/// Names of one joint in two files. Needed only if the program does not find the joint in a file.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
-  std::optional<std::string> body;    ///< its name in the file of the character
-  std::optional<std::string> motion;  ///< its name in the file of the motion
+  std::optional<std::string> body;    ///< its name in the file of the character; absent: found by
+                                      ///< the program
+  std::optional<std::string> motion;  ///< its name in the file of the motion; absent: likewise
 };
 
-/// Horizontal travel of a clip: as in its file, in place, or at a speed.
+/// Horizontal travel of a clip: as in its file, none (in place), or at a mean speed.
 struct Travel {
   enum class Kind { file, none, speed };
   Kind kind = Kind::file;
-  double speed = 0;  ///< for Kind::speed: horizontal speed in the scene [m/s]
+  double speed = 0;  ///< for Kind::speed: mean horizontal speed in the scene [m/s]
 };
 
 /// The motion of a body with a skeleton. A clip is an animation in a file.
@@ -306,18 +351,21 @@ struct SkeletonMotion {
   Stance stance = Stance::first;
   /// Angle between the straight arms and the downward direction, in `stance` [degrees]; absent: as in the pose.
   std::optional<double> stance_arms;
-  bool loop = false;     ///< repeats the clip; each round starts where the previous one ended
-  double crossfade = 0;  ///< clip time over which each round is blended into the next one [s]; 0: none
+  bool loop = false;     ///< whether the clip is repeated; each round starts where the one before
+                         ///< ended
+  double crossfade = 0;  ///< clip time at the end of a round in which it is blended into the next
+                         ///< one [s]; 0: none
 };
 
 /// A character from a file, with skeleton and animations.
 struct CharacterFile : SkeletonMotion {
   std::filesystem::path path;        ///< absolute
-  std::vector<std::string> meshes;   ///< meshes to use, by the names of meshes or of their nodes; empty: all
-  std::vector<std::string> without;  ///< meshes to leave out, named likewise
+  std::vector<std::string> meshes;   ///< names of the meshes to use, or of their nodes; empty: all
+  std::vector<std::string> without;  ///< names of the meshes to leave out, or of their nodes
 };
 
-/// The built-in mannequin; see character::MannequinBuild. In scenes with z up it faces and walks along −y.
+/// The built-in mannequin; see character::MannequinBuild. In scenes with z up, it faces −y and
+/// walks along −y.
 struct Mannequin : SkeletonMotion {
   double height = 1.75;       ///< [m]
   double girth = 1;           ///< factor on widths and depths of the slender default
@@ -326,42 +374,48 @@ struct Mannequin : SkeletonMotion {
   double walk = 0;            ///< walked distance [m]; 0: it stands
   double pace = 1.2;          ///< steady walking speed [m/s]
   bool turn_back = false;     ///< true: turns around at the end of the walk and walks back
-  double arms_out = 13;       ///< angle of the upper arms from the vertical while walking [degrees]
+  double arms_out = 13;       ///< angle of the upper arms from the vertical while it walks
+                              ///< [degrees]
 };
 
 /// A body whose key frames are a sequence of mesh files.
 struct MeshSequence {
-  std::string files;  ///< a folder, or a file name with one *; relative paths start at the scene's folder
+  std::string files;  ///< see sequence_files(); absolute path
   double fps = 25;    ///< files per second
 };
 
 using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 
-/// A part of a character with its own contact settings: by `bone` or `material`, else by `name`, such as "head".
+/// A part of a character with contact settings of its own. `bone` or `material` selects it; without
+/// both, `name` does, such as "head".
 struct BodyPart {
   std::string name;
   std::optional<std::string> bone;      ///< node of the character's file; includes all nodes below it
   std::optional<std::string> material;  ///< of the character's file
   bool collide = true;
   std::optional<double> friction;  ///< absent: that of the character
-  double thickness = 0;            ///< thickness of padding [m]; cloth keeps half of it as additional distance
+  double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact
+                                   ///< distance
 };
 
-/// A body with prescribed motion, which is converted to key frames of its vertices.
+/// A body with prescribed motion. The program converts this motion to key frames of the body's
+/// vertices.
 struct Character {
   std::string name;
   CharacterSource source;
   std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, else 1
   FileUp up = FileUp::as_file;
   Pose pose;            ///< of the file's origin, or of the floor below the mannequin
-  double dressing = 0;  ///< time from the start of the preroll for which it stands still, to be dressed [s]
+  double dressing = 0;  ///< time for which it stands still to be dressed, from the start of the
+                        ///< preroll on [s]
   /// Time after `dressing` [s] in which the clip accelerates to `speed` and the pose changes from `stance` to the clip.
   double blend = 0;
   double grow = 0;             ///< time at the start of `dressing` in which it grows from its bones to its size [s]
   double start = 0;            ///< time of the clip at which the motion begins [s]
   double speed = 1;            ///< factor on the speed of the clip
   std::optional<double> room;  ///< clearance between limbs [m]; absent: clearance_between_limbs()
-  std::optional<double> keys_per_second;  ///< computed key frames per second [Hz]; absent: rate of the clip, in bounds
+  std::optional<double> keys_per_second;  ///< computed key frames per second [Hz]; absent: rate of
+                                          ///< the clip, but 10 to 120
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
@@ -370,7 +424,7 @@ struct Character {
   int line = 0, column = 0;  ///< place in the scene file, for error messages
 };
 
-/// The SkeletonMotion of a character with a skeleton; nullptr for mesh sequences.
+/// The motion settings of a character with a skeleton; nullptr for mesh sequences.
 inline const SkeletonMotion* acting_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
@@ -381,7 +435,7 @@ inline SkeletonMotion* acting_of(Character& character) {
 
 struct LightKey {
   double time = 0;  ///< [s]
-  /// Suns have a direction, in which the light travels; spots have a position and a target [m].
+  /// Suns: direction in which the light travels. Spots: position and target [m].
   Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
   double intensity = 1;
 };
@@ -392,7 +446,8 @@ struct Light {
   double cone_angle = 45;  ///< full opening angle [degrees]
   Vec3 color{1, 1, 1};
   double softness = 2;         ///< angular width of the source as seen from the scene [degrees]
-  std::vector<LightKey> keys;  ///< key frames, at least one; one: the light does not change
+  std::vector<LightKey> keys;  ///< key frames, at least one; with only one, the light does not
+                               ///< change
   Interpolation interpolation = Interpolation::cubic;
 };
 
@@ -400,14 +455,16 @@ enum class StageLook { studio, stage, daylight, clay, wire, strain };
 
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;  ///< name; empty: the first camera or, if there is none, automatic framing
+  std::string camera;  ///< name; empty: the first camera or, if there is none, one that the program
+                       ///< places
   StageLook look = StageLook::studio;
   std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
   std::optional<double> sky_intensity;
-  double exposure = 0;                     ///< stops
+  double exposure = 0;                     ///< exposure compensation [stops]
   double motion_blur = 0;                  ///< shutter angle [degrees]
   HeatQuantity heat = HeatQuantity::none;  ///< quantity that the colours of cloth show
-  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: largest value of each frame
+  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each
+                        ///< frame
 };
 
 struct Scene {
@@ -424,7 +481,7 @@ struct Scene {
   Solver solver;
   Contact contact;
   std::vector<Cloth> cloths;  ///< cloths of ropes come last
-  std::vector<Rope> ropes;    ///< each has a cloth in `cloths`, too
+  std::vector<Rope> ropes;    ///< for each of them, `cloths` has a cloth
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;

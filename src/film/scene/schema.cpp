@@ -1,4 +1,5 @@
-// The JSON schema of a format (Draft 2020-12). It uses only features of draft 7, to which some editors are limited.
+// The JSON schema of a format (Draft 2020-12). It uses only features of draft 7, because some
+// editors know no later ones.
 #include <fmt/format.h>
 
 #include "core/json.hpp"
@@ -60,7 +61,8 @@ Json type_schema(const Rule& rule) {
   return {};
 }
 
-/// The description of a key: documentation and unit ("length of the film [s]"), components, default, excluded key.
+/// The description of a key: its documentation, components, unit, default and excluded key, such as
+/// "length of the film [s]".
 std::string description(const Rule& rule) {
   std::string text = rule.documentation;
   if ((rule.type == Type::number || rule.type == Type::points) && !rule.components.empty())
@@ -114,19 +116,19 @@ bool allow_same_values(Json one, Json other) {
   return one == other;
 }
 
-/// The condition on the selector that selects a variant.
+/// The schema that holds if the selector selects this variant.
 Json condition(const Table& table, const Variant& variant) {
   Json when = {{"properties", {{table.selector, {{"enum", {variant.name}}}}}}};
-  // Without the selector, the default variant applies.
+  // If the selector is absent, the default variant applies.
   const auto defaults = table.make();
   if (table.find(table.selector)->need == Need::required || table.variant_of(defaults.get()) != &variant)
     when["required"].push_back(table.selector);
   return when;
 }
 
-// The schema of a table. Its properties are those of all variants, so that editors can complete them. For each variant,
-// a condition gives the allowed keys, so that editors name the wrong key. If the schema used oneOf instead, editors
-// would not name it.
+// The schema of a table. Its properties are those of all variants, so that editors can complete
+// them. For each variant, a condition gives the allowed keys, so that editors show which key is
+// wrong. With oneOf instead, editors would only show that the table is wrong.
 Json table_schema(const Table& table) {
   Json schema = variant_schema(table, nullptr);
   if (table.variants.empty()) return schema;
@@ -143,7 +145,7 @@ Json table_schema(const Table& table) {
   Json conditions = Json::array();
   for (std::size_t i = 0; i < variants.size(); ++i) {
     for (const char* unused : {"type", "description"}) variants[i].erase(unused);
-    // Do not repeat properties that are equal to those in the common list.
+    // Do not repeat properties that are equal to those of the table.
     for (auto& [key, property] : variants[i]["properties"].items())
       if (property == properties[key]) property = true;
     conditions.push_back({{"if", condition(table, table.variants[i])}, {"then", std::move(variants[i])}});

@@ -7,8 +7,9 @@
 
 namespace weft::scene {
 
-/// `files`: a folder, of which all files are returned, or a file name with one *, for all files that match. Numbers in
-/// names are compared by value, so that 10 follows 9. Returns an empty list if no file matches.
+/// `files`: a folder, or a path whose file name contains one *. Returns all files of the folder, or
+/// all files that match the name; empty if there are none. Numbers in names are compared by value,
+/// so that 10 follows 9.
 std::vector<std::filesystem::path> sequence_files(const std::string& files);
 
 }  // namespace weft::scene

@@ -17,7 +17,7 @@ struct BoxShape {
   Vec3 size{1, 1, 1};
   double bevel = 0;
 };
-/// Its axis is the up axis; its base is at −height / 2.
+/// Its axis is the up axis. Its origin is at half the height, its base at −height / 2.
 struct Cone {
   double radius = 0.5, height = 1;
 };

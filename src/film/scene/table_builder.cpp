@@ -12,7 +12,8 @@ const std::vector<double>& numbers_of(const Value& value) {
 
 }  // namespace
 
-// Adding 0.0 turns −0 into 0. Otherwise −0 would be written as a text that is read back as another value.
+// In these functions, adding 0.0 turns −0 into 0: the text "-0" would be read back as the integer
+// 0, another value.
 Value to_value(double number) {
   return std::vector<double>{number + 0.0};
 }
@@ -75,7 +76,8 @@ void assign(Vec3& target, const Value& value) {
 void assign(Quat& target, const Value& value) {
   const std::vector<double>& wxyz = numbers_of(value);
   target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  // Keep a quaternion of length 1 up to rounding unchanged, so that writing and reading it again changes no bit.
+  // If its length is 1 up to rounding, keep the quaternion unchanged: writing and reading it again
+  // then changes no bit.
   if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
 }
 

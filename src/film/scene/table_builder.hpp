@@ -1,5 +1,6 @@
-// Builds tables of rules. Each rule (row) binds a key to the struct member that it fills. Code that does not depend on
-// the type of the struct is in table_builder.cpp, so that it is compiled once, not for each of hundreds of rows.
+// Builds tables of rules. Each rule (row) binds a key to the struct member that it fills. Code that
+// does not depend on the type of the struct is in table_builder.cpp, so that it is compiled only
+// once.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,7 @@
 
 namespace weft::scene {
 
-// Struct member -> Value.
+// These functions convert a struct member to a Value.
 Value to_value(double number);
 Value to_value(int number);
 Value to_value(bool flag);
@@ -31,7 +32,8 @@ Value to_value(const std::optional<T>& value) {
   return value ? to_value(*value) : Value{};
 }
 
-// Value -> struct member. The reader has checked type, range and number of components.
+// These functions convert a Value to a struct member. Reader has checked type, range and number of
+// components.
 void assign(double& target, const Value& value);
 void assign(int& target, const Value& value);
 void assign(bool& target, const Value& value);
@@ -76,7 +78,7 @@ class RowBuilder {
   /// Binds one array of two numbers to two members: to the second if `second`, else to the first.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
-  /// Binds a choice. The functions read and write its index in `choices`.
+  /// Binds a choice. The functions read and write the index of the chosen word in `choices`.
   void bind_choice(const Words& choices, std::function<std::size_t(void*)> get,
                    std::function<void(void*, std::size_t)> set);
   void add_variant(std::string_view name, const RowBuilder& rows);
@@ -86,7 +88,8 @@ class RowBuilder {
   Table table_;
 };
 
-/// Builds the table that describes struct S. An argument `member` is a member pointer, or a lambda S& -> member&.
+/// Builds the table that describes struct S. An argument `member` is a pointer to a member of S, or
+/// a function that returns a reference to a member of its argument S&.
 template <class S>
 class TableBuilder : public RowBuilder {
  public:
@@ -139,7 +142,8 @@ class TableBuilder : public RowBuilder {
         key, choices, documentation, [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
         [member](S& s, std::size_t index) { std::invoke(member, s) = static_cast<Field>(index); });
   }
-  /// A choice that no single member stores: the functions read (S&) and write (S&, std::size_t) its index.
+  /// A choice that no single member stores. The functions read (S&) and write (S&, std::size_t) the
+  /// index of the chosen word in `choices`.
   template <class Get, class Set>
   TableBuilder& choice_by(std::string_view key, const Words& choices, std::string_view documentation, Get get,
                           Set set) {
@@ -248,7 +252,7 @@ class TableBuilder : public RowBuilder {
     table_.selector = last().key;
     return *this;
   }
-  /// `when` (S&): whether the effective scene contains the key.
+  /// `when` (S&): whether the effective scene may contain the key.
   template <class When>
   TableBuilder& written_if(When when) {
     write_if([when](void* s) { return when(*static_cast<S*>(s)); });

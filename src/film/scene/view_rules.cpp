@@ -6,9 +6,9 @@
 namespace weft::scene {
 namespace {
 
-// The first key frame stores the values given directly in the table of a camera or light. If the table has `keys`,
-// these values are the defaults of the first entry of `keys`; each later entry takes its defaults from the entry
-// before.
+// Appends entry i of `keys`, filled with its defaults, for a camera or light. Entry 0 exists
+// already: its defaults are the values given directly in the table of the camera or light. The
+// defaults of each later entry are the values of the entry before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -33,8 +33,9 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// Adds the row of the focal length, after that of the field of view. `stands(s)`: whether the effective scene may
-/// contain the focal length in the table of `s`. `otherwise`: documents its default.
+/// Adds the row of the focal length, after that of the field of view. `stands(s)`: whether the
+/// effective scene may contain the focal length in the table of `s`. `otherwise`: documentation of
+/// the default.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm",
@@ -124,7 +125,7 @@ void smoothing_row(TableBuilder<Camera>& rows) {
               "time over which the motion of the camera is smoothed; 0: no smoothing");
 }
 
-/// Adds the keys of computed cameras that have a given direction from the subject.
+/// Adds the keys of computed cameras whose direction from the subject the scene gives.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
               "direction of the camera as seen from the subject, around the up axis from the front to the right: with "
@@ -152,7 +153,7 @@ void file_rows(TableBuilder<Camera>& rows) {
               "factor on the lengths of the file, which glTF gives in metres");
 }
 
-/// Rules of a key frame of a light. `rows` adds the keys that only suns or only spots have.
+/// Rules of a key frame of a light. `rows`: adds the keys that only suns have, or only spots.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
       .number("time", &LightKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")

@@ -22,8 +22,8 @@ class Decoder {
 
   int width() const;   ///< [pixels]
   int height() const;  ///< [pixels]
-  /// Whether the pictures may differ from those given to the encoder. H.264 can be lossless: RGB counts as lossless,
-  /// YUV as lossy.
+  /// Whether the pictures may differ from those given to the encoder. H.264 can be lossless: here,
+  /// RGB in H.264 counts as lossless, YUV as lossy.
   bool lossy() const;
   double fps() const;  ///< frames per second; 0 if libav finds no rate
   const std::map<std::string, std::string>& metadata() const;

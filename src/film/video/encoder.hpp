@@ -32,8 +32,8 @@ struct Settings {
 /// which can be played even if the process is killed.
 class Encoder {
  public:
-  /// Opens the temporary file. Throws Error(output_failed) if settings are out of range or the file cannot be written,
-  /// Error(usage) as codec_of() does.
+  /// Opens the temporary file. Throws Error(output_failed) if settings are out of range, the file
+  /// cannot be written, or libav cannot start the encoder; Error(usage) as codec_of() does.
   Encoder(const std::filesystem::path& file, const Settings& wanted);
   ~Encoder();  ///< without finish(): removes the temporary file
   Encoder(const Encoder&) = delete;
@@ -43,9 +43,11 @@ class Encoder {
   /// Error(output_failed) with libav's message if libav fails, for example because the disk is full.
   void add(const image::Image& image);
 
-  /// Flushes the encoder, moves the index to the front, reads the file to verify the time of each frame, and renames it
-  /// to its final name. Throws Error(output_failed), also if no frame has been added. If all frames are encoded
-  /// but the finished file cannot be made, partial_name(file) keeps the frames, and the error names that file.
+  /// Flushes the encoder, moves the index to the front, reads the file to verify the time of each
+  /// frame, and renames it to its final name. Throws Error(output_failed), also if no frame has
+  /// been added. If all frames are encoded but the finished file cannot be made, partial_name(file)
+  /// keeps the frames, and the error names that file. Throws Error(internal) if finish() has
+  /// already been called.
   void finish();
 
   int frames() const;

@@ -60,8 +60,9 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times; the delay is then the
-// smallest one with which each frame is decoded before it is shown. 0 if there is no frame or a time is missing.
+// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times;
+// the delay is then the smallest one with which no frame is decoded after it is shown. 0 if there
+// is no frame or a time is missing.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const AVRational unit = input->streams[0]->time_base;

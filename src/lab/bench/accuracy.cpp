@@ -23,8 +23,9 @@ constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 // of the error at the shortest measured step. With contact, so short a step would be useless, because chaotic
 // divergence exceeds the step error.
 constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
-// Values of time.tolerance fall from kLargestTolerance [m] by half a decade each. They end after kTolerances values, or
-// earlier if a run fails or takes more steps than the run with the shortest fixed step.
+// Values of time.tolerance fall from kLargestTolerance [m] by half a decade each. They end after
+// kTolerances values (with contact, kTolerancesWithContact), or earlier if a run fails or takes
+// more steps than a run with the shortest fixed step.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
 // newton_tolerance falls by decades from the scene's value down to this minimum.
@@ -229,10 +230,11 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
   return sample;
 }
 
-// Divides the newton_tolerance of `twice`, the setting of a reference with twice its step, by ten until the result
-// hardly changes: by less than the starts differ, or by less than a tenth of the change expected from halving the step.
-// Also stops at kMinNewtonTolerance, or if a run fails. `coarse`: run of `twice`; replaced by the last successful run.
-// Returns the last change. Throws if the first run fails, or if a run with twice the step of `twice` fails.
+// `twice`: the setting of a reference with twice its step. Divides its newton_tolerance by ten
+// until the result hardly changes: by at most the spread over the starts, or by at most a tenth of
+// the change expected from halving the step. Also stops at kMinNewtonTolerance, or if a run fails.
+// `coarse`: run of `twice`; replaced by the last successful run. Returns the last change. Throws if
+// the run after the first division fails, or if a run with twice the step of `twice` fails.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
@@ -254,8 +256,9 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   }
 }
 
-// Runs a candidate for the reference and estimates its errors. Chooses newton_tolerance at twice the step, because such
-// runs take half the time. If a run fails, returns nullptr.
+// Runs a candidate for the reference and estimates its errors. Chooses newton_tolerance at twice
+// the step, because such runs take about half the time. If a run fails, stores the reason in
+// `candidate` and returns nullptr.
 Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   try {
     Setting twice = candidate.setting;
@@ -304,8 +307,9 @@ bool Campaign::decides(const Run& run, const Run& tighter) const {
   return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.uncertainty_of(tighter, q));
 }
 
-// Runs this fixed step with newton_tolerance falling from the scene's value until Run::step_decides. Returns the run
-// with step_decides; nullptr if there is none.
+// Runs this fixed step with newton_tolerance falling from the scene's value until
+// Run::step_decides, but not below kMinNewtonTolerance. Stops if a run fails. Returns the run with
+// step_decides; nullptr if there is none.
 Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
@@ -387,7 +391,7 @@ void Campaign::measure_linear() {
 // Runs meshes from fine to coarse, and compares each with the mesh that has twice the cells along each side, if that
 // mesh was run. Lists the results from coarse to fine.
 void Campaign::measure_meshes() {
-  std::map<double, SamplePtr> by_refinement;  // the keys, multiples of 1/8, are exact in binary
+  std::map<double, SamplePtr> by_refinement;  // twice a key is exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
   std::set<double, std::greater<>> asked, all(std::begin(kRefinements), std::end(kRefinements));  // finest first
   if (plan_.meshes) {

@@ -53,8 +53,9 @@ struct Run {
   /// Only for Axis::grid: whether the step, not the solver, determines the error. True if `change` is at most a tenth
   /// of the error of the run with a tenth of this newton_tolerance, or at most the uncertainty of that error.
   bool step_decides = false;
-  /// Cost of the run from the first start; but the CPU time is the minimum over all starts. If a single start takes
-  /// less than 0.3 s, it is run twice.
+  /// Cost of the run from the first start; but the CPU time is the minimum over all starts. If
+  /// there is only one start and its run takes less than 0.3 s of CPU time, it is run twice, and
+  /// the smaller time counts.
   Work work = {};
   int particles = 0;
   std::vector<double> start_errors = {};  ///< error of each start alone, in deciding_quantity(); empty for Axis::mesh
@@ -106,8 +107,9 @@ struct Accuracy {
   double largest_energy = 0;    ///< Functionals::energies_in_play of the reference [J]
   Candidate reference, second;  ///< `reference` is the one with the smaller uncertainty; `second` checks it
   Errors difference{};          ///< difference between `reference` and `second`; 0 if `second` failed
-  /// At least Candidate::uncertainty() of `reference`, and at least the difference to `second` or to a cross check
-  /// minus the uncertainty of `second` or of the cross check.
+  /// Uncertainty of the reference: at least Candidate::uncertainty() of `reference`. It is also at
+  /// least the difference between the reference and `second`, or any cross check, minus the
+  /// uncertainty of that other run.
   Errors uncertainty{};
   std::vector<CrossCheck> cross_checks;
   Setting of_scene;       ///< settings of the scene; the step is shortened so that it divides a frame evenly
@@ -145,12 +147,15 @@ using EachRun = std::function<void(const Run& run, double done)>;
 /// Raises `uncertainty` to at least CrossCheck::difference − CrossCheck::uncertainty of each cross check.
 void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks);
 
-/// Runs the scene some hundred times. Computes two independent references: with midpoint and BDF2; with contact, with
-/// BDF2 and Euler, because midpoint does not damp contact. Their step is an eighth (with contact, half) of the shortest
-/// step of Axis::grid. Their newton_tolerance is divided by ten until, at twice their step, a division changes the
-/// result by less than a tenth of the change expected from halving the step, or by less than the starts differ, or
-/// until the tolerance is 1e-8 or a run fails. Of the two candidates, the one with the smaller uncertainty becomes the
-/// reference. Throws Error(simulation_failed) if both fail, and Error(usage) if the plan does not suit the scene.
+/// Runs the scene some hundred times. Computes two independent references: with midpoint and BDF2;
+/// with contact, with BDF2 and Euler, because midpoint does not damp contact. Their step is an
+/// eighth (with contact, half) of the shortest step of Axis::grid.
+/// The newton_tolerance of a reference is chosen at twice its step. It is divided by ten until a
+/// division changes the result by at most a tenth of the change expected from halving the step, or
+/// by at most the spread over the starts, or until it is 1e-8, or until a run fails.
+/// Of the two candidates, the one with the smaller uncertainty in deciding_quantity() becomes the
+/// reference. Throws Error(simulation_failed) if both fail, and Error(usage) if the plan does not
+/// suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

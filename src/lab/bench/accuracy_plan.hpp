@@ -8,8 +8,9 @@
 
 namespace weft::bench {
 
-/// If a member is absent, the program chooses the values. If a list is empty, its runs are omitted (but not the run
-/// with the scene's own time.tolerance).
+/// If a member is absent, the program chooses the values. If a list is empty, its runs are omitted.
+/// But if only `tolerances` is empty, the scene's integrator still runs with the scene's own
+/// time.tolerance.
 struct AccuracyPlan {
   std::optional<std::vector<scene::Integrator>> integrators;
   std::optional<std::vector<double>> steps;       ///< relative to the scene's time.step

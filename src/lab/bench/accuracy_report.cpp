@@ -143,8 +143,8 @@ std::string reference_text(const Accuracy& accuracy) {
       cross_checks_text(accuracy));
 }
 
-// Distribution of the errors over the starts, for all runs of Axis::grid and Axis::tolerance with the newton_tolerance
-// of the scene.
+// Distribution of the errors over the starts. Rows: the runs of Axis::grid with the
+// newton_tolerance of the scene, and all runs of Axis::tolerance.
 Table starts_table(const Accuracy& accuracy) {
   const Quantity q = deciding_quantity(accuracy);
   std::vector<const Run*> runs = with_solver_of_scene(accuracy);

@@ -29,7 +29,8 @@ Specimen rings(int free, int seed);
 /// A scene with the specimen alone. Writes the specimen to `file` (OBJ), from which the scene reads it.
 scene::Scene scene_of(const Specimen& specimen, const scene::Material& material, const std::filesystem::path& file);
 
-/// One pin for each of the particles `held`, which lie at `x` [m].
+/// One pin for each of the particles `held` (indices). `x`: positions of all particles in the flat
+/// cloth [m].
 std::vector<scene::Pin> pins_at(const std::vector<Vec3>& x, const std::vector<std::size_t>& held);
 
 struct Drape {
@@ -55,8 +56,8 @@ struct Cantilever {
   double bending_length = 0;  ///< half of the overhang [m]
   double rigidity = 0;        ///< density · 9.81 m/s² · bending_length³ [N·m]
 };
-/// Finds the overhang by simulating strips of different overhangs, each for 8 s from level. Throws
-/// Error(simulation_failed).
+/// Finds the overhang by simulating strips of different overhangs. Each strip is level at first and
+/// is simulated for 8 s. Throws Error(simulation_failed).
 Cantilever cantilever(const scene::Material& material);
 
 enum class Direction { weft, warp };

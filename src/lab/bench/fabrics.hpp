@@ -39,7 +39,8 @@ Table fabrics_table(const std::vector<FabricRun>& runs);
 std::string fabrics_svg(const std::vector<FabricRun>& runs);
 /// The report. `plot`: name of the file with the plot, in the folder of the report.
 std::string fabrics_markdown(const std::vector<FabricRun>& runs, const std::string& plot);
-/// One sentence: how many fabrics have a drape coefficient within 10 % of the published value.
+/// One sentence: how many of the fabrics with a published drape coefficient are within 10 % of the
+/// nearest published value, and how many of those whose bending stiffness is also published.
 std::string conclusion(const std::vector<FabricRun>& runs);
 
 }  // namespace weft::bench

@@ -58,7 +58,8 @@ std::vector<double> labelled_multiples(double decades) {
   return {1};
 }
 
-// Grid lines at 1, 2 and 5 times the powers of ten, with labels where space allows.
+// Grid lines at 1, 2 and 5 times the powers of ten, and labels at labelled_multiples(). If the axis
+// is longer than kMaxLabelledDecades, only every second (third, ...) decade has labels.
 std::string ticks(const PlotAxis& axis, bool vertical) {
   constexpr double kMaxLabelledDecades = 12;
   std::string text;

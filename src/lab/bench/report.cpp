@@ -15,7 +15,8 @@ std::string quoted(const std::string& field) {
   return text + "\"";
 }
 
-// Escapes bars, which would end a table cell.
+// Escapes bars, which would end a table cell, and replaces line feeds, which would end a row, by
+// spaces.
 std::string escaped(const std::string& field) {
   std::string text;
   for (char c : field) text += c == '|' ? std::string("\\|") : std::string(1, c == '\n' ? ' ' : c);

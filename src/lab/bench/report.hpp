@@ -34,8 +34,9 @@ class Tally {
 };
 
 Table map_table(const std::vector<MapCell>& cells);
-/// The stability map as SVG, with one panel per integrator. Stiffness increases upward, the time step to the right. The
-/// verdict gives the colour of a cell.
+/// The stability map as SVG, with one panel per integrator. Stiffness increases upward, the time
+/// step to the right. The colour of a cell is its verdict; the number in it is that of Newton
+/// iterations per step.
 std::string map_svg(const std::vector<MapCell>& cells);
 
 }  // namespace weft::bench

@@ -87,7 +87,7 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
-      varied = scene;  // test the scene's own values, because a factor of 0 changes friction, too
+      varied = scene;  // a factor of 0 has set all coefficients of `varied` to 0
       return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
              (scene.contact.self || scene.contact.obstacles);
     // The simulation takes no step longer than a frame. Each factor above 1 is twice the factor before. If half of a

@@ -67,9 +67,11 @@ struct SceneStability {
   const Trial* find(const Factors& factors) const;
 };
 
-/// All factors tried for one parameter, in ascending order, including 1.
+/// All factors of one parameter, in ascending order, including 1. Only those that change the
+/// simulation of the scene are tried.
 const std::vector<double>& factors_of(VariedParameter axis);
-/// The map: all combinations of these factors of stiffness and step are tried.
+/// The map: all combinations of these factors of stiffness and step are tried, except those in
+/// which a factor changes nothing.
 inline constexpr std::array<double, 5> kMapStiffness{0.01, 0.1, 1, 10, 100};
 inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
 

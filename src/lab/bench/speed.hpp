@@ -55,10 +55,11 @@ struct SpeedRun {
   /// Sum over all stages.
   StageTime all() const;
   double bytes_a_particle() const;
-  /// Fraction of the wall time outside of parallel loops. Only for runs with one thread.
+  /// Fraction of the wall time outside of parallel loops of the simulation; drawing counts as
+  /// outside. Only for runs with one thread.
   double serial_fraction() const;
-  /// Speed-up with LoopCounts::kThreads[number] threads if starting and synchronising threads took no time. Only for
-  /// runs with one thread.
+  /// Speed-up with LoopCounts::kThreads[number] threads if starting and synchronising threads took
+  /// no time, and all chunks of a loop took equal times. Only for runs with one thread.
   double largest_gain(std::size_t number) const;
 };
 
@@ -93,8 +94,9 @@ double memory_bound_s(const SpeedRun& run);
 /// rate of the smallest cache level that can hold these bytes, or of memory.
 double read_bandwidth(double bytes);
 
-/// The settings of all runs: each size with each number of threads; and each step with the size nearest to the scene's
-/// and the first number of threads. No list may be empty.
+/// The settings of all runs: each size with each number of threads, at the scene's step; and each
+/// other step with the size nearest to the scene's and the first number of threads. No list may be
+/// empty.
 std::vector<SpeedSetting> speed_settings(const std::vector<double>& sizes, const std::vector<int>& threads,
                                          const std::vector<double>& steps);
 /// Rough cost relative to SpeedSetting{1, 1, 1}; used to predict the remaining time.

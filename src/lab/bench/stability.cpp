@@ -129,8 +129,7 @@ scene::Scene swing(scene::Integrator integrator, double stiffness, double step) 
   cloth.name = "sheet";
   cloth.size = {kWidth, kWidth};
   cloth.particles_weft = cloth.particles_warp = kParticles;
-  // Use no named fabric, so that the map does not change with new fabric data. Measured: with softer bending, three
-  // cells with the stiffest threads and longest steps are refused.
+  // Use no named fabric, so that the map does not change with new fabric data.
   scene::Material& material = cloth.material;
   material.density = kDensity;
   material.stretch_weft = material.stretch_warp = stiffness;

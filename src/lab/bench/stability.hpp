@@ -36,7 +36,8 @@ struct EnergyLimit {
   double driven = 0;  ///< largest energy that moving pins and bodies can add [J]; 0: none move
 };
 
-/// Simulates `frames` frames. If the simulation throws Error, returns Verdict::refused.
+/// Simulates `frames` frames, or fewer if a position or the energy is not finite. If the simulation
+/// throws Error, returns Verdict::refused.
 Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limit = {});
 
 /// A scene with extreme parameters.
@@ -64,9 +65,10 @@ double swing_period();
 /// Period of the stiffest mode of the map's sheet, in which neighbouring particles of a thread move oppositely [s].
 double stiffest_period(double stiffness);
 
-/// Simulates a sheet of 11 × 11 particles that is held at two corners and swings down. Each combination of eleven
-/// stiffnesses (powers of ten [N/m]), seven steps (1e-5 to 0.2 s) and three integrators is a cell. Each cell runs for
-/// two swings or 25,000 steps, whichever is shorter. Calls `each` after each cell.
+/// Simulates a sheet of 11 × 11 particles that is held at two corners and swings down. Each
+/// combination of eleven stiffnesses (1e-2 to 1e8 N/m), seven steps (1e-5 to 0.2 s) and three
+/// integrators is a cell. Each cell runs for two swings or 25,000 steps, whichever is shorter,
+/// rounded up to whole frames. Calls `each` after each cell.
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each = {});
 
 }  // namespace weft::bench

@@ -30,7 +30,7 @@ void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_c
   traits_.push_back(traits);
   deformable_ += traits.deformable && !traits.rigid ? 1 : 0;
   surfaces_.push_back({{}, first_triangle, first_vertex, vertex_count});
-  // Renew the spans: push_back may have moved the triangles.
+  // Renew the spans: reserve() may have moved the triangles.
   for (std::size_t b = 0; b < surfaces_.size(); ++b) {
     const std::size_t begin = surfaces_[b].first_triangle,
                       end = b + 1 < surfaces_.size() ? surfaces_[b + 1].first_triangle : triangles_.size();

@@ -14,11 +14,11 @@ namespace weft::collision {
 
 /// Collision properties of a body.
 struct BodyTraits {
-  bool deformable = false;  ///< its vertices are particles, which the solve moves
-  double thickness = 0;     ///< contact thickness [m]; the activation distance is the mean of both sides' thicknesses
+  bool deformable = false;  ///< true: its vertices are particles, which the solve moves
+  double thickness = 0;     ///< contact thickness [m]; activation distance: up to the mean of both
   double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
   bool moving = true;       ///< false: its vertices never leave their positions at the start of the run
-  bool rigid = false;       ///< its vertices keep their distances from each other
+  bool rigid = false;       ///< true: its vertices keep their distances from each other
   Index frame = -1;  ///< if deformable and rigid: first of the four particles that carry it (mesh::RigidFrame); else −1
 };
 
@@ -37,27 +37,29 @@ struct ContactMaterial {
   double thickness = 0, friction = 0;  ///< [m], Coulomb coefficient
 };
 
-/// Owns the triangles; the rest of the engine holds spans of them. Vertex numbers are indices into the position arrays.
-/// These begin with the particles (vertices of cloths, and of rigid bodies that forces move), so add cloths first, then
-/// these rigid bodies, then obstacles.
+/// Owns the triangles of all bodies; the other parts of the engine hold spans of them. Vertex
+/// numbers are indices into the position arrays. The particles come first in these arrays: the
+/// vertices of cloths, and of rigid bodies that forces move. So add cloths first, then these rigid
+/// bodies, then obstacles.
 class Bodies {
  public:
   Bodies() = default;
   Bodies(Bodies&&) = default;  // not copyable: a copy would view the triangles of the original
   Bodies& operator=(Bodies&&) = default;
 
-  /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of positions
-  /// before these vertices that belong to the body but to no triangle, such as the particles of a rigid body. `patches`
-  /// and `limbs` have entries for these positions, too. If patches share a vertex, the last one counts. `limbs`: number
-  /// of the limb of each vertex, from 0; empty: one limb. Limbs are parts of a character, such as arms, that may touch
-  /// or overlap.
+  /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`:
+  /// number of further positions of the body, which come before its vertices and belong to no
+  /// triangle, such as the particles that carry a rigid body. Flags of `patches` and entries of
+  /// `limbs` begin with these positions. If several patches contain a vertex, the last of them
+  /// counts. `limbs`: limb number of each vertex, counted from 0; empty: the body has one limb.
+  /// Limbs are parts of a character, such as arms, that may touch or overlap.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 
   std::size_t size() const { return traits_.size(); }
   const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
 
-  /// Valid until the next add(). Stays valid if this object is moved.
+  /// The spans are valid until the next add(), even if this object is moved.
   std::span<const Triangle> triangles() const { return triangles_; }
   std::span<const Surface> surfaces() const { return surfaces_; }
   /// Surfaces that can collide with themselves: deformable and not rigid. They come first.
@@ -74,11 +76,13 @@ class Bodies {
   const std::vector<ContactMaterial>& materials() const { return materials_; }
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
-  /// Index within its body of the first triangle with these corners, in any order; the number of triangles if there is
-  /// none. To find the first triangle at an edge, repeat one end of the edge.
+  /// Index of the first triangle with these corners, in any order, within the body of corners[0].
+  /// Returns the number of triangles of that body if there is none. To find the first triangle at
+  /// an edge, repeat one end of the edge.
   Index triangle_of(const Triangle& corners) const;
 
-  /// Of an array with one element per vertex of all bodies: the elements of this body.
+  /// The elements of `values` that belong to this body. `values` has one element per vertex of all
+  /// bodies.
   template <class T>
   std::span<T> part(std::size_t body, std::span<T> values) const {
     return values.subspan(surfaces_[body].first_vertex, surfaces_[body].vertex_count);

@@ -8,7 +8,8 @@
 namespace weft::collision {
 namespace {
 
-// With coherence, the pairs must include those with one common vertex. Otherwise ProximityFinder adds these itself.
+// With coherence, the pairs must include those with one common vertex. Without coherence,
+// ProximityFinder adds these pairs itself.
 BroadPhaseOptions options_of(const SearchParameters& parameters) {
   BroadPhaseOptions options = parameters.broad_phase;
   options.one_shared = parameters.coherence;
@@ -82,8 +83,8 @@ void CandidateCache::cover(const Motion& motion, double margin) {
   margin_ = margin;
 }
 
-// Finds the obstacles that an axis-aligned plane separates from all particles, by bounding boxes. The clearance of two
-// detection distances allows for the margins of both sides.
+// Finds the clear obstacles (see CandidateCache) by bounding boxes. Two detection distances are at
+// least the sum of the margins of an obstacle and a particle.
 void CandidateCache::find_clear_bodies(const Motion& motion) {
   const auto extend = [&](std::size_t body, Box3& box) {
     for (std::span<const Vec3> x : {motion.x_t0, motion.low_t1, motion.high_t1})
@@ -105,7 +106,8 @@ void CandidateCache::find_clear_bodies(const Motion& motion) {
   }
 }
 
-// Refits the bounds of all bodies. Skips obstacles that stand still and have not moved since the last refit, if the
+// Refits the bounds of all bodies. Skips an obstacle if its bounds are still the same: it stands
+// still in this step, it stood still at the same place in the step of the last refit, and the
 // margin is unchanged.
 void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {

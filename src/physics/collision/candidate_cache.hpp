@@ -16,22 +16,24 @@ namespace weft::collision {
 struct SearchParameters {
   bool self = true;        ///< cloth against itself and other cloth
   bool obstacles = true;   ///< cloth or rigid bodies against obstacles or rigid bodies
-  bool reuse = true;       ///< keep candidate pairs for several steps, while no vertex has moved far
+  bool reuse = true;       ///< keep candidate pairs over several slow steps (see CandidateCache)
   bool coherence = false;  ///< keep closest points instead of candidate pairs (see CoherentDetection)
   BroadPhaseOptions broad_phase = {};
 };
 
-/// Collects candidate pairs: pairs of triangles whose bounds overlap on the linear trajectories from x_t0 to x_t1. The
-/// bounds are enlarged by a margin at both ends. The margin is half the detection distance, below which features are
-/// near. With SearchParameters::reuse, it is larger in slow steps, by a Verlet margin of 2 · Numerics::Contact::margin
-/// detection distances. A step is slow if no vertex moves as far as the Verlet margin along an axis.
+/// Collects candidate pairs: pairs of triangles whose bounds overlap on the linear trajectories
+/// from x_t0 to x_t1. The bounds are enlarged by a margin at both ends. The margin is half the
+/// detection distance. (Features closer than the detection distance are near.) In slow steps,
+/// SearchParameters::reuse adds a Verlet margin of 2 · Numerics::Contact::margin detection
+/// distances. A step is slow if every vertex moves by less than the Verlet margin along each axis.
 ///
-/// The pairs stay valid while each vertex starts within the Verlet margin of its start at the search and ends inside
-/// its bounds. Features that are near at such starts were closer than radius() at the search. Thus cloth at rest is
-/// searched only once.
+/// The pairs are valid for a later step if, in that step, each vertex starts within the Verlet
+/// margin of its start at the search and ends inside its bounds. Features that are near at such a
+/// start were closer than radius() at the search. Thus cloth at rest is searched only once.
 ///
-/// A clear obstacle is one that an axis-aligned plane separates from all particles. While it stays on its side of that
-/// plane, its motion is ignored: it neither makes a step fast nor invalidates the pairs.
+/// An obstacle is clear if, along one axis, it is at least two detection distances away from the
+/// bounding box of the trajectories of all particles. While it stays at least that far from this
+/// box, its motion is ignored: it neither makes a step fast nor invalidates the pairs.
 ///
 /// Bounds at the start and at the end are compared separately. So triangles that move together with a gap between them
 /// are no candidate pair (sphere_drape at 256²: 4 pairs per particle; 70 with one bound for the whole trajectory).
@@ -41,13 +43,16 @@ class CandidateCache {
   CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x,
                  double detection_distance);
 
-  /// Replaces pairs() by all pairs of triangles that can come within the detection distance on the trajectory from x_t0
-  /// to x_t1, and sets the bounds that covers_start() and covers_end() test. The caller may remove pairs from the list.
+  /// Replaces pairs() by the candidate pairs of the trajectory from x_t0 to x_t1. They include all
+  /// pairs of triangles without a common vertex that come closer than the detection distance. Sets
+  /// the bounds that covers_start(), covers_end() and lists_near() test. The caller may remove
+  /// pairs from the list.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Collects again after pushing apart has moved vertices to x_t1. If a vertex has left the bounds of its end, these
-  /// bounds grow to contain its start and its x_t1, because the vertex may be backtracked from there to its start.
-  /// `all`: the bounds of every vertex grow.
+  /// Collects again, after vertices have been pushed apart to x_t1. If a vertex has left the bounds
+  /// of its end, these bounds grow to contain its x_t0 and its x_t1, because the vertex may later
+  /// be moved back from x_t1 to x_t0. If `all` is true, the bounds of all vertices grow in this
+  /// way.
   CandidatePairs& collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all);
 
   /// As the first collect(), but each vertex may end anywhere in the box between `low_t1` and `high_t1`.
@@ -56,19 +61,22 @@ class CandidateCache {
   /// The list that collect() fills.
   CandidatePairs& pairs() { return pairs_; }
 
-  /// Features that are near at a covered x_t0 were closer than this when the pairs were collected [m].
+  /// If covers_start(x) is true, features that are near at x were closer than this when the pairs
+  /// were collected [m].
   double radius() const { return 2 * margin_; }
   double detection_distance() const { return detection_distance_; }
 
-  /// Whether each vertex at x is kept clear (is_kept_clear()) or within the Verlet margin of its start at the search
-  /// (if the search had no Verlet margin: exactly there). This function and the next two return false if no pairs are
-  /// valid.
+  /// Whether each vertex at x is kept clear (is_kept_clear()) or is within the Verlet margin of its
+  /// start at the search. If the search had no Verlet margin, the vertex must be exactly at that
+  /// start. This function and the next two return false if no pairs are valid.
   bool covers_start(std::span<const Vec3> x) const;
-  /// Whether each vertex at x is kept clear or inside the bounds of its end. If so, the pairs include all that can meet
-  /// on the trajectory from a covered start to x.
+  /// Whether each vertex at x is kept clear or is inside the bounds of its end. If so, and if
+  /// covers_start() is true for the start of a trajectory to x, the pairs include all that can meet
+  /// on it.
   bool covers_end(std::span<const Vec3> x) const;
 
-  /// True only if the pairs contain all features that are near when the vertices end at x.
+  /// If true, the pairs include the triangles of all features that are near at x. It may be false
+  /// even if they do.
   bool lists_near(std::span<const Vec3> x) const;
 
   /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if no such
@@ -87,17 +95,21 @@ class CandidateCache {
 
   /// The pairs of surfaces (a < b, or a = b) to search.
   const std::vector<SurfacePair>& surface_pairs() const { return surface_pairs_; }
-  /// The hierarchies. Their bounds contain the vertices on every covered trajectory, except those of clear obstacles.
+  /// The hierarchies. Their bounds contain all vertices, except those of clear obstacles, on every
+  /// trajectory for which covers_start() and covers_end() are true.
   BroadPhase& hierarchies() { return broad_phase_; }
   const BroadPhase& hierarchies() const { return broad_phase_; }
 
-  /// Invalidates the pairs: nothing is covered from now on.
+  /// Invalidates the pairs: covers_start(), covers_end() and lists_near() return false until pairs
+  /// are collected again.
   void invalidate() { margin_ = -1; }
 
-  /// Call between two steps. Makes later results independent of earlier steps.
+  /// Call between two steps. If separation lists or velocity cones are enabled, drops their state
+  /// and invalidates the pairs, so that later results do not depend on earlier steps.
   void forget();
 
-  /// Starts and boxes of the ends for which the pairs were collected. Collecting for them again gives the same pairs.
+  /// Starts, and boxes of the ends, for which the pairs were collected [m]. Collecting for the same
+  /// positions again gives the same pairs.
   std::span<const Vec3> from() const { return from_; }
   std::span<const Vec3> low_end() const { return low_; }
   std::span<const Vec3> high_end() const { return high_.empty() ? low_ : high_; }

@@ -13,7 +13,8 @@ namespace weft::collision {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-// Number of near pairs that become contacts in one batch: enough for many threads, with a negligible amount of memory.
+// Number of near pairs that become contacts in one batch. A batch occupies up to 16 threads and
+// needs little memory.
 constexpr std::size_t kPairsAtOnce = 16 * kFineGrainSize;
 
 double ramp(double from, double to, double value) {
@@ -28,7 +29,8 @@ void limit_range_growth(Contact& contact, double gap, double h) {
   contact.range = range;
 }
 
-// Distance of the points of a pair along its normal at the start of the step [m]; 0 if negative.
+// Distance of the two points of a pair along its normal, at the start of the step [m]; 0 if it is
+// negative.
 double gap_at_start(const FeaturePair& pair, const StepMotion& motion) {
   double gap = 0;
   for (std::size_t k = 0; k < 4; ++k) gap += pair.weights[k] * pair.normal.dot(motion.x_t0[pair.vertices[k]]);
@@ -137,7 +139,8 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
   return is_new;
 }
 
-// Adds a wall for each corner of the cloth triangle, perpendicular to the line between the closest points of the pair.
+// Adds a wall for each corner of the triangle that is not of the obstacle. The walls are
+// perpendicular to the line between the closest points of the pair.
 void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                ContactResponse& response) const {
   const Triangle& cloth = is_particle(pair.a[0]) ? pair.a : pair.b;
@@ -146,9 +149,11 @@ void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closes
       response.add_wall(*contact, motion.x_t0);
 }
 
-// Adds a contact between each corner that is a particle and the plane through the closest point of the other triangle,
-// perpendicular to the normal of `closest`. Its activation distance is at most the gap at x_from, so it exerts no force
-// there. It has no friction, because the contact of the closest features has friction.
+// Adds a contact between each corner that is a particle and a plane. The plane goes through the
+// closest point of the other triangle and has the normal of `closest`. A corner behind its plane
+// gets no contact. The activation distance is at most the gap at x_from, so the contact exerts no
+// force there. The contact has no friction, because the contact of the closest features has
+// friction.
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {

@@ -40,15 +40,19 @@ struct StepMotion {
   bool is_first_solve() const { return x_t0.data() == x_from.data(); }
 };
 
-/// Fraction of its full stiffness that the contact of a near pair gets. (Full stiffness: ContactParameters::stiffness,
-/// or Numerics::Contact::inertial_stiffness if that is larger.) The fraction fades from 1 to 0
-///   - as the contact direction leaves a wedge (see Proximity), because a neighbouring face is then closer;
-///   - for edge pairs, as both surfaces become flat at the edges, because vertices and faces then keep the layers
-///     apart. One sharp edge, such as that of a box on smooth cloth, suffices for the fraction 1;
+/// Fraction of its full stiffness that the contact of a near pair gets. (Full stiffness: the larger
+/// of ContactParameters::stiffness and Numerics::Contact::inertial_stiffness · m / h²; m and h: see
+/// there.) The fraction fades from 1 to 0
+///   - as the contact direction leaves the wedge of a vertex or edge (see Proximity), because a
+///     neighbouring face is then closer;
+///   - for edge pairs, as both surfaces become flat at the edges, because pairs of a vertex and a
+///     face then keep the surfaces apart. If one edge is sharp, such as that of a box on smooth
+///     cloth, this ramp is 1;
 ///   - for edge pairs, as a closest point approaches the end of its edge.
 ///
-/// Thanks to these ramps, no contact switches on or off while cloth rests. If neither side is cloth (`with_cloth` is
-/// false), only the first ramp applies, because the rims of stacked boxes may cross where no vertex is near.
+/// Without these ramps, contacts of resting cloth would switch on and off. If neither side is cloth
+/// (`with_cloth` is false), only the first ramp applies: the rims of stacked boxes may cross where
+/// no vertex is near, so their edge pairs must keep their stiffness.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
@@ -59,22 +63,27 @@ class ContactBuilder {
   /// Call before the contacts of a step, or of a continued step, are added.
   void begin_step() { in_contact_.clear(); }
 
-  /// Adds a contact for each near pair whose stiffness fraction is not 0. Skips pairs of pinched cloth and the obstacle
-  /// that pinches it, because their normal does not show on which side the cloth belongs.
+  /// Adds a contact for each near pair whose stiffness fraction is not 0. Skips pairs of pinched
+  /// cloth and the limb that pinches it, because their normal may point to the side where the cloth
+  /// does not belong.
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
-  /// Adds the contact that pushes pinched cloth back to its own side of the obstacle, without friction. Its activation
-  /// distance grows in Numerics::Contact::range_growth_time, as that of a new contact does. If the exit is blocked (see
-  /// PinchedPairs::Push), reduces the stiffness, so that two obstacles do not clamp the cloth.
+  /// Adds a contact without friction that pushes pinched cloth back to its own side of the
+  /// obstacle. Its spring is linear. Its activation distance exceeds the present gap by at most the
+  /// fraction h / Numerics::Contact::range_growth_time of the full one. If the exit is blocked (see
+  /// PinchedPairs::Push), multiplies the stiffness by Numerics::Contact::blocked_exit_factor, so
+  /// that two obstacles do not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
-  /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their closest features at
-  /// x_from. Adds a contact of these features, unless they already have one of full stiffness. In the first solve of a
-  /// step, this contact only prevents the features from coming closer. In a continued step, it pushes them apart to the
-  /// activation distance, and further contacts keep each corner on its side of the plane between the triangles, because
-  /// other features could slide past the closest ones. With velocity constraints, a pair with an obstacle instead gets
-  /// walls (see VelocityConstraints) for the corners of the triangle that is not of the obstacle. Returns whether the
+  /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their
+  /// closest features at x_from. Adds a contact of these features, unless they already have one of
+  /// full stiffness. In the first solve of a step, the activation distance of this contact is at
+  /// most the present distance, so it only prevents the features from coming closer. In a continued
+  /// step, it pushes them farther apart. Further contacts then keep each corner on its side of a
+  /// plane through the closest point of the other triangle, because other features could slide past
+  /// the closest ones. With velocity constraints, a pair with an obstacle gets no such contacts,
+  /// but walls (see VelocityConstraints) for the corners of the other triangle. Returns whether the
   /// features had no contact of full stiffness before.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);

@@ -20,7 +20,7 @@ double detection_distance_of(const Bodies& bodies) {
   return numerics.contact.detection * max_thickness;
 }
 
-// The rigid bodies that have triangles and that particles move (mesh::RigidFrame).
+// The rigid bodies that have triangles and that four frame particles carry (mesh::RigidFrame).
 std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
   constexpr Index kFrame = 4;
   std::vector<RigidGroup> groups;
@@ -29,7 +29,7 @@ std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const doubl
     const Surface& surface = bodies.surfaces()[b];
     if (frame < 0 || surface.triangles.empty()) continue;
     const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
-    // The vertices of a body may begin with these particles, which belong to no triangle.
+    // The vertices of the body may begin with its frame particles, which belong to no triangle.
     Index first = bodies.vertex_count(), last = 0;
     for (const Triangle& corners : surface.triangles)
       for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
@@ -91,9 +91,10 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
   gathered_at_.clear();
 }
 
-// Gathers the pairs of features that may be near while no vertex is farther from x than the Verlet margin of near pairs
-// (Numerics::Contact::margin). Skips pairs of triangles that a separating plane keeps far enough apart. Does nothing if
-// the last result still covers x.
+// Gathers the pairs of features that may be near while no vertex is farther from x than the Verlet
+// margin of near pairs (Numerics::Contact::margin). Skips pairs of triangles that a separating
+// plane keeps far enough apart. Does nothing if no vertex is farther than that from its position in
+// the last search.
 void Engine::gather(std::span<const Vec3> x) {
   const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
   const auto is_near = [&] {
@@ -132,9 +133,10 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
-  // Add contacts of pairs that might meet on the expected trajectory. Only planes of constant direction count here: a
-  // pair that needs a turning plane comes close. Exception: pairs for which separate_guess() found a turning plane, and
-  // which it did not move afterwards, are not tested again.
+  // Add contacts of pairs that might meet on the expected trajectory. A pair that only a turning
+  // plane separates comes close, so it gets a contact, too: only planes of constant direction count
+  // here. Exception: if separate_guess() found a turning plane for a pair and did not move the pair
+  // afterwards, the pair is not tested again and gets no contact here.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
@@ -150,9 +152,10 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Pushes apart surfaces that would meet on the way to the estimate x_t1: contacts found at intersecting positions have
-// meaningless directions. Exempts no further cloth, because x_t1 is only an estimate. Between cloths, seeks only planes
-// for the whole step. (In falling_band, two thirds of all searches would be for parts of the step, most in vain.)
+// Pushes apart surfaces that would meet on the way to the estimate x_t1, because contacts found at
+// intersecting positions have meaningless directions. Exempts no further cloth, because x_t1 is
+// only an estimate. Between cloths, seeks no planes for parts of the step: most of these searches
+// would find none. If the surfaces cannot be pushed apart, restores x_t1 and returns false.
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;
@@ -164,9 +167,10 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
   return is_apart;
 }
 
-// Finds near pairs at the expected end of the step. On a curved surface, contact directions found at the start would
-// oppose sliding and take energy. Pairs that no plane of constant direction separates on the trajectory are searched at
-// the start instead, where their features are still on their own sides.
+// Finds near pairs at the expected end of the step. On a curved surface, contact directions found
+// at the start would oppose sliding and take energy. Exception: if no plane of constant direction
+// separates two triangles on the trajectory, their features are searched at the start, where each
+// is still on its own side.
 void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)
@@ -188,7 +192,8 @@ void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<con
   std::ranges::copy_if(at_start, std::back_inserter(proximities_), fails);
 }
 
-// Adds contacts of failing pairs. Returns for how many of them ContactBuilder::add_failing() is true.
+// Adds contacts of failing pairs. Returns for how many of them ContactBuilder::add_failing()
+// returned true.
 int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion) {
   std::vector<ClosestFeatures> closest(pairs.size());
   parallel_for(pairs.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
@@ -217,14 +222,15 @@ void Engine::continue_from(std::span<const Vec3> x) {
   add_failing(pushed_pairs_, motion);
 }
 
-// Clears the contacts. Collects candidate pairs again if the kept ones do not cover the trajectory from x_from to x_t1.
+// Clears the contacts. Collects candidate pairs again if the kept ones do not cover the start
+// x_from, or if features that are near at x_t1 may be missing from them.
 void Engine::begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1) {
   if (!candidates_.covers_start(x_from) || !candidates_.lists_near(x_t1)) collect(x_from, x_t1);
   response_.begin_step(step_);
   builder_.begin_step();
 }
 
-// Finds near pairs at x, the start of the trajectory for which candidate pairs were collected.
+// Finds near pairs at x. CandidateCache::covers_start(x) must be true.
 void Engine::find_near(std::span<const Vec3> x, std::vector<Proximity>& near) {
   if (coherence_) {
     near.clear();
@@ -241,7 +247,8 @@ bool Engine::is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   return !find_failing(x_t0, x_t1, PlaneKinds::all);
 }
 
-// Sets failing_ to the pairs without a separating plane of the allowed kinds. Returns whether there are any.
+// Sets failing_ to the pairs that are not exempted and have no separating plane of the allowed
+// kinds. Returns whether there are any.
 bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, PlaneKinds which) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
   failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
@@ -261,8 +268,10 @@ std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins,
                                     PlaneKinds which) {
-  // If corrections move vertices out of the bounds of the candidate pairs, collect the pairs again. After
-  // kTightCollections such collections, enlarge the bounds of all vertices to contain their starts and ends.
+  // If corrections move vertices out of the bounds of the candidate pairs, collect the pairs again.
+  // Each of the first kTightCollections collections enlarges the bounds of these vertices only.
+  // Later ones enlarge the bounds of all vertices to contain their starts and ends. After
+  // kCollections collections, the correction fails.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
   pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());

@@ -46,18 +46,21 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// Finds the contacts of a step over h [s] from x_t0. x_t1: the expected end, exact for obstacles, an estimate for
-  /// particles. Both must outlive the step. `motions`: per body, the rigid motion of an obstacle; for all other bodies,
-  /// and for obstacles that deform or stand still, the identity. Empty: no obstacle moves rigidly. With springs,
-  /// corrects x_t1 by push_apart(), which may neither exempt cloth nor move pinned particles; if that fails, x_t1 stays
-  /// unchanged. `movable`: per vertex, a value of Movable; empty: no correction. Returns whether x_t1 has changed.
+  /// Finds the contacts of a step over h [s] from x_t0. x_t1: the expected end, exact for
+  /// obstacles, an estimate for particles. Both must outlive the step. `motions`: one per body. For
+  /// an obstacle that moves without deforming, this is its motion; for all other bodies, the
+  /// identity. Empty: no obstacle moves in this way. With springs, if triangles would meet on the
+  /// way to x_t1, corrects x_t1 by push_apart(), which may neither exempt cloth nor move pinned
+  /// particles here. If this correction fails, x_t1 stays unchanged. `movable`: per vertex, a value
+  /// of Movable; empty: no correction. Returns whether a correction succeeded.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
-  /// Continues the step from x [m], with obstacles at their end. Surfaces must not intersect on the way from x_t0 to x.
-  /// Finds contacts anew around x, and adds contacts for all pairs in failing() at earlier calls of push_apart() since
-  /// begin_step(). Friction still measures slip from the start of the step. In later calls, pass x as x_t0. x must
-  /// outlive the step.
+  /// Continues the step from x [m], with obstacles at their end. Surfaces must not intersect on the
+  /// way from x_t0 to x. Finds contacts anew around x. Also adds contacts for all pairs that were
+  /// in failing() when push_apart() was called since begin_step(). Friction still measures slip
+  /// from the start of the step. Later calls in this step need x as their x_t0. x must outlive the
+  /// step.
   void continue_from(std::span<const Vec3> x);
   /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests or
   /// pushes apart pairs.
@@ -78,18 +81,19 @@ class Engine {
   /// Whether every pair of triangles that is not exempted has a separating plane on the trajectory from x_t0 to x_t1.
   bool is_separated(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Adds contacts for the pairs in failing(). Returns the number of pairs whose closest features had no contact of
-  /// full stiffness before.
+  /// Adds contacts for the pairs in failing(). Returns for how many of them the closest features
+  /// had no contact of full stiffness before.
   int add_failing_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
-  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a triangle of cloth and an
-  /// obstacle cannot be separated, exempts this triangle from the obstacle. If `may_pinch` is false, the correction
-  /// fails if the obstacle does not pinch this cloth already. If `may_move_pins` is false, the correction fails if a
-  /// pinned particle has to move. If the correction fails, the result is not `separated` and nothing is exempted.
-  /// `which`: see Planes::kinds_of().
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a
+  /// triangle of cloth and an obstacle cannot be separated, exempts this triangle from the limb of
+  /// the obstacle. If `may_pinch` is false, the correction fails if it would exempt a cloth from an
+  /// obstacle that does not pinch this cloth yet. If `may_move_pins` is false, the correction fails
+  /// if a pinned particle has to move. If the correction fails, the result is not `separated`,
+  /// nothing is exempted, and x_t1 may be changed in part. `which`: see Planes::kinds_of().
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
@@ -100,14 +104,15 @@ class Engine {
     return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
-  /// The exempted triangles. exempt() adds one between two steps; use: to copy those of another engine that this one
-  /// replaces.
+  /// The exempted triangles. If this engine replaces another one, call exempt() between two steps
+  /// for each triangle that the other engine has exempted.
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Number of near pairs of features in the last step, without those of continued solves. With velocity constraints,
-  /// they are near at the start of the step. With springs, they are near at its expected end; but features of triangles
-  /// that no plane of constant direction separates count if they are near at the start.
+  /// Number of near pairs of features in the last step, without those of continued solves. With
+  /// velocity constraints, they are near at the start of the step. With springs, they are near at
+  /// its expected end. Exception: if no plane of constant direction separates two triangles in the
+  /// step, their features count if they are near at its start.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Smallest distance of the pairs that proximities() counts [m]; infinite if there are none.
   double min_distance() const;

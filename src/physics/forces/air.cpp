@@ -45,7 +45,8 @@ void Air::add(const Evaluation& at) const {
 
 template <std::size_t Corners>
 void Air::add_drag(const Faces<Corners>& faces, const Evaluation& at) const {
-  // Area vector of a quad, planar or not: half the cross product of its diagonals.
+  // The area vector of a quad, planar or not, is half the cross product of its diagonals; that of a
+  // triangle is half the cross product of two edges.
   const VecLanes origin = gather(at.x, faces.corners[0]);
   VecLanes one = gather(at.x, faces.corners[Corners == 4 ? 2 : 1]) - origin,
            other = gather(at.x, faces.corners[Corners - 1]);

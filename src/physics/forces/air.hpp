@@ -17,14 +17,15 @@ struct AirParameters {
 };
 
 /// Quadratic drag f = −½ ρ c A ‖v_n‖ v_n along the normal of each face (cell or triangle), divided equally among the
-/// corners of the face. ρ is the density of the air, c the drag coefficient, A the area of the face, and v_n the normal
-/// component of its velocity relative to the air.
+/// corners of the face. ρ is the density of the air, c the drag coefficient, A the area of the
+/// face, and v_n the normal component of the mean velocity of its corners relative to the air.
 ///
-/// The drag is implicit although it is not stiff. If it were evaluated once per step, at the initial velocity (Etzmuß
-/// et al. 2001, "Time integration"), terminal velocities and folds in steady wind would depend on the step size. The
-/// matrix contains the derivative of the drag with respect to velocities, lumped on the diagonal. This is an upper
-/// bound of the full derivative, and exact if all corners of a face change their velocity alike. The derivatives of
-/// normals and areas are neglected.
+/// The drag is implicit although it is not stiff. If the drag were evaluated once per step, at the
+/// initial velocity (Etzmuß et al. 2001, "Time integration"), terminal velocities and folds in
+/// steady wind would depend on the step size. The matrix contains the derivative of the drag with
+/// respect to velocities, lumped on the diagonal. The lumped matrix is an upper bound of the full
+/// derivative, and exact if all corners of a face change their velocity alike. It omits the
+/// derivatives of normals and areas.
 class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);

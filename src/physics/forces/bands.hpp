@@ -11,12 +11,12 @@ namespace weft::forces {
 /// The bands of a sheet. A piece of an elastic band, with length l, rest length r and stiffness k [N], has the energy ½
 /// k r (l/r − 1)². At each particle between two pieces, a hem has the energy ½ E L ‖s''‖² with the bending stiffness E
 /// [N·m²], the second difference s'' of the positions, and the mean L of the rest lengths of the cloth along both
-/// pieces. A hem is straight at rest. Therefore, if the edge of the cloth is curved with a radius R at rest, the hem
-/// acts on the cloth with a force of about E/R² [N]. This force is negligible beside the forces of the cloth. A seam
-/// allowance is an elastic band as stiff as a strip of cloth of its width.
+/// pieces. A hem is straight at rest. Therefore, if the edge of the cloth is curved with a radius R
+/// at rest, the hem acts on the cloth with a force of about E/R² [N]. A seam allowance is an
+/// elastic band as stiff as a strip of cloth of its width.
 class Bands final : public Force {
  public:
-  /// `stretch`: stretch stiffness of the cloth [N/m].
+  /// `stretch`: stretch stiffness of the cloth, for seam allowances [N/m].
   Bands(const mesh::Sheet& sheet, Index first, double stretch);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
@@ -28,8 +28,9 @@ class Bands final : public Force {
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::Assembly& assembly) const override;
 
-  /// For sewn sheets: interpolates the rest lengths of all pieces between the lengths at the start positions (progress
-  /// 0) and the rest lengths in the sewing pattern (progress 1).
+  /// For sewn sheets: interpolates the rest length of each piece between its length at the start
+  /// positions (`progress` 0) and its rest length in the sewing pattern, Band::ratio times that of
+  /// the cloth (`progress` 1).
   void interpolate_rest_shape(double progress);
 
  private:

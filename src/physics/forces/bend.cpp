@@ -34,8 +34,8 @@ void Bend::set_held(std::span<const char> held) {
   create_differences(held);
 }
 
-// Only weights and areas depend on `held`. Every call creates differences of the same particles in the same order, so
-// that the sparsity pattern of the Jacobian does not change.
+// Creates all differences. Only their weights and areas depend on `held`; their particles and order
+// do not, so the sparsity pattern of the Jacobian does not change.
 void Bend::create_differences(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
@@ -68,9 +68,10 @@ void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std
   }
 }
 
-// Adds the second derivative at the middle one of three particles; exact for parabolas. It is the change of slope,
-// divided by the length over which the slope changes: the mean of both spacings, or at a clamp half of the spacing on
-// the free side (see Bend). The weights sum to zero, so that a translation causes no curvature.
+// Adds the second difference at the middle one of three particles: the change of slope, divided by
+// the length over which the slope changes. This length is the mean of both spacings, or at a clamp
+// half of the spacing on the free side (see Bend). Except at clamps, the second difference is exact
+// for parabolas. The weights sum to zero, so that a translation causes no curvature.
 void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                     std::span<const char> held) {
   const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
@@ -118,9 +119,10 @@ void Bend::add(const Evaluation& at) const {
   cells_.ranges.for_each(at.range, cells_.packs.size(), [&](std::size_t p) { add(cells_.packs[p], at); });
 }
 
-// The stiffness of damping is proportional to c cᵀ, with c as in BendDamping. The matrix contains ‖c‖² I instead, so
-// that all of bending needs scalars only, no 3×3 blocks. Along c, which is nearly parallel to the surface normal, both
-// are equal. Across c, the stretch stiffness is usually far greater than either.
+// The stiffness of damping is proportional to c cᵀ, with c as in BendDamping. The matrix contains
+// ‖c‖² I instead, so that all of bending needs scalars only, no 3×3 blocks. Both have the same
+// effect along c, which is nearly parallel to the surface normal. Across c, ‖c‖² I is too stiff,
+// but the stretch stiffness is usually far greater.
 template <std::size_t Count>
 void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
   const VecLanes curvature = weighted_sum(d, at.x);

@@ -14,17 +14,20 @@ namespace weft::forces {
 /// ‖s_vv‖²). This class discretises the energy by central differences on grid lines (s_uu, s_vv) and in cells (s_uv).
 /// The energy also determines the forces at free edges.
 ///
-/// The energy contains the full second derivatives, not only their components along N; on an inextensible sheet, they
-/// are parallel to N. Thus the energy is quadratic in the positions. Its Hessian is constant and positive semidefinite,
-/// and is assembled once (Bergou et al., "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane
-/// components add B/l² to the stretch stiffness: for cotton at a spacing l = 1 cm, 0.5 N/m to a stretch stiffness of
-/// 1000 N/m.
+/// The energy contains the full second derivatives, not only their components along N; on an
+/// inextensible sheet, the second derivatives are parallel to N. Thus the energy is quadratic in
+/// the positions. Its Hessian is constant and positive semidefinite, and is assembled once (Bergou
+/// et al., "A Quadratic Bending Model for Inextensible Surfaces", 2006). The in-plane components
+/// resist differences of strain between neighbouring edges, at most as much as an additional
+/// stretch stiffness of 4 B/l²: for cotton at a spacing l = 1 cm, 0.4 N/m beside a stretch
+/// stiffness of 800 N/m.
 ///
-/// A difference on a grid line covers half a spacing on either side of its middle particle. If the middle particle and
-/// exactly one of its two neighbours are held, the cloth keeps its direction on the held side. The difference then
-/// covers only the half spacing on the free side, so that the clamp acts at the last held particle. If it covered both
-/// halves, the clamp would act half a spacing farther inside, an error of first order. For viscosity and friction see
-/// BendDamping.
+/// A second difference on a grid line covers half a spacing on either side of its middle particle.
+/// If the middle particle and exactly one of its two neighbours are held, the cloth keeps its
+/// direction on the held side. Then the difference covers only the half spacing on the free side,
+/// so that the clamp acts at the last held particle. If the difference covered both halves, the
+/// clamp would act half a spacing farther inside, which is an error of first order in the spacing.
+/// For viscosity and friction see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);

@@ -13,34 +13,38 @@ struct BendParameters {
   double friction = 0;  ///< τ, moment per width against a change of curvature [N]: half of Kawabata's 2HB (hysteresis)
 };
 
-/// Viscosity and friction act on each curvature vector κ separately: on the second derivatives s_uu, s_uv and s_vv of
-/// the surface s(u, v). Only the part of the rate κ̇ along κ counts, so that a curved piece loses no energy if it turns
-/// rigidly. Friction models Kawabata's bending hysteresis ("The Standardization and Analysis of Hand Evaluation",
-/// 1980): a moment of constant magnitude against the change of curvature, smoothed below the rate kStickRate. Friction
-/// brings cloth to rest: without it, the hem of a draped sheet keeps moving at centimetres per second.
+/// Viscosity and friction act on each curvature vector κ separately: on the second derivatives
+/// s_uu, s_uv and s_vv of the surface s(u, v), or on s'' of a cord. Only the part of the rate κ̇
+/// along κ counts, so that damping hardly acts on a curved piece that turns rigidly (the error is
+/// of second order in the angle per step). Friction models Kawabata's bending hysteresis ("The
+/// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant magnitude against
+/// the change of curvature, smoothed below the rate kStickRate. Friction brings cloth to rest:
+/// without it, the hem of a draped sheet keeps moving at centimetres per second.
 ///
-/// Moment per width [N]:
+/// Moment per width [N] (of a cord: moment [N·m]):
 ///
 ///     η (c·κ̇) c / (‖c‖² + κ_f²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + κ_r².
 ///
 /// c is κ at x̂ = x − v / rate (see Evaluation): for implicit Euler and the midpoint rule the start of the step, for
 /// BDF2 with constant steps about a third of a step later. If `rate` is 0, c is κ at x. κ_f is kFlatCurvature, κ_r is
 /// residual_curvature_, ε is kStickRate. As c is constant during a step, the moment is the gradient of a convex
-/// function of κ̇. If c were κ at the current iterate, its direction would change with every ripple of nearly flat
-/// cloth, and Newton's method would oscillate (measured: a strip pulled over a rod takes ten times the iterations). If
-/// c were κ at the positions that constant velocity predicts, a draped sheet would tremble at 1 to 10 mm/s (measured
-/// with steps of 40 ms).
+/// function of κ̇. If c were κ at the current iterate, the direction of c would change with every
+/// ripple of nearly flat cloth, and Newton's method would oscillate (measured: a strip pulled over
+/// a rod takes ten times the iterations). If c were κ at the positions that constant velocity
+/// predicts, a draped sheet would tremble at 1 to 10 mm/s (measured with steps of 40 ms).
 ///
 /// Damping fades out in nearly flat cloth: viscosity below the curvature kFlatCurvature, friction below
-/// max(kFlatCurvature, τ/B), where τ/B is the curvature that friction can hold against elastic bending. With full
-/// damping there, the moment would change its direction with every ripple, and its stiffness would exceed that of
-/// bending.
+/// max(kFlatCurvature, τ/B), where τ/B is the curvature that friction can hold against elastic
+/// bending. If damping did not fade out, the direction of the moment would change with every ripple
+/// of nearly flat cloth, and damping would be stiffer than elastic bending.
 class BendDamping {
-  // Curvature below which the direction of κ is too uncertain for damping [1/m]. It corresponds to a radius of 10 m.
+  // Curvature below which the direction of κ is too uncertain for damping [1/m]: that of a radius
+  // of 10 m.
   static constexpr double kFlatCurvature = 0.1;
-  // Rate of curvature at which friction has 0.7 of its magnitude [1/(m·s)]: the end of a flap 10 cm long then moves at
-  // 2.5 mm/s. With smaller values, folds creep more slowly, but the system is stiffer: below kStickRate, friction acts
-  // like a viscosity of τ / kStickRate.
+  // Rate of curvature at which friction reaches 0.7 τ if ‖c‖ is far above κ_r [1/(m·s)]. At this
+  // rate, the end of an evenly bending flap 10 cm long moves at 2.5 mm/s. With smaller values,
+  // folds creep more slowly, but the system is stiffer: below kStickRate, friction acts like a
+  // viscosity of τ / kStickRate.
   static constexpr double kStickRate = 0.5;
 
  public:

@@ -24,9 +24,9 @@ struct CordParameters {
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
 /// / r). Bending: each particle between two pieces has the energy ½ EI L ‖s''‖². s'' is the second difference of the
 /// positions with the rest lengths as spacings, and L is the mean of both rest lengths. At clamps, L is half of the
-/// rest length on the free side, as in Bend. The cord is straight at rest. For viscosity of bending see BendDamping.
-/// Air: the drag on a piece is −½ ρ c d l ‖v_n‖ v_n, half of it at either end. v_n is the piece's velocity relative to
-/// the air, without its component along the piece.
+/// rest length on the free side, as in Bend. The cord is straight at rest. For viscosity of bending
+/// see BendDamping. Air: the drag on a piece is −½ ρ c d l ‖v_n‖ v_n; each end gets half of it. v_n
+/// is the mean velocity of both ends relative to the air, without its component along the piece.
 class Cord final : public Membrane {
  public:
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
@@ -78,7 +78,8 @@ class Cord final : public Membrane {
   std::vector<BendElement> bends_;
 };
 
-/// Lumped masses [kg]: half of each piece at either end. `mass`: per length [kg/m].
+/// Lumped masses [kg]: each end of a piece gets half of the mass of the piece. `lengths`, `closed`:
+/// as in Cord. `mass`: per length [kg/m].
 std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass);
 
 }  // namespace weft::forces

@@ -11,16 +11,17 @@ using solver::PackedBlock;
 
 namespace {
 
-// Lower bound of length / rest length of a thread, as kMinStretch in triangle_membrane.cpp.
+// Lower bound of length / rest length of a thread. It keeps the matrix finite.
 constexpr double kCollapsed = 1e-12;
-// θ: fraction of ⟨g²⟩ that enters the lengths. With θ = 1, a cell that bends along one direction must become narrower
-// along the other, but its neighbours and clamps do not become narrower. (Measured: errors of the tip position of a
-// cantilever of 16 cells, with stretch stiffnesses of 1e4, 1e5 and 1e6 N/m. θ = 1: −0.7, −3.5 and −8.1 %; 1/4: 0.1,
-// −0.5 and −2.8 %; 1/10: 0.2, 0.1 and −0.8 %.) With a smaller θ, tension flattens cells less.
+// θ: fraction of ⟨g²⟩ that enters the lengths. With θ = 1, a cell that bends along one direction
+// tends to become narrower along the other direction; its neighbours and clamps resist this.
+// (Measured: errors of the tip position of a cantilever of 16 cells, with stretch stiffnesses of
+// 1e4, 1e5 and 1e6 N/m. θ = 1: −0.7, −3.5 and −8.1 %; 1/4: 0.1, −0.5 and −2.8 %; 1/10: 0.2, 0.1 and
+// −0.8 %.) With a smaller θ, tension flattens cells less.
 constexpr double kHeightFraction = 0.1;
-// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The rate at which the normal turns is proportional to 1/‖D₁ × D₂‖; in
-// folded cells, the normal turns too fast to be a reference for the height of the middle (measured: with 0.1, leather
-// that a pin pulls needs steps of 1 µs).
+// S₀ relative to ‖D₁ × D₂‖ of the cell at rest. The smaller ‖D₁ × D₂‖ is, the faster the normal
+// D₁ × D₂ / ‖D₁ × D₂‖ turns; in folded cells it turns too fast to be a reference for the height of
+// the middle (measured: with 0.1, leather that a pin pulls needs steps of 1 µs).
 constexpr double kFoldedSize = 0.5;
 
 // Indices of the corners of triangle k among the five particles of a cell.
@@ -114,7 +115,8 @@ Vec3 CrossedMembrane::normal_change(const State& state, const Vec3& product) {
   return (product - (1 - state.kept_change) * state.direction.dot(product) * state.direction) / state.size;
 }
 
-// Converts forces on the flat cell, on its height w and on its skew q to forces on the particles; o is middle_offset:
+// Converts forces on State::flat (`force`), on the height w and on the skew q to forces on the
+// particles, which replace those in `force`. o is middle_offset:
 //
 //     δm' = δm − n δw − w δn,   δw = n·δo + o·δn,   δq = 2 ‖n‖² t·δt + 2 ‖t‖² n·δn,
 //     δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
@@ -133,7 +135,8 @@ void CrossedMembrane::pull_back(const State& state, Five& force, double along_he
   force[4] += along * n;
 }
 
-// The transpose of pull_back: converts velocities of the particles to rates of the flat cell, its height and its skew.
+// The transpose of pull_back: converts the velocities of the particles in `flat` to the rates of
+// State::flat, of the height and of the skew.
 void CrossedMembrane::push_forward(const State& state, Five& flat, double& height, double& skew) {
   const Vec3 middle_offset = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
   const Vec3 twist = (flat[0] - flat[1]) + (flat[2] - flat[3]);
@@ -234,9 +237,10 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
 }
 
 // Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the ratios L of length to rest length, with the stretch stiffness k and
-// the viscosity η, and the same for shear without `lateral`. Then adds the geometric stiffness (that of the stresses):
-// across n, with the gradients of the flat cell; along n, with those of a cell with its middle at the mean of the
-// corners, plus the stiffness of the height; in all directions, the stiffness of the twist. If `definite`, the part of
+// the viscosity η, and the same for shear without `lateral`. Then adds the geometric stiffness
+// (that of the elastic stresses). Across n, it has the gradients of State::flat. Along n, it has
+// those of a cell with its middle at the mean of the corners (if ‖n‖ = 1), plus the stiffness of
+// the height. In all directions, the stiffness of the twist is added. If `definite`, the part of
 // the shear stress is made positive semidefinite, as in Shear.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {

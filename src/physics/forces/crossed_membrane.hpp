@@ -5,33 +5,40 @@
 
 namespace weft::forces {
 
-/// TriangleMembrane without membrane locking (spurious bending stiffness). If the four triangles of a cell do not
-/// stretch, the middle m of the cell stays in the plane of the corners a, b, c, d. Therefore, with stiff threads, a
-/// TriangleMembrane can bend only between cells. In this class, the height w of m above the mean of the corners, along
-/// the normal n of both diagonals, lengthens the threads of all four triangles equally, whatever the inclination of
-/// each triangle. The derivatives s_u and s_v are those of the flat cell with its middle at m' = m − w n, and
+/// TriangleMembrane without membrane locking (spurious bending stiffness). A cell whose four
+/// triangles do not stretch bends only along a diagonal: if the corners a, b, c, d lie in a plane,
+/// the middle m lies in it, too. Therefore, with stiff threads, a TriangleMembrane bends along weft
+/// or warp only between cells. In this class, w is the height of m above the mean of the corners,
+/// along the normal n of both diagonals. The height adds the same amount to the squared lengths of
+/// the threads in all four triangles; the inclination of each triangle does not matter. The
+/// derivatives s_u and s_v are those of the cell with its middle moved to m' = m − w n, and
 ///
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ + ‖n‖² ‖t‖² g_u² / 16   replaces ‖s_u‖²,   likewise along v,
 ///
-/// where g is the gradient of the middle's barycentric coordinate in a triangle, and ⟨⟩ is the average over the cell. θ
-/// = kHeightFraction is positive, so that tension flattens cells. t = a − b + c − d is the twist of the cell. If two
-/// opposite sides p and q are skew, the thread halfway between them has the vector (p + q) / 2. ‖(p + q) / 2‖² is
-/// ‖t‖²/4 less than the mean of ‖p‖² and ‖q‖²; the last term compensates for this difference. A plane parallelogram has
-/// w = 0 and t = 0, and the same energy as in a TriangleMembrane. The normal is n = D₁ × D₂ / S with the diagonals D₁ =
-/// c − a and D₂ = d − b and S = ‖D₁ × D₂‖. A cell with ‖D₁ × D₂‖ < S₀ is folded; then S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2,
-/// so that ‖n‖ and thus the terms of w and t fall to zero as the cell folds. (Against the same locking, Chen et al.,
-/// "Locking-free Simulation of Isometric Thin Plates", 2019, average strains around vertices.)
+/// where g is the gradient of the middle's barycentric coordinate in a triangle, and ⟨⟩ is the
+/// average over the four triangles of the cell. θ = kHeightFraction is positive, so that tension
+/// flattens cells. t = a − b + c − d is the twist of the cell. If two opposite sides p and q are
+/// skew, the thread halfway between them has the vector (p + q) / 2. ‖(p + q) / 2‖² is ‖t‖²/4 less
+/// than the mean of ‖p‖² and ‖q‖²; the last term compensates for this difference. In a plane
+/// parallelogram, w = 0 and t = 0, and the energy is that of a TriangleMembrane. The normal is
+/// n = D₁ × D₂ / S with the diagonals D₁ = c − a and D₂ = d − b and S = ‖D₁ × D₂‖. A cell with
+/// ‖D₁ × D₂‖ < S₀ is folded; then S = (S₀ + ‖D₁ × D₂‖² / S₀) / 2, so that ‖n‖ and thus the terms of
+/// w and t fall to zero as the cell folds. (Against the same locking, Chen et al., "Locking-free
+/// Simulation of Isometric Thin Plates", 2019, average strains around vertices.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
-  /// The sheet's triangles must be cells of four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
+  /// The triangles of the sheet must form cells of four consecutive triangles: (a, b, m), (b, c,
+  /// m), (c, d, m), (d, a, m).
   CrossedMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
                   const ShearParameters& shear);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
   void partition(std::span<const Index> bounds) override;
-  /// The matrix and add_jacobian() contain the Gauss-Newton part and the geometric stiffness of elastic stresses. They
-  /// omit the geometric stiffness from changes of n, and that of viscous stresses.
+  /// The matrix and add_jacobian() contain the Gauss-Newton part and the geometric stiffness of
+  /// elastic stresses. They omit the geometric stiffness from changes of n, and that of viscous
+  /// stresses. The matrix also omits the negative parts of the geometric stiffness, so that it is
+  /// positive semidefinite.
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -72,7 +79,7 @@ class CrossedMembrane final : public TriangleMembrane {
   static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
   static CellWeights cell_weights_of(const Cell& cell, const Element& element);
   static Vec2 lengths_of(const Gradient& s, const CellWeights& cell_weights, const State& state);
-  /// Relative lengths along weft and warp of triangle k of a cell, and its shear.
+  /// Length / rest length along weft and warp of triangle k of a cell, and its shear ⟨s_u, s_v⟩.
   Vec3 strains_of(std::size_t cell, std::size_t k, const State& state) const;
   static void pull_back(const State& state, Five& force, double along_height, double along_skew);
   static void push_forward(const State& state, Five& flat, double& height, double& skew);

@@ -10,8 +10,8 @@
 namespace weft::forces {
 namespace {
 
-// Volume up to which a surface counts as flat, relative to its area to the power 3/2. This ratio is 0.09 for a sphere,
-// and 1e-16 by rounding for a flat surface.
+// Volume up to which a surface counts as flat, relative to its area to the power 3/2. This ratio is
+// 0.09 for a sphere, and for a flat surface about 1e-16, because of rounding.
 constexpr double kFlatVolume = 1e-9;
 
 std::size_t index_of(Index i) {

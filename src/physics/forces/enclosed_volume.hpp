@@ -11,8 +11,8 @@
 namespace weft::forces {
 
 /// The volume inside a triangle surface. If the surface has openings, triangles from the edges of each border to the
-/// mean of the border's particles close them; otherwise the volume would depend on the origin. Volumes of separate
-/// surfaces are added.
+/// mean of the border's particles close them; otherwise the volume would depend on the origin. The
+/// volumes of separate surfaces are added, each with its sign.
 ///
 /// V = 1/3 Σ x_i · ∂V/∂x_i. The derivative ∂V/∂x_i = 1/6 Σ x_j × x_k, over the triangles (i, j, k) of the vertex star
 /// of i, is a third of the sum of their area vectors. The derivative with respect to a border's mean is divided equally
@@ -20,17 +20,18 @@ namespace weft::forces {
 class EnclosedVolume {
  public:
   /// `triangles`: manifold, consistently oriented, over particles 0 to start.size() − 1. The sign of the volume is such
-  /// that the surface at `start` [m] has a positive volume; if the surface is flat at `start`, the front of the
-  /// triangles is outside.
+  /// that the surface at `start` [m] has a positive volume; if the volume at `start` is zero up to
+  /// rounding, the front of the triangles is outside.
   EnclosedVolume(std::span<const mesh::Triangle> triangles, std::span<const Vec3> start);
 
-  /// Returns the volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] into `gradient`, which has the same
-  /// size; its entries sum to zero.
+  /// Returns the volume [m³] at x [m], one position per particle. Writes ∂V/∂x [m²] into
+  /// `gradient`, which has the same size as x. The entries of ∂V/∂x sum to zero.
   double evaluate(std::span<const Vec3> x, std::span<Vec3> gradient) const;
 
   /// Whether this volume [m³] is zero up to rounding, or negative.
   bool is_flat(double volume) const { return volume <= flat_; }
 
+  /// Number of openings of the surface.
   std::size_t openings() const { return borders_.size(); }
 
  private:

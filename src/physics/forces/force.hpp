@@ -1,4 +1,4 @@
-// Interface of all forces on a cloth, a rope or a rigid body.
+// Interface of the internal forces and the air drag of a cloth, a rope or a rigid body.
 #pragma once
 
 #include <limits>
@@ -15,7 +15,8 @@
 
 namespace weft::forces {
 
-/// Sums the forces on particles [begin, end). Ignores forces on other particles: another thread sums them.
+/// Adds forces to the entries of the particles [begin, end). Ignores forces on other particles, to
+/// which another thread may add at the same time.
 class ForceRows {
  public:
   ForceRows(std::span<solver::PaddedVec3<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
@@ -42,9 +43,10 @@ struct Evaluation {
   std::span<const solver::PaddedVec3<double>> x;  ///< positions [m]
   std::span<const solver::PaddedVec3<double>> v;  ///< velocities [m/s]
   ForceRows force;                                ///< receives the forces f [N]
-  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part that Force::add_constant_stiffness() adds. Each force
-  /// approximates its term by a symmetric, positive semidefinite matrix, as conjugate gradients and the line search
-  /// require. If default-constructed: forces only.
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m] without the part that Force::add_constant_stiffness()
+  /// adds. Each force approximates its matrix by a symmetric one that, together with the constant
+  /// part, is positive semidefinite; conjugate gradients and the line search require this. If
+  /// default-constructed: forces only.
   solver::AssemblyRows assembly = {};
   /// dv/dx of the integration method [1/s]: v = rate (x − x̂), where x̂ is constant in a step; 0: v does not depend on
   /// x.
@@ -54,16 +56,17 @@ struct Evaluation {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   /// Index of the range of Force::partition() to evaluate; kAll: all particles.
   std::size_t range = kAll;
-  /// Velocity of the air at each particle [m/s]. If empty, each force uses its own uniform wind.
+  /// Velocity of the air at each particle [m/s]. If empty, Air and Cord use their own uniform wind.
   std::span<const solver::PaddedVec3<double>> air_velocity = {};
   /// Extensions of threads at which StretchLimit linearises its stress for the matrix; null: at x. In both cases,
   /// `force` receives the exact forces at x.
   const LockLinearisation* locks = nullptr;
 
   /// Rate of change dq/dt of a function q of the positions. `now` is q(x), at_positions(y) returns q at earlier
-  /// positions y, and by_velocity() returns ∂q/∂x v, which is used if `past` is empty. Differences, because ∂q/∂x v
-  /// adds energy: if an edge turns by θ in a step of implicit Euler, ∂q/∂x v counts the turn as a lengthening by the
-  /// fraction 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step.
+  /// positions y, and by_velocity() returns ∂q/∂x v. If `past` is empty, the rate is ∂q/∂x v;
+  /// otherwise it is the difference quotient of Past, because ∂q/∂x v adds energy: if an edge turns
+  /// by θ in a step of implicit Euler, ∂q/∂x v counts the turn as a lengthening by the fraction
+  /// 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step.
   template <class Quantity, class AtPositions, class ByVelocity>
   Quantity rate_of(const Quantity& now, const AtPositions& at_positions, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
@@ -73,8 +76,8 @@ struct Evaluation {
   }
 };
 
-/// A force on the particles of one cloth, rope or rigid body. Constructors of forces take `first`: the index of the
-/// first of these particles in the global numbering.
+/// A force on the particles of one cloth, rope or rigid body. In the constructors of forces,
+/// `first` is the index of the first of these particles in the global numbering.
 class Force {
  public:
   virtual ~Force() = default;
@@ -83,15 +86,18 @@ class Force {
   virtual void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const = 0;
   /// Whether everything that the force adds to an Assembly is a multiple of the identity.
   virtual bool isotropic() const { return false; }
-  /// Looks up the matrix blocks of the pairs from append_couplings(). Call once, when the sparsity pattern is known.
+  /// Looks up the blocks and scalars of the pairs from append_couplings(). Call once, when the
+  /// sparsity pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
 
-  /// Prepares ranges of particles that threads may evaluate at the same time: range r is [bounds[r], bounds[r + 1]).
-  /// Call after attach().
+  /// Prepares ranges of particles that threads may evaluate at the same time: range r is
+  /// [bounds[r], bounds[r + 1]). `bounds` ascends, and the ranges contain all particles of the
+  /// force. Call after attach().
   virtual void partition(std::span<const Index> bounds) = 0;
 
+  /// Adds the forces and, if `at.assembly` is set, the matrix; see Evaluation.
   virtual void add(const Evaluation& at) const = 0;
-  /// Elastic energy [J].
+  /// Elastic energy at x [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
   /// Adds the part of −∂f/∂x that does not depend on x, if there is one. Only set_held() and Cord::set_length_ratio()
@@ -99,14 +105,15 @@ class Force {
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
   /// For vibrations and tests: adds the exact −(∂f/∂x + rate ∂f/∂v), with rates of strain as if `Evaluation::past` were
-  /// empty. This matrix is indefinite under compression and unsymmetric with viscosity. Exceptions: CrossedMembrane
-  /// omits parts of it, and Cord omits air drag; Air and Rigidity add nothing.
+  /// empty. This matrix may be indefinite under compression and unsymmetric with viscosity.
+  /// Exceptions: CrossedMembrane omits parts of it, and Cord omits air drag; Air and Rigidity add
+  /// nothing. If `rate` is 0, the damping of bending is omitted.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
 
   /// Sets which particles are held (fixed, or moved along a path). Held particles may form a clamp, which changes the
-  /// bending stiffness of the free particles beside it. `held`: per particle of all cloths. The sparsity pattern of the
-  /// Jacobian does not change.
+  /// bending stiffness of the free particles beside it. `held`: per particle, in the global
+  /// numbering. The sparsity pattern of the Jacobian does not change.
   virtual void set_held(std::span<const char> /*held*/) {}
 };
 
@@ -115,14 +122,15 @@ class Membrane : public Force {
  public:
   /// Largest relative change of length of a piece of weft, warp or cord, in absolute value.
   virtual double max_strain(std::span<const Vec3> x) const = 0;
-  /// Raises strains[particle − first] to the largest strain of the pieces or triangles at the particle.
+  /// Raises strains[particle − first] to the largest |strain| of the pieces or triangles at the
+  /// particle, unless the entry is larger already.
   virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const = 0;
 };
 
 /// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
 /// Lumped masses of a sheet [kg]: a triangle gives a third of its mass to each corner, and a piece of a band or seam
-/// allowance half of its mass to each end.
+/// allowance half of its mass to each end. `density`: ρ of cloth without reinforcements [kg/m²].
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

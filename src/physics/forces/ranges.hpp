@@ -1,4 +1,5 @@
-// Which elements act on which range of particles, so that threads can add forces to different ranges at the same time.
+// Lists of the elements that act on each range of particles, so that threads can add forces to
+// different ranges at the same time.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +11,10 @@
 
 namespace weft::forces {
 
-/// For each range of particles, the elements (or packs of elements) of a list that act on a particle in this range. An
-/// element with particles of several ranges is in each of them; each range adds only to its own particles (ForceRows,
-/// AssemblyRows).
+/// For each range of particles, the elements (or packs of elements) of a list that act on a
+/// particle in this range. An element with particles in several ranges is in the list of each of
+/// these ranges. ForceRows and AssemblyRows then keep only what belongs to the particles of the
+/// evaluated range.
 class Ranges {
  public:
   /// `bounds`: see Force::partition(). touch(element, visit) must call visit(particle) for all particles of an element.

@@ -38,7 +38,8 @@ Mat3 Rigidity::strain_of(const Mat3& shape) const {
 void Rigidity::add(const Evaluation& at) const {
   const auto stage = [&](std::size_t i) { return solver::vec3_of(at.x[i]); };
   const Mat3 shape = shape_of(stage);
-  // With the midpoint rule, for which `past` is empty, the step ends half a step (1 / rate) after the stage.
+  // With the midpoint rule, for which `past` is empty, the step ends half a step (1 / rate) after
+  // the stage. With the other methods, it ends at the stage.
   const double time_to_end = at.past.empty() && at.rate > 0 ? 1 / at.rate : 0;
   const Mat3 strain =
       strain_of(shape_of([&](std::size_t i) { return Vec3(stage(i) + time_to_end * solver::vec3_of(at.v[i])); }));
@@ -48,7 +49,8 @@ void Rigidity::add(const Evaluation& at) const {
     at.force.add(first_ + static_cast<Index>(k),
                  solver::padded<double>(Vec3(-0.25 * stress * mesh::RigidFrame::corner(k))));
   if (!at.assembly) return;
-  // Omits the geometric stiffness (that of the stress), which is small but may be indefinite.
+  // The matrix omits the geometric stiffness (that of the stress), which is small but may be
+  // indefinite.
   const Mat3 affine_map = shape * deviations_.cwiseInverse().asDiagonal();  // A
   const Mat3 affine_shape = affine_map * shape.transpose();
   const double end_rate = time_to_end > 0 ? 2 : 1;

@@ -13,12 +13,14 @@ namespace weft::forces {
 /// t_k). If the body is not deformed, B = ¼ Σ p_k t_kᵀ equals R diag(s) with a rotation R. With the body's mass m, the
 /// stiffness κ and W = diag(s)^-½, the energy is κ m/8 ‖W Bᵀ B W − W⁻²‖². It equals
 /// κ m/8 ‖W⁻¹ (AᵀA − I) W⁻¹‖², an energy of the strain AᵀA − I of an affine body, A = B diag(s)⁻¹ (Lan et al., "Affine
-/// Body Dynamics", 2022). The weights W⁻¹ give stretch along each axis the same angular frequency √κ, so that thin
-/// bodies are as rigid as round ones.
+/// Body Dynamics", 2022). Because of the weights W⁻¹, stretch along each axis has the same angular
+/// frequency √κ, so that thin bodies are as rigid as round ones.
 ///
-/// The force is the product of the strain at the end of the step and the derivatives of the strain at the positions at
-/// which the method evaluates forces. With the midpoint rule, a body that only rotates looks shrunk there, half-way,
-/// but has no strain at the end, so the force does not resist rotation. With every method, the force damps the strain.
+/// The force is proportional to the strain at the end of the step, times the derivatives of the
+/// strain at the stage positions (integrator::StagePoint). With the midpoint rule, the stage is
+/// half-way along the straight trajectories of the particles: there a body that only rotates is
+/// shrunk, but at the end of the step it has no strain, so the force does not resist rotation. As
+/// the force depends on the end of the step, every method damps the strain.
 class Rigidity final : public Force {
  public:
   /// `first`: the body's first particle; `mass`: of the body [kg]; `stiffness`: κ [1/s²].

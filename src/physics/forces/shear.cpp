@@ -108,8 +108,9 @@ void Shear::add(const Evaluation& at) const {
       };
       stress += cells.viscosity * at.rate_of(c, strain_at, by_velocity);
     }
-    // Force = −stress × ∂c/∂x_k. `main` is stress × ∂c/∂x of corner 3, and `cross` that of corner 1. The force on
-    // corner 0 is opposite to that on corner 3, and the force on corner 2 to that on corner 1.
+    // The force on corner k is −stress × ∂c/∂x_k. `main` is stress × ∂c/∂x of corner 3, and `cross`
+    // that of corner 1. The force on corner 0 is opposite to that on corner 3, and the force on
+    // corner 2 to that on corner 1.
     const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;
     const VecLanes main = u_part + v_part, cross = u_part - v_part;
     forces::add(at.force, cells.corners[0], main);
@@ -120,9 +121,10 @@ void Shear::add(const Evaluation& at) const {
   });
 }
 
-// The second derivative of c = ⟨s_u, s_v⟩ is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the elastic stress, one of
-// these squares is positive and one negative; the matrix contains only the positive one, so that it stays positive
-// semidefinite. Opposite corners have opposite derivatives, so that the six pairs need only four different blocks, up
+// The second derivative of c = ⟨s_u, s_v⟩ is ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). After
+// multiplication by the elastic stress, one of these squares is positive and one negative. The
+// matrix contains only the positive one, so that it stays positive semidefinite. The derivatives at
+// opposite corners differ only in sign, so that the six pairs need only four different blocks, up
 // to their sign.
 void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
   const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);

@@ -15,12 +15,13 @@ struct ShearParameters {
 
 /// Eq. (1), entry 12, of Etzmuß et al. (2001): stress ½ μ ⟨s_u, s_v⟩ [N/m], from the energy density ¼ μ ⟨s_u, s_v⟩².
 ///
-/// s_u and s_v are the derivatives of the positions along weft and warp. In the middle of each cell, this class
-/// computes each of them as the mean of the differences along two opposite edges. The error is O(l²) for a spacing l: a
-/// test measures order 2. The paper uses central differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), and
-/// states O(l³). These differences vanish for every pattern that repeats at every second particle, so the paper's shear
-/// does not resist such patterns. The differences of this class both vanish only for the checkerboard pattern, which
-/// the edges of Stretch resist.
+/// s_u and s_v are the derivatives of the positions along weft and warp. In the middle of each
+/// cell, this class computes each derivative as the mean of the differences along two opposite
+/// edges. The error is O(l²) for a spacing l: a test measures order 2. The paper uses central
+/// differences at the particles, (x_{i+1,j} − x_{i−1,j}) / (2 l), and states O(l³). Central
+/// differences vanish for every displacement that repeats at every second particle, so the paper's
+/// shear does not resist such displacements. In this class, both differences vanish only for the
+/// checkerboard pattern, which the edges of Stretch resist.
 class Shear final : public Force {
  public:
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);

@@ -81,17 +81,19 @@ void Stretch::add(const Evaluation& at) const {
     subtract(at.force, edges.j, pull);
     if (!at.assembly) return;
 
-    // Across the edge, tension adds stiffness, and compression subtracts it. The matrix omits what compression
-    // subtracts, so that it stays positive semidefinite.
+    // Across the edge, tension causes positive stiffness, and compression negative stiffness. The
+    // matrix omits the negative stiffness, so that it stays positive semidefinite.
     const Lanes lateral = edges.elasticity * max(1 - edges.rest_length / length, lanes_of(0.0));
     const Lanes along = edges.elasticity + at.rate * edges.viscosity;
     forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
   });
 }
 
-// The viscous force is proportional to (n·w) n, where n is the direction of the edge and w the relative velocity of its
-// ends. The part of its derivative with respect to x that comes from the change of n, O(η‖w‖/l), is unsymmetric, so
-// add() omits it from Newton's matrix. Therefore Newton's method converges only linearly with viscosity.
+// Here, the viscous force is proportional to (n·w) n, where n is the direction of the edge and w
+// the relative velocity of its ends. The matrix of add() omits the part of the derivative of
+// viscous forces that comes from the change of n, O(η‖w‖/l): this part may be indefinite, and is
+// unsymmetric if Evaluation::past is empty. Therefore Newton's method converges only linearly with
+// viscosity.
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
   for_each_edge([&](const Edge& edge) {

@@ -7,8 +7,8 @@
 namespace weft::forces {
 namespace {
 
-// A piece needs some stiffness below the onset, so that find_extension() has a unique solution. The solution of the
-// step does not depend on this minimum.
+// A piece needs some stiffness below the onset, so that find_extension() has a unique solution.
+// This minimum affects only the linearisation, not the solution of the step.
 StretchParameters with_min_stiffness(StretchParameters below) {
   constexpr double kMinStiffness = 1;  // [N/m]
   below.weft = std::max(below.weft, kMinStiffness), below.warp = std::max(below.warp, kMinStiffness);
@@ -19,9 +19,10 @@ StretchParameters with_min_stiffness(StretchParameters below) {
 constexpr int kMaxExtensionIterations = 20;
 constexpr double kExtensionTolerance = 1e-3;
 
-// Returns the extension at which cloth and lock together have the tension `tension` [N/m]. `e`: initial guess, at which
-// the tension must be at least `tension`. From there, Newton's method converges monotonically, as the tension is a
-// convex function of the extension.
+// Returns the extension at which cloth and lock together have the tension `tension` [N/m], up to
+// kExtensionTolerance. `e`: initial guess, at which the tension must be at least `tension`. From
+// there, Newton's method converges monotonically, as the tension is a convex function of the
+// extension.
 double find_extension(const Lock& lock, double stiffness, double tension, double e) {
   if (tension <= stiffness * lock.onset()) return tension / stiffness;
   for (int k = 0; k < kMaxExtensionIterations; ++k) {
@@ -103,9 +104,11 @@ Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each piece of a thread, and each crossing, that is beyond its onset at
-// x, and for each piece of a thread that is beyond it in `lag`. block_of(a, b) returns the block of −∂f/∂x for corners
-// a and b, linearised at `lag`, or at x if `lag` is null. For `exact` see lock().
+// Calls body(piece, corner_forces, block_of) for each crossing that is beyond its onset at x, and
+// for each piece of a thread whose stress at x is positive, exact or linearised at `lag`.
+// block_of(a, b) returns the block of −∂f/∂x for corners a and b. The blocks of threads are
+// linearised at `lag`, or at x if `lag` is null; those of crossings are linearised at x. For
+// `exact` see lock().
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
                                  const Body& body) const {
@@ -171,7 +174,7 @@ template <class Body>
 void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
   const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
   const Tangent linear = tangent(lag != nullptr ? *lag : e, e);
-  if (stress == 0 && linear.stress == 0) return;  // the length may be zero
+  if (stress == 0 && linear.stress == 0) return;  // includes pieces of length 0
   const Vec3 n = s / length;
   CornerForces corner_forces{};
   for (std::size_t k = 0; k < piece.corners; ++k) corner_forces[k] = stress * piece.along[k] * n;

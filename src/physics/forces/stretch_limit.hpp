@@ -13,20 +13,23 @@ namespace weft::forces {
 /// Stress σ as a function of a strain e near its limit. energy() is the integral of σ, stiffness() the derivative:
 ///
 ///     σ = 0                                e ≤ onset = kOnset · limit
-///     σ = kTension u³,                     u = (e − onset) / (limit − onset)
+///     σ = kTension u³                      0 ≤ u ≤ U, with u = (e − onset) / (limit − onset)
 ///     σ = kTension U² (U + 3 (u − U))      u ≥ U = kStraight
 ///
 /// The energy is convex and twice differentiable. The stress is linear beyond kStraight, so that Newton's method
 /// returns from any strain in a few iterations.
 class Lock {
  public:
-  /// Strain at which threads begin to lock, relative to the limit. Below it, the stress is exactly 0.
+  /// Strain at which threads begin to lock, relative to the limit. Up to this strain, the stress is
+  /// exactly 0.
   static constexpr double kOnset = 0.7;
-  /// Stress at the limit [N/m]; at 1.1 times the limit the stress is 9,500 N/m. This suffices for the impact of a ball
-  /// at v = 100 m/s: a transverse wave along threads of strain e then causes the tension ρ v² / (2 √e), 3,500 to 9,000
-  /// N/m for the densities ρ [kg/m²] of film/scene/fabrics.hpp (Smith, McCrackin & Schiefer, "Stress-Strain
-  /// Relationships in Yarns Subjected to Rapid Impact Loading", 1958). With larger values, Newton's method oscillates
-  /// near the limit (measured: 2e4 with kStraight = 1 takes 1.2 times the iterations).
+  /// Stress at the limit [N/m]; at 1.1 times the limit the stress is 9,500 N/m. For comparison: a
+  /// ball that hits cloth at v = 100 m/s causes a transverse wave along threads of strain e, with
+  /// the tension ρ v² / (2 √e) for the density ρ [kg/m²] (Smith, McCrackin & Schiefer,
+  /// "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958). If e is the
+  /// limit, this tension is 600 to 8,000 N/m for the fabrics of film/scene/fabrics.hpp. With larger
+  /// values, Newton's method oscillates near the limit (measured: 2e4 with kStraight = 1 takes 1.2
+  /// times the iterations).
   static constexpr double kTension = 4e3;
   static constexpr double kStraight = 1.5;  ///< U: from this u on, the stress is linear
 
@@ -50,24 +53,27 @@ class Lock {
   double onset_, span_;
 };
 
-/// Extensions at which Newton's method linearises the locks of a cloth's threads. At its extension in `extensions`,
-/// each piece of a thread has the tension that the last linearisation predicted: the tension is a dual unknown, as for
-/// contacts. If Newton's method linearised at the iterate, a piece would lose only a third of its excess over the onset
-/// per iteration, because the stress is cubic.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads. At its extension
+/// in `extensions`, each piece of a thread has the tension that the last linear solve predicted:
+/// the tension is a dual unknown, like the normal force of contacts. If Newton's method linearised
+/// at the iterate, a piece would lose only a third of its excess over the onset per iteration,
+/// because the stress is cubic.
 struct LockLinearisation {
   std::vector<double> extensions;           ///< per piece of a thread
-  std::vector<std::uint32_t> beyond_onset;  ///< pieces beyond the onset in `extensions` or at the iterate
+  std::vector<std::uint32_t> beyond_onset;  ///< pieces beyond the onset at the last update()
 };
 
 /// Locks threads near a limit of their extension, and the angle between weft and warp near a limit of the shear. A
 /// piece of weft or warp that covers the area A has the energy A · Lock::energy() at its extension ‖s‖ − 1. A cell or
 /// triangle of area A has the energy A · Lock::energy() at its shear |⟨s_u, s_v⟩|. If both derivatives have unit
-/// length, the shear is the sine of the deviation of the angle between weft and warp from 90°. Pieces, cells, triangles
-/// and their derivatives s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+/// length, the shear is the sine of the deviation of the angle between weft and warp from 90°.
+/// Pieces, cells, triangles and their derivatives s are those of Stretch, Shear and
+/// TriangleMembrane (also if the membrane is a CrossedMembrane). Compression has no limit: threads
+/// buckle.
 class StretchLimit final : public Force {
  public:
-  /// `stretch`: limit of the extension; `shear`: limit of the shear. Infinite: no limit. `below`: parameters of the
-  /// cloth's Stretch or TriangleMembrane, which act at every extension.
+  /// `stretch`: limit of the extension ‖s‖ − 1; `shear`: limit of |⟨s_u, s_v⟩|. Infinite: no limit.
+  /// `below`: parameters of the cloth's Stretch or TriangleMembrane, which act at every extension.
   StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
@@ -80,10 +86,12 @@ class StretchLimit final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Before the first iteration of a step: sets the extensions of `lag` to those at x.
+  /// Before the first solve of a step: sets the extensions of `lag` to those at x.
   void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
-  /// Before each linearisation at x: updates `lag`. `first`: whether this is the first iteration of a step; then
-  /// update() keeps the extensions of begin(), as no tension has been predicted yet.
+  /// Before each linearisation at x: updates `lag`. Writes the pieces that are beyond the onset, at
+  /// x or in the old extensions, into `beyond_onset`, and updates their extensions. `first`:
+  /// whether this is the first iteration of a solve; then update() keeps the extensions, because
+  /// this solve has not predicted any tension yet.
   void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
   /// Replaces exact forces by linearised ones: for the pieces in `lag.beyond_onset`, adds the force at x that is
   /// linearised at `lag`, minus the exact force at x.
@@ -92,13 +100,14 @@ class StretchLimit final : public Force {
   /// Copies the current rest shape of `membrane`, which must be the membrane that the constructor received.
   void copy_rest_shape(const TriangleMembrane& membrane);
 
-  /// The piece with the largest extension; zero if none is extended.
+  /// Extension and place of the piece with the largest extension; both are zero if no piece is
+  /// extended.
   struct Worst {
     double extension = 0;       ///< ‖s‖ − 1, at least 0
     Vec3 place = Vec3::Zero();  ///< position of the piece [m]
   };
   Worst worst(std::span<const Vec3> x) const;
-  double limit() const { return stretch_; }  ///< of the extension
+  double limit() const { return stretch_; }  ///< of the extension; infinite: none
 
  private:
   static constexpr std::size_t kMaxCorners = 4, kMaxThreadCorners = 3;
@@ -109,7 +118,7 @@ class StretchLimit final : public Force {
     std::uint32_t corners;  // number: 2 or 3
     std::array<Index, kMaxThreadCorners> particles;
     std::array<double, kMaxThreadCorners> along;
-    double area;       // covered area [m²]
+    double area;       // covered area [m²]; of triangles: Element::area
     double stiffness;  // of the cloth, without the lock [N/m]
   };
   /// A crossing of threads, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.

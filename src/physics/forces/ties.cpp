@@ -8,8 +8,9 @@
 namespace weft::forces {
 namespace {
 
-// Fraction of its full strength (0 to 1) that a tie has at the scene time t after sewing. If `closed` < `open`, the tie
-// starts open, closes and opens again; else it starts closed, opens and closes again.
+// Fraction of its full strength (0 to 1) that a sewn tie has at the scene time t. If
+// `closed` < `open`, the tie starts open, closes and opens again; else it starts closed, opens and
+// closes again.
 double closed_ratio(const mesh::Tie& tie, double t) {
   const bool reopens = tie.closed < tie.open;
   const bool closed = reopens ? t >= tie.closed && t < tie.open : t < tie.open || t >= tie.closed;
@@ -93,7 +94,7 @@ Ties::Pull Ties::pull(const Piece& piece, double length) {
   return {piece.strength * (length / kRest - 1), piece.strength / kRest};
 }
 
-// Stiffness between the ends: positive semidefinite, as ties only pull.
+// Stiffness between the ends [N/m]: positive semidefinite, as ties only pull.
 Mat3 Ties::stiffness(const Piece& piece, const Vec3& along) {
   const double length = along.norm();
   const Pull now = pull(piece, length);

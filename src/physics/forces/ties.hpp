@@ -9,10 +9,11 @@
 namespace weft::forces {
 
 /// The ties of a sheet. If the distance l between both particles of a tie exceeds r = kRest, they pull each other with
-/// the force F min(l/r − 1, 1). At smaller distances only contact acts. F is the strength of the tie [N]. F grows from
-/// zero during sewing, and for the time kClosing after the tie closes. A tie of a tearable seam can tear (State::holds)
-/// once F has its full value and the pull is less than F. If the pull reaches F after that, the tie tears and stays
-/// torn.
+/// the force F min(l/r − 1, 1). At smaller distances only contact acts. F is the strength of the
+/// tie [N]. F grows from zero during sewing, and for the time kClosing after the tie closes. If, at
+/// the end of an accepted step, F has its full value and the pull is less than F, a tie of a
+/// tearable seam holds (State::holds). If the pull of a tie that holds reaches F, the tie tears and
+/// stays torn. If F becomes zero, the tie no longer holds.
 class Ties final : public Force {
  public:
   /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press the layers
@@ -26,13 +27,15 @@ class Ties final : public Force {
   /// Sets the strengths for the scene time t [s]. `progress`: of sewing, 0 to 1.
   void set_strengths(double t, double progress);
 
-  /// Whether each tie has the same strength at the scene time t1 [s] as at t0 [s], if sewing does not progress.
+  /// Whether opening and closing give each tie the same strength at the scene time t1 [s] as at t0
+  /// [s]. Ignores sewing and tearing.
   bool are_constant_between(double t0, double t1) const;
 
   /// At the end of an accepted step, with particles at x [m]: updates which ties of tearable seams hold and which are
   /// torn.
   void accept(std::span<const Vec3> x);
-  /// Total pull of the ties of a tearable seam [N], and whether any of them has strength now (is closed and not torn).
+  /// Total pull of the ties of a tearable seam [N], and whether any of these ties has a positive
+  /// strength now (is closed and not torn).
   struct SeamLoad {
     double load = 0;
     bool holds = false;

@@ -11,7 +11,8 @@ namespace {
 
 // Factors of the parts uu, vv and uv of the energy: the sum over ab counts uv twice, as uv and vu.
 const Vec3 kMultiplicity(1, 1, 2);
-// Smallest rest curvature, times √area of the triangle (without unit). Smaller values are rounding errors and become 0.
+// Smallest norm of the rest curvature of a triangle, times the √ of its area (without unit).
+// Smaller values are rounding errors and become 0.
 constexpr double kMinRestCurvature = 1e-9;
 
 /// The plane of a triangle: its unit normal, and the gradients of the barycentric coordinates.
@@ -24,7 +25,7 @@ Plane triangle_plane(const std::array<Vec3, 3>& corners) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double size = normal.norm();  // twice the area
   Plane plane{Vec3::Zero(), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
-  if (size == 0) return plane;  // a collapsed triangle has no normal and bends as if flat at rest
+  if (size == 0) return plane;  // a collapsed triangle bends as if flat at rest
   plane.normal = normal / size;
   for (std::size_t k = 0; k < 3; ++k)
     plane.gradients[k] = plane.normal.cross(corners[(k + 2) % 3] - corners[(k + 1) % 3]) / size;
@@ -117,7 +118,7 @@ Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) co
   return columns;
 }
 
-// Curvatures of `count` elements from `first` on; at most four.
+// Curvatures of the elements [first, first + count); `count` is at most four.
 TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::size_t count,
                                                       std::span<const PaddedVec3> x) const {
   std::array<Curvature, 4> of_elements{};
@@ -171,8 +172,9 @@ void TriangleBend::add(const Evaluation& at) const {
     Lanes area{};
     for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
 
-    // Moments for s_uu, s_vv and s_uv, and the stiffness of damping. As in Bend, this stiffness contains ‖c‖² I instead
-    // of c cᵀ (measured: the scene catwalk takes no more iterations than with c cᵀ).
+    // Moments for s_uu, s_vv and s_uv, and the stiffness of damping. As in Bend, the stiffness of
+    // damping contains ‖c‖² I instead of c cᵀ (measured: the scene catwalk takes no more iterations
+    // than with c cᵀ).
     std::array<std::array<PaddedVec3, 4>, 3> moments;
     std::array<Lanes, 3> stiffness{};
     for (std::size_t k = 0; k < 3; ++k) {

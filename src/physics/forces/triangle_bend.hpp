@@ -10,15 +10,18 @@ namespace weft::forces {
 /// The plate model of class Bend (for grids), for triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², where ab is uu, vv, uv
 /// and vu. B is the rigidity, A the area, s_ab the curvature vectors of CurvatureStencil, n the triangle's unit normal,
 /// and κ_ab the signed rest curvature, positive if the sheet bends toward its front. If the rest shape is curved, its
-/// s_ab also have in-plane components. The stencil subtracts these components as multiples of the triangle's tangents
-/// s_u and s_v. Thus they turn with the triangle, and the rest shape has no energy.
+/// s_ab also have in-plane components. The stencil subtracts these components as multiples of the
+/// triangle's tangents s_u and s_v. Thus the subtracted vectors turn with the triangle, and the
+/// rest shape has no energy.
 ///
-/// The part of the energy without κ_ab is quadratic, with a constant and positive semidefinite Jacobian, as for grids.
-/// The part −B A Σ_ab κ_ab n·s_ab of triangles with rest curvature is not quadratic; every evaluation computes its
-/// forces and its matrix anew. For viscosity and friction see BendDamping.
+/// The part of the energy without κ_ab is quadratic, and its Hessian is constant and positive
+/// semidefinite, as for grids. The part −B A Σ_ab κ_ab n·s_ab of triangles with rest curvature is
+/// not quadratic; every evaluation computes its forces and its matrix anew. For viscosity and
+/// friction see BendDamping.
 class TriangleBend final : public Force {
  public:
-  /// `pinned`: per particle of all cloths, whether set_held() may hold it; these particles start held. Empty: none.
+  /// `pinned`: per particle, in the global numbering, whether set_held() may hold it. These
+  /// particles are held until the first call of set_held(). Empty: no particle.
   TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters,
                std::span<const char> pinned = {});
 

@@ -20,14 +20,15 @@ constexpr int kMaxRings = 3;
 // (across_opposite). A larger correction makes the slope a small difference of large numbers; fit_quadratic() then adds
 // a ring.
 constexpr double kMaxCorrection = 1;
-// Tolerance for rounding errors of moments (see correct_weights), whose coordinates are about 1.
+// Tolerance for rounding errors: of moments (see correct_weights), whose coordinates are about 1,
+// and of weights times the area of their triangle.
 constexpr double kMomentTolerance = 1e-9;
 
 /// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle, as a
 /// weighted sum of the function's values at vertices [1/m].
 struct Slope {
   std::vector<std::pair<Index, double>> weights;
-  bool depends_on_pins = false;  ///< a triangle of the patch has three pinned corners: held_ may change the weights
+  bool depends_on_pins = false;  ///< `held` may change the weights: see fit_clamped()
 };
 
 /// Computes the slopes across the edges of a sheet; see curvature_stencils().
@@ -148,12 +149,13 @@ Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
         correct_weights(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
     if (weights.size() > 0) return weights;
   }
-  // There are too few triangles for a quadratic, as in a mesh of one or two triangles, or at a corner of a mesh.
+  // No suitable weights: usually, too few vertices are near, as in a mesh of one or two triangles,
+  // or at a corner of a mesh.
   return across_opposite(patch.vertices.size());
 }
 
-// Slope of a patch with held triangles (three held corners). Empty if no triangle is held, or if correct_weights()
-// finds no weights.
+// Weights of the slope in a patch with held triangles (three held corners). Empty if no triangle is
+// held, or if correct_weights() finds no weights.
 Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const {
   // If a triangle at the edge is held, the slope is that of the linear function through its corners.
   for (std::size_t member : {0, 1}) {
@@ -183,8 +185,9 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
   return std::isinf(nearest) ? Eigen::VectorXd() : fit_in_front_of_clamp(patch, axes, clamp);
 }
 
-// Slope that is exact for linear functions and for s². s is the distance in front of the clamp, and 0 at held
-// triangles. The held triangle is on the left of the edge `clamp`.
+// Weights of a slope that is exact for linear functions and for s². s is the distance in front of
+// the clamp, and 0 at the vertices of held triangles. The held triangle is on the left of the edge
+// `clamp`. Empty if correct_weights() finds none.
 Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
                                               const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];
@@ -235,13 +238,14 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   return slope;
 }
 
-// A symmetric matrix as (uu, vv, √2 uv): the dot product of two such vectors is the Frobenius product of the matrices.
+// The symmetric part of a matrix as (uu, vv, √2 uv): the dot product of two such vectors is the
+// Frobenius product of the symmetric parts.
 Vec3 packed(const Eigen::Matrix2d& m) {
   return {m(0, 0), m(1, 1), std::numbers::sqrt2 * 0.5 * (m(0, 1) + m(1, 0))};
 }
 
-// Projection that removes the moments about a triangle's free borders. `border_normals`: per border with normal n,
-// packed(n nᵀ).
+// Projection that removes the curvature across the border edges of a triangle (see
+// curvature_stencils()). `border_normals`: packed(n nᵀ) for each border edge, with its normal n.
 Mat3 project_out_borders(const std::vector<Vec3>& border_normals) {
   Mat3 p = Mat3::Identity();
   for (const Vec3& direction : border_normals) {

@@ -68,7 +68,8 @@ Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
   return (metric + area * Eigen::Matrix2d::Identity()) / std::sqrt(metric.trace() + 2 * area);
 }
 
-// `inverse`: inverse of the matrix whose columns are the triangle's sides from its first corner.
+// `inverse`: inverse of the matrix whose columns are the sides of the triangle at rest, from its
+// first corner.
 void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& element) {
   element.gradients[1] = inverse.row(0);
   element.gradients[2] = inverse.row(1);
@@ -154,8 +155,9 @@ void TriangleMembrane::add(const Evaluation& at) const {
 
 // Blocks of the pairs (a, b): gradients[a] gradients[b] times the second derivatives of the energy in s_u and s_v. The
 // stretch terms are those of Stretch for an edge of rest length 1. The shear terms are those of Shear: the second
-// derivative of ⟨s_u, s_v⟩ is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). Times the stress, one of these
-// squares is positive and one negative; the matrix contains only the positive one.
+// derivative of ⟨s_u, s_v⟩ is 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). After
+// multiplication by the stress, one of these squares is positive and one negative. The matrix
+// contains only the positive one.
 void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
                                      const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
   const auto lateral_of = [](const Lanes& length) { return max(1 - 1 / length, lanes_of(0.0)); };

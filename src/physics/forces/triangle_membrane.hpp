@@ -15,8 +15,8 @@ namespace weft::forces {
 ///
 ///     ½ k1 (‖s_u‖ − 1)² + ½ k2 (‖s_v‖ − 1)² + ¼ μ ⟨s_u, s_v⟩²
 ///
-/// The dissipation has the same form in the rates. If the deformation of the cloth is linear, the stress is exactly
-/// that of the continuum, for any orientation of the triangles.
+/// The dissipation has the same form in the rates. If the positions are linear in u and v, the
+/// stress is exactly that of the continuum, for any orientation of the triangles.
 class TriangleMembrane : public Membrane {
  public:
   /// A triangle; s_u and s_v are linear in its corners.

@@ -35,7 +35,7 @@ class BlockGroups {
  private:
   std::span<const solver::DiagonalBlock> blocks_;
   std::vector<std::size_t> lowest_;
-  std::vector<char> is_free_;  // per group: no constraint or obstacle acts on it
+  std::vector<char> is_free_;  // per group: no constraint, DiagonalTerm or obstacle acts on it
 };
 
 // Joins the groups of the particles of a term. If the weights do not sum to zero, the term acts against an obstacle,

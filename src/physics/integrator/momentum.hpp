@@ -1,4 +1,4 @@
-// Momentum of cloth on which only weight and air act from outside.
+// Conservation of momentum of cloths, ropes and rigid bodies that no constraint or obstacle holds.
 #pragma once
 
 #include <span>
@@ -9,9 +9,10 @@
 
 namespace weft::integrator {
 
-/// Diagonal blocks (cloths, ropes, rigid bodies) that contact terms connect form a group; translating a whole group
-/// changes no force inside it. Returns for each diagonal block the acceleration [m/s²] of its whole group that makes
-/// the group's residual [N] sum to zero. The acceleration is zero if a constraint or an obstacle acts on the group.
+/// Diagonal blocks (cloths, ropes, rigid bodies) that terms of `linear` connect form a group;
+/// translating a whole group changes no force inside it. Returns for each diagonal block the
+/// acceleration [m/s²] of its whole group that makes the residual [N] of the group sum to zero. The
+/// acceleration is zero if a constraint, a DiagonalTerm or an obstacle acts on the group.
 std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
                                         std::span<const Vec3> residual);
 

@@ -25,7 +25,8 @@ double Sliding::friction_error(const solver::DiagonalBlock& rows, std::span<cons
   }
   const double push_norm = push.norm(), friction_norm = friction.norm();
   if (push_norm == 0 || friction_norm == 0) return 0;
-  // Friction that the motion requires, and the largest friction that the normal force allows [N].
+  // Friction that the motion requires, and the largest friction that the normal force allows, both
+  // if the residual were zero [N].
   const double along = missing.dot(friction) / friction_norm, required = friction_norm - along;
   const double max_friction = limit * (1 - missing.dot(push) / (push_norm * normal_force));
   return required > numerics.newton.about_to_slide * max_friction ? std::max(std::abs(along), required - max_friction)

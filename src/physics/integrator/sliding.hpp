@@ -10,23 +10,26 @@
 
 namespace weft::integrator {
 
-/// Without this class, Newton's method could end while wrong friction still holds a cloth back: friction and contacts
-/// are stiff until the cloth slides as a whole, so the velocity error seems small. (Measured on slopes half a degree
-/// too steep for sticking: sheets slide 1.00 to 1.01 of a rigid body's distance; without this class 0.92 to 0.97.) If
-/// friction is near its limit, the error is the larger one of two forces: the residual along the friction, and the
-/// friction in excess of what the normal force allows. Both are sums over a diagonal block: with errors of single
-/// particles, the scene sphere_drape takes two to three times the iterations.
+/// Error of friction on a whole diagonal block. Without this error, Newton's method could end while
+/// wrong friction still holds a cloth back: friction and contacts are stiff until the cloth slides
+/// as a whole, so the velocity error seems small. (Measured on slopes half a degree too steep for
+/// sticking: sheets slide 1.00 to 1.01 of a rigid body's distance; without this class 0.92 to
+/// 0.97.) If the friction that the motion requires exceeds `Numerics::Newton::about_to_slide` times
+/// the maximum friction, the error is the larger one of two forces: the residual along the
+/// friction, and the required friction minus the maximum friction. All forces are sums over the
+/// block. (With errors of single particles, the scene sphere_drape takes two to three times the
+/// iterations.)
 class Sliding {
  public:
   /// Evaluates the contact forces of a system at this stage. Returns false if there is no contact.
   bool evaluate(const System& system, const StagePoint& at);
 
-  /// Error [N] of the friction on a diagonal block as a whole, from its residual [N]; 0 unless the block is about to
-  /// slide.
+  /// Returns this error [N] for a diagonal block, at the stage of the last evaluate(). `residual`
+  /// [N]: of all particles. Returns 0 unless the block is about to slide.
   double friction_error(const solver::DiagonalBlock& rows, std::span<const Vec3> residual) const;
 
  private:
-  std::vector<Vec3> push_, friction_;  // [N]
+  std::vector<Vec3> push_, friction_;  // [N], as in System::contact_forces()
   std::vector<double> limit_;          // [N]
 };
 

@@ -11,22 +11,21 @@ namespace weft::integrator {
 
 /// Keeps the local error of each step near a tolerance: the error per step, not per second. An impact changes the
 /// velocity by Δv at once, so that a step of length h has an error of about h Δv; a bound of the error per second would
-/// reduce h to 0. With a method of order p, step sizes scale as tolerance^(1/(p+1)) and the final error as
-/// tolerance^(p/(p+1)); the latter exponent is 1/2 for Euler, and 2/3 for midpoint and BDF2.
-///
-/// `wanted_` and `last_ratio_` are part of the state of a simulation.
+/// reduce h to 0. In smooth motion, a method of order p takes step sizes proportional to
+/// tolerance^(1/(p+1)), and the final error is proportional to tolerance^(p/(p+1)); the latter
+/// exponent is 1/2 for Euler, and 2/3 for midpoint and BDF2.
 class StepControl {
  public:
   /// `tolerance`: bound of the local error [m]; `first`: length of the first step [s].
   StepControl(Method method, double tolerance, double first);
 
-  /// Whether a step over h [s] with this error [m] is accepted. A step of the minimum length or less needs only a
-  /// finite error.
+  /// Whether a step over h [s] with this error [m] is accepted. If h is at most
+  /// `Numerics::Steps::min_step`, any finite error is accepted.
   bool accepts(double h, double error) const;
   bool meets(double error) const { return error <= tolerance_; }
 
-  /// Length of the next step [s]. The functions below update this length after a step over h [s] that was accepted,
-  /// rejected for its error [m], or not solved.
+  /// Length of the next step [s]. The three functions below update it after a step over h [s] that
+  /// was accepted, rejected for its error [m], or not solved.
   double next_step_size() const { return wanted_; }
   void record_accepted_step(double h, double error);
   void record_rejected_step(double h, double error);
@@ -36,7 +35,7 @@ class StepControl {
   template <class Archive>
   void serialize(Archive& archive) {
     serialize_values(archive, wanted_, last_ratio_);
-    // After an unsolved step, the wanted length may be below the minimum.
+    // After steps that were not solved, `wanted_` may be below `min_step`.
     if constexpr (Archive::kReads)
       require(wanted_ >= 0.1 * numerics.steps.min_step && std::isfinite(wanted_) && std::isfinite(last_ratio_),
               "a step length");

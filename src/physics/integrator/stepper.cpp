@@ -105,9 +105,10 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
 
 // Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass.
 // During the time `lasting_time`, this error displaces the block by `tolerance` · max(local error of positions,
-// visibility threshold). With h in place of `lasting_time`, the solver could add this displacement in every step, and
-// adaptive step sizes would lose one order. From `slow_after` iterations on, the local velocity error of implicit Euler
-// may raise the bound. The bound never falls below rounding.
+// visibility threshold). If the bound used h in place of `lasting_time`, the solver could add this
+// displacement in every step, and with adaptive step sizes the method would lose one order. From
+// `slow_after` iterations on, the local velocity error of implicit Euler may raise the bound. The
+// bound never falls below rounding.
 void Stepper::update_tolerances(double h, int iterations) {
   const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
@@ -126,18 +127,18 @@ double Stepper::root_mean_square(const BlockState& part, std::span<const double>
   return std::sqrt(sum / part.mass);
 }
 
-// Root mean square velocity of each block for these displacements of the stage [m/s].
+// Root mean square over mass of displacement / β of each block [m/s].
 void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                                  std::vector<double>& speeds) const {
   speeds.clear();
   for (const BlockState& part : blocks_) speeds.push_back(root_mean_square(part, masses, displacements) / beta_);
 }
 
-// Estimates the velocity error of each block after a linear solve and a line search. The linear solver reports its own
-// error. The nonlinear error is known only as a residual, which the preconditioner converts to a displacement that is
-// too small. The ratio of the last solution to its preconditioned right hand side, if above 1, corrects this
-// displacement. If the line search did not take the full step, or the matrix is indefinite, the residual contains both
-// errors.
+// Estimates the velocity error of each block after a linear solve and a line search. The linear
+// solver reports its own error. The nonlinear error is known only as a residual; the preconditioner
+// converts this residual to a displacement that is too small. The ratio of the last solution to its
+// preconditioned right hand side, if above 1, corrects this displacement. If the line search did
+// not take the full step, or the matrix is indefinite, the residual contains both errors.
 void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
                                             std::span<const double> masses) {
   const bool is_full_step = fraction == 1 && solved.definite;
@@ -155,9 +156,10 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
       blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
 }
 
-// Estimates the velocity error of whole blocks from wrong friction, for blocks that otherwise count as solved and that
-// no constraint holds against sliding. Friction can at most stop a block. Therefore the velocity that the block has or
-// gains in the step bounds the error, however large the force of a stiff contact is.
+// Estimates the velocity error of whole blocks from wrong friction, for blocks that otherwise count
+// as solved and that no constraint holds against sliding. Friction can at most stop a block.
+// Therefore the error is at most the velocity that the block would have at the stage under constant
+// forces alone, however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
   const auto masses = system.masses();
   const auto needs_check = [](const BlockState& part) { return !part.holds_sliding && part.left <= part.allowed; };
@@ -175,8 +177,8 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
 
 // Bounds the work that the remaining residual does in the step, because norms of velocity hardly contain the error of
 // stiff motion (measured without this bound: an impact at 38 m/s stretches threads by 75 % instead of 24 %, and the
-// residual does as much work as the cloth has energy). If a block exceeds the bound, its allowed error is reduced by
-// the same ratio.
+// residual does as much work as the cloth has energy). If the work exceeds the bound, the allowed
+// error is reduced by the same ratio.
 void Stepper::bound_work(std::span<const double> masses, const State& now) {
   for (BlockState& part : blocks_) {
     const double work =
@@ -207,8 +209,9 @@ void Stepper::select_unsolved(int iterations) {
       unsolved_.push_back(p);
 }
 
-// Line search along delta_: moves x_ by delta_, by less if delta_ overshoots the minimum of the step's energy, by more
-// if it hardly approaches the minimum. Returns the factor of delta_; if a slope is not finite, returns that slope.
+// Line search along delta_: moves x_ by delta_; by less if delta_ overshoots the minimum of the
+// step's energy, by more if delta_ hardly approaches the minimum. Returns the factor of delta_; if
+// a slope is not finite, returns that slope.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
   // of the energy: positive before the minimum along delta, negative behind it. If contacts begin or compressed edges
@@ -252,9 +255,10 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
   system.constant_forces(constant_force_);
 }
 
-// Expected direction of velocity changes, along which the first linear solve starts: that of the last step or, without
-// a history, that of constant forces. Thus the motion of cloth that falls, slides or drifts uniformly is exact at any
-// linear tolerance, and flat sheets stay flat.
+// Predicts the direction of velocity changes, along which the first linear solve starts: that of
+// the last step or, without a history, that of the constant forces per mass. Thus the motion of
+// cloth that falls, slides or drifts uniformly is exact at any linear tolerance, and flat sheets
+// stay flat.
 std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> masses, const State& now) {
   for_each_particle(masses.size(), [&](std::size_t i) {
     scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
@@ -262,7 +266,7 @@ std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> m
   return scratch_;
 }
 
-// Moves held particles to their target along the held directions; the constraints keep them there.
+// Moves held particles to their targets at the stage, along the held directions only.
 void Stepper::apply_constraints(const State& now, const Stage& stage, std::span<const HeldParticle> held,
                                 std::vector<solver::ParticleConstraint>& constraints) {
   constraints.clear();
@@ -298,8 +302,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   do {
     end_if_stopped();
     linearise(system, now, stage, previous_iterations + report.newton_iterations);
-    // Later iterations reuse the sums over aggregates: these represent long waves, whose stiffness hardly changes in a
-    // step.
+    // Later iterations reuse the sums over aggregates: the stiffness of long waves hardly changes.
     {
       const Stopwatch watch(times_.preconditioner);
       cg_.prepare(linear,
@@ -364,7 +367,7 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
   }
 }
 
-// Restores the momentum of cloth on which only weight and air act from outside.
+// Makes the residual of each group that nothing holds sum to zero; see missing_accelerations().
 void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage) {
   const std::vector<Vec3> missing = missing_accelerations(linear, masses, residual_);
   for (std::size_t p = 0; p < blocks_.size(); ++p) {
@@ -376,9 +379,10 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
   }
 }
 
-// Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The residual that remains does no
-// work along the displacements β v = x − x̂ of the stage (`motion_`). With BDF2, it does no work along the
-// displacements x − x0 of the step either (the sum of `motion_` and `drift_`).
+// Solves the linear system for the unsolved blocks. `start`: see solver::Directions. The remaining
+// residual of the linear system does no work along the displacements β v = x − x̂ of the stage
+// (`motion_`). With BDF2, it does no work along the displacements x − x0 of the step either (the
+// sum of `motion_` and `drift_`).
 solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
   goals_.clear();
   const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.midpoint_tightening : 1;

@@ -20,8 +20,10 @@
 namespace weft::integrator {
 
 struct NewtonParameters {
-  /// Error that Newton's method and the linear solver may leave, relative to the local truncation error of the step,
-  /// with a visibility threshold as floor; see update_tolerances() in stepper.cpp.
+  /// Bound of the remaining velocity error: during the time `Numerics::Newton::lasting_time`, this
+  /// error displaces a diagonal block by at most this fraction of the local error of the step, or
+  /// of a visibility threshold if that is larger. Exceptions: see update_tolerances() in
+  /// stepper.cpp.
   double tolerance = 0.3;
   int max_iterations = 60;
   double linear_tolerance = 0.1;  ///< error of a linear solve, relative to its solution, in the energy norm
@@ -36,7 +38,7 @@ std::string_view describe(Verdict verdict);
 struct StageTimes {
   StageTime forces;          ///< evaluation of forces and assembly of their matrix
   StageTime preconditioner;  ///< setup, and applications outside of linear solves
-  StageTime linear;          ///< linear solves
+  StageTime linear;          ///< linear solves of Newton's method
 };
 
 struct StepReport {
@@ -44,10 +46,11 @@ struct StepReport {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double local_error = 0;  ///< estimate of the error of positions that the method adds in this step [m]
-  /// Estimate of the error of positions that the solver adds: the largest remaining velocity error of a block times
-  /// `Numerics::Newton::lasting_time` [m].
+  /// Estimate of the error of positions that Newton's method adds: the largest remaining velocity
+  /// error of a diagonal block times `Numerics::Newton::lasting_time` [m].
   double solver_error = 0;
-  /// Velocity error that remains in the block with the largest left / allowed, and its bound [m/s].
+  /// Velocity error that remains, and its bound, of the diagonal block in which left / allowed is
+  /// largest [m/s].
   double left = 0, allowed = 0;
   StageTimes times;
 };
@@ -65,10 +68,11 @@ struct StepReport {
 /// BDF2 assumes a smooth trajectory. If it integrated impacts like smooth forces, cloth would rebound with up to half
 /// of its energy (measured: 48 % for a sheet that falls on a table). Therefore BDF2 steps integrate impacts as Euler's
 /// method does, and all other forces in second order, as in nonsmooth generalised-α methods (Chen, Acary, Virlez &
-/// Brüls, Int. J. Numer. Meth. Engng 96, 2013). In the solve of a step, impacts displace particles by δ with A δ = F. F
-/// are the forces of impacts; A is the matrix of the step, but its only contact terms are those of friction in impacts
-/// and of contacts that transmit impacts. Positions keep the displacement δ, but velocities change by δ/h instead of
-/// δ/β. The start velocity in the history also changes by δ/h, so that the trajectory of the next step is smooth. If
+/// Brüls, Int. J. Numer. Meth. Engng 96, 2013). In the solve of a step, impacts displace particles
+/// by δ with A δ = F. F are the forces of impacts. A is the matrix of the step with other terms:
+/// those of friction in impacts and of contacts that transmit impacts. Positions keep the
+/// displacement δ, but velocities change by δ/h instead of δ/β. In the history, the velocity at the
+/// start of the step also changes by δ/h, so that the trajectory is smooth for the next step. If
 /// the caller changes velocities after the solve, these changes count as impacts, too.
 ///
 /// The local error of positions is estimated from velocities. Let D = (v1 − v0)/h − (v0 − v₋)/h₋ be the change of the
@@ -79,16 +83,18 @@ struct StepReport {
 ///     BDF2       3/2 h³ (1+r)² / (6 r (1+2r)) x'''  ≈ h² (1+r) / (2 (1+2r)) D
 ///
 /// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The factor 3/2 of BDF2
-/// accounts for the following steps: each adds a third of what the step before it added. Steps without a history, and
-/// BDF2 steps beyond longest_step(), use Euler's estimate. For the midpoint rule, it is an upper bound. Such a BDF2
-/// step is an Euler step, but its estimate keeps the factor 3/2. Errors of velocity are not included; they affect
-/// positions only in later steps. The error of a diagonal block (a cloth, a rope or a rigid body) is the root mean
-/// square over its mass, so that it depends neither on the mesh resolution nor on a single particle in contact. The
+/// accounts for the following steps: each adds a third of what the step before it added. Steps
+/// without a history use Euler's estimate, which exceeds the error of the midpoint rule in smooth
+/// motion. A BDF2 step without a history or beyond longest_step() is an Euler step; its estimate is
+/// 3/2 of Euler's. Errors of velocity are not included; they affect positions only in later steps.
+/// The error of a diagonal block (a cloth, a rope or a rigid body) is the root mean square over its
+/// mass, so that it depends neither on the mesh resolution nor on a single particle in contact. The
 /// error of a step is the largest of all blocks. Held directions have no error.
 class Stepper {
  public:
-  /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I, III.5). At
-  /// that bound a following step propagates a change of the error in full; at this ratio, four fifths of it.
+  /// Largest ratio of successive BDF2 steps. BDF2 is zero-stable below 1 + √2 (Hairer, Nørsett &
+  /// Wanner I, III.5). A step with the ratio r multiplies the change of an error since the last
+  /// step by r²/(1+2r): by 1 at that bound, by 4/5 at this ratio.
   static constexpr double kMaxStepRatio = 2;
 
   Stepper(Method method, const NewtonParameters& parameters) : method_(method), parameters_(parameters) {}
@@ -102,15 +108,15 @@ class Stepper {
   enum class Start { unchanged_velocity, next };
 
   /// Computes `next` from `now` over h [s]. Does not change the history: see accept(). `gravity` [m/s²] acts on all
-  /// particles. A step that is not solved after `pause_after` Newton iterations of this call ends with
-  /// Verdict::unfinished; the caller can inspect `next` and continue with Start::next. After other failures, `next` is
-  /// unspecified.
+  /// particles. If the step is not solved after `pause_after` Newton iterations of this call, the
+  /// verdict is Verdict::unfinished; the caller can inspect `next` and continue with Start::next.
+  /// After other failures, `next` is unspecified.
   StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
                   State& next, Start start = Start::unchanged_velocity,
                   int pause_after = std::numeric_limits<int>::max());
 
   /// Force [N] with which the constraint acted on a particle of this mass [kg] at the stage of the last computed step.
-  /// On a free particle: minus the remaining residual.
+  /// On a free particle: minus the remaining residual of the equation of motion.
   Vec3 constraint_force(Index particle, double mass) const;
 
   /// Makes an accepted step over h [s] the history of the next one. `before`, `after`: states at its start and end.
@@ -153,11 +159,11 @@ class Stepper {
     double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history, or a different method
     double allowed = 0;          // bound of the remaining velocity error [m/s]
     double left = 0;             // remaining velocity error [m/s]
-    double rounding = 0;         // velocity that corresponds to rounding of its positions [m/s]
+    double rounding = 0;         // lower bound of `allowed`, from rounding of positions [m/s]
     bool holds_sliding = false;  // a constraint holds it against sliding
-    double sliding_error = 0;    // velocity error of the whole block from wrong friction [m/s]; 0: not about to slide
+    double sliding_error = 0;    // of the whole block, from wrong friction [m/s]; 0: none
 
-    double work_error = 0;  // `allowed` before bound_work() reduces it; 0: the residual does not do too much work [m/s]
+    double work_error = 0;  // `allowed` before bound_work() reduced it [m/s]; 0: not reduced
 
     double error() const { return std::max({left, sliding_error, work_error}); }  // [m/s]
   };
@@ -198,7 +204,7 @@ class Stepper {
   NewtonParameters parameters_;
   History history_;
   double beta_ = 0;                  // of the last stage [s]
-  int iterations_before_pause_ = 0;  // Newton iterations of the last solve, if it paused
+  int iterations_before_pause_ = 0;  // Newton iterations of the last step(), if it paused; else 0
 
   // Scratch of one step.
   StageTimes times_;

@@ -10,8 +10,8 @@
 
 namespace weft::integrator {
 
-/// Positions [m] and velocities [m/s] of all particles. x may have more entries behind those of the particles, for
-/// points that the integrator does not change.
+/// Positions [m] and velocities [m/s] of all particles. After the particles, x may have more
+/// entries, for points that the integrator does not change.
 struct State {
   std::vector<Vec3> x, v;
 };
@@ -34,37 +34,41 @@ class System {
 
   virtual std::span<const double> masses() const = 0;
 
-  /// Adds the forces of a step that depend neither on positions nor on velocities, excluding the weight [N].
+  /// Adds the forces of a step that depend neither on positions nor on velocities [N], without the
+  /// weight, which the integrator adds.
   virtual void constant_forces(std::span<Vec3> force) const = 0;
 
   /// Adds all other forces at a stage [N]. May update caches of the system, but must not change the results of later
   /// calls.
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As forces(), but if the last linearise() replaced a force by its tangent, evaluates that tangent. A line search
-  /// along the solution of the linear system must use these forces.
+  /// As forces(), but evaluates the tangent of each force that the last linearise() replaced by its
+  /// tangent. A line search along the solution of the linear system must use these forces.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
-  /// As linear_forces(), and fills linear_system(): the matrix with rate² M − ∂f/∂x − rate ∂f/∂v, and the contact
-  /// terms. First updates what stays constant between linearisations, such as the normal forces that limit friction.
-  /// `iteration`: Newton iteration, from 0 in each solve; it continues to count if a paused solve continues.
+  /// As linear_forces(), and fills linear_system(): the matrix with a positive definite
+  /// approximation of rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. First updates what stays
+  /// constant between linearisations, such as the normal forces that limit friction. `iteration`:
+  /// number of Newton iterations of the solve before this one. If a call of Stepper::step()
+  /// continues a paused one, the iterations of that call count, too.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
-  /// Whether translating a diagonal block changes no force except those of contact terms, constraints and air.
+  /// Whether translating a diagonal block changes no force except those of terms, constraints and
+  /// air.
   virtual bool is_translation_invariant() const { return false; }
 
-  /// Adds the contact part of forces() [N] at each particle: `friction`, all other contact forces (`push`), and the
-  /// largest friction that the current normal forces allow (`limit`). Returns false, and adds nothing, if there is no
-  /// contact.
+  /// Adds the contact part of forces() [N] at each particle: friction to `friction`, all other
+  /// contact forces to `push`, and the largest friction that the current normal forces allow to
+  /// `limit`. Returns false, and adds nothing, if there is no contact.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                               std::span<double> limit) const {
     (void)at, (void)push, (void)friction, (void)limit;
     return false;
   }
 
-  /// After a solved step: replaces the contact terms of linear_system() by those of impacts, and adds their right hand
-  /// side. The solution of this system is the change δ/h of velocities by impacts [m/s] (see Stepper). Returns false if
-  /// there is no impact.
+  /// After a solved step: replaces the terms of linear_system() by those of impacts, and adds their
+  /// right hand side [N/s]. The solution of this system is the change δ/h of velocities by impacts
+  /// [m/s] (see Stepper). Returns false if there is no impact; then `right_side` does not change.
   virtual bool find_impacts(const StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
     (void)at, (void)start, (void)right_side;
     return false;
@@ -74,7 +78,8 @@ class System {
   virtual solver::LinearSystem& linear_system() = 0;
 };
 
-/// A particle that is held in some directions, in which it ends the step at `x_end` [m] with velocity `v_end` [m/s].
+/// A particle that is held in the directions that `constraint` does not leave free. In these
+/// directions, the particle ends the step at `x_end` [m] with the velocity `v_end` [m/s].
 struct HeldParticle {
   solver::ParticleConstraint constraint;
   Vec3 x_end, v_end;

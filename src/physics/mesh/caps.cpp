@@ -31,7 +31,7 @@ void close_cuts(std::span<const Triangle> whole, std::span<const Vec3> positions
   while (!lid.empty()) {
     if (path.empty()) path.push_back(lid.begin()->first);
     const auto next = lid.find(path.back());
-    if (next == lid.end()) {  // a cut that ends at a border of `whole` needs no lid
+    if (next == lid.end()) {  // a cut that ends at a border of `whole` gets no lid
       path.pop_back();
       continue;
     }

@@ -8,10 +8,10 @@
 
 namespace weft::mesh {
 
-/// Appends lid triangles to `kept`, a subset of the triangles of `whole`. The lids close the borders that the removed
-/// triangles left behind; a border of `whole` itself stays open. Adds no vertices. Each lid fills a ring of border
-/// edges. A path along the border closes a ring as soon as it reaches one of its vertices again, so borders that share
-/// a vertex get several lids. Time O(n log n + b²) for n triangles and b border edges, plus that of
+/// Appends lid triangles to `kept`, a subset of the triangles of `whole`. A lid closes a ring of
+/// edges at which triangles were removed. Borders of `whole` itself stay open, and so does a cut
+/// that runs from border to border of `whole`. Adds no vertices. Rings that share a vertex get
+/// separate lids. Time O(n log n + b²) for n triangles and b border edges, plus that of
 /// triangulate_polygon().
 void close_cuts(std::span<const Triangle> whole, std::span<const Vec3> positions, std::vector<Triangle>& kept);
 

@@ -16,11 +16,11 @@ inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
 /// Sum of the triangle areas [m²].
 double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
-/// Writes one unit normal per vertex, the normalised area-weighted mean over its triangles, into `normals`; zero if all
-/// triangles of the vertex have no area. Allocates no memory.
+/// Writes one unit normal per vertex, the normalised area-weighted mean over its triangles, into
+/// `normals`; zero if the area vectors of these triangles add up to zero. Allocates no memory.
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);
 
-/// Smallest box around the points; empty without points.
+/// Smallest axis-aligned box around the points [m]; empty without points.
 Box3 bounding_box(std::span<const Vec3> positions);
 
 }  // namespace weft::mesh

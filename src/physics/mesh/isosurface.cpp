@@ -10,7 +10,8 @@
 namespace weft::mesh {
 namespace {
 
-/// Nodes of a cubic lattice that starts at x = 0. Values are evaluated on first use and cached.
+/// Values of the field at the nodes of a cubic lattice that starts at x = 0. Each value is
+/// evaluated on first use and cached.
 class Lattice {
  public:
   Lattice(const Field& field, const Box3& box, double cell) : field_(field), cell_(cell) {
@@ -38,8 +39,9 @@ class Lattice {
     return v;
   }
 
-  /// Whether the surface may pass through the block that starts at this node: false if |value| at its centre is too
-  /// large for a gradient below 3 (Field).
+  /// Whether the zero set may pass through the block whose lowest node is (i, j, k). False if
+  /// |field| at the centre of the block is so large that a field with a gradient below 3 (see
+  /// Field) has no zero in it.
   bool may_cross(int i, int j, int k) const {
     const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
     const double half = kBlock / 2.0;
@@ -60,13 +62,13 @@ struct Node {
   double value = 0;
 };
 
-/// Cuts tetrahedra along the zero set and collects the triangles. Each lattice edge that crosses the zero set gets one
-/// vertex, which its tetrahedra share.
+/// Cuts tetrahedra along the zero set and collects the triangles. Each edge of a tetrahedron that
+/// crosses the zero set gets one vertex, which all tetrahedra at this edge share.
 class Cutter {
  public:
   explicit Cutter(const Lattice& lattice) : lattice_(lattice) {}
 
-  /// `corner` must be positively oriented.
+  /// The determinant of the edges from corner 0 to corners 1, 2 and 3 must be positive.
   void cut(const std::array<Node, 4>& corner) {
     std::array<int, 4> in{}, out{};
     int ins = 0, outs = 0;
@@ -98,7 +100,7 @@ class Cutter {
  private:
   Index vertex(const Node& a, const Node& b) {
     const auto [low, high] = std::minmax(a.index, b.index);
-    // Node indices fit into 32 bits.
+    // Node indices fit into 32 bits: the values of 2³² nodes would take 32 GiB.
     const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
     const auto [entry, is_new] = vertices_.try_emplace(key, static_cast<Index>(mesh.positions.size()));
     if (is_new) {
@@ -122,8 +124,9 @@ class Cutter {
   std::unordered_map<std::uint64_t, Index> vertices_;
 };
 
-/// The six tetrahedra of a cube. The corners of each lie on a path along cube edges from one end of the diagonal to the
-/// other; the entry is the order of the axes along this path.
+/// The six tetrahedra of a cube. The corners of a tetrahedron are the corners of the cube on a path
+/// of three cube edges from one end of the diagonal to the other. Each entry is the order of the
+/// axes along such a path.
 constexpr std::array<std::array<int, 3>, 6> kOrders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
 
 void cut_cell(Lattice& lattice, Cutter& cutter, int i, int j, int k) {
@@ -175,7 +178,6 @@ MirroredMesh join_mirror_image(const Mesh& half) {
       for (const Index v : edge.vertices) on_border[v] = true;
     }
   }
-  // Order: border vertices, the other vertices of the half, then their images in the same order.
   MirroredMesh joined;
   std::vector<Index> place(count), image(count);
   for (std::size_t v = 0; v < count; ++v) {

@@ -26,7 +26,7 @@ struct Mesh {
 
 /// Grid of nu × nv particles: columns i along weft (u), rows j along warp (v). Particle (i, j) has index i + nu * j.
 struct Grid {
-  int nu = 0, nv = 0;                         ///< number of particles along weft and warp, at least 2
+  int nu = 0, nv = 0;                         ///< particle counts, at least 2 (for a rope: nv = 1)
   double lu = 0, lv = 0;                      ///< mean rest spacing along weft and warp [m]
   double weft_grading = 1, warp_grading = 1;  ///< ratio of the last to the first spacing; see graded_fraction()
   Index index(int i, int j) const { return static_cast<Index>(i + nu * j); }

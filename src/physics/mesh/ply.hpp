@@ -22,8 +22,9 @@ struct PlyExtras {
 
 /// Writes positions in double precision and faces as triangles, in binary little endian, through a TemporaryFile. A
 /// quad mesh is written as its triangles, because collision uses these. Triangles through which cloth passes come last;
-/// a comment in the header states their number. Pieces of rope, which are triangles (a, b, b), are written as edges.
-/// Texture coordinates are the properties `s` and `t`, before `values`. Throws what write_file() throws.
+/// if there are any, a comment in the header states their number. Pieces of rope, which are
+/// triangles (a, b, b), are written as edges. `uv` is written as the properties `s` and `t`, before
+/// `values`. Throws Error(output_failed) if `file` cannot be written.
 void write_ply(const std::filesystem::path& file, std::span<const Vec3> positions,
                std::span<const std::array<Index, 3>> triangles, const PlyExtras& extras = {});
 

@@ -13,7 +13,7 @@ double twice_signed_area(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// Projects the polygon along its normal, so that it is counter-clockwise. The normal is a sum of cross products over
-/// all corners (Newell), so that it also suits polygons that are not quite flat.
+/// all corners (Newell), because the polygon may be not quite flat.
 std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> positions) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return positions[corners[k % corners.size()]]; };
   const Vec3& origin = corner(0);
@@ -27,14 +27,16 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
   return flat;
 }
 
-/// Minimum ratios of an ear's height to its longest side, tried one after the other. Rounding errors move corners off a
-/// straight side. An ear at such a corner has hardly any area: later repairs of the mesh would remove the triangle
-/// together with the corner.
+/// Ratios that the height of an ear must exceed, relative to its longest side, tried one after the
+/// other. Rounding errors move corners off a straight side. An ear at such a corner has hardly any
+/// area, and later repairs of the mesh (assets/mending.hpp) would remove it together with the
+/// corner.
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
 /// Whether corner k of the ring is an ear: it is convex, and its triangle, sides included, contains no other corner.
-/// `flatness`: a height, relative to the longest side of the triangle. A corner that is nearer to a side than this
-/// counts as on the side. A triangle with a smaller height is no ear.
+/// `flatness`: a height, relative to the longest side of the triangle. Another corner that is
+/// outside the triangle by at most this height counts as inside. A triangle whose height does not
+/// exceed it is no ear.
 bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vector<Vec2>& flat, double flatness) {
   const std::size_t n = ring.size();
   const Vec2 &a = flat[ring[(k + n - 1) % n]], &b = flat[ring[k]], &c = flat[ring[(k + 1) % n]];
@@ -43,7 +45,8 @@ bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vect
   if (!(twice_signed_area(a, b, c) > slack * std::max({ab, bc, ca}))) return false;
   for (const std::size_t other : ring) {
     const Vec2& p = flat[other];
-    // Skip the corners of the triangle, and other corners at the same places, where the polygon touches itself.
+    // Skip the corners of the triangle. Also skip other corners at the same places: there the
+    // polygon touches itself.
     if (p == a || p == b || p == c) continue;
     if (twice_signed_area(a, b, p) >= -slack * ab && twice_signed_area(b, c, p) >= -slack * bc &&
         twice_signed_area(c, a, p) >= -slack * ca)
@@ -77,7 +80,8 @@ bool in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
 }
 
 /// Flips edges inside the polygon until each is locally Delaunay (Lawson, "Software for C1 Surface Interpolation",
-/// 1977). In narrow polygons with many corners, ear clipping makes needles around one vertex; flips widen them.
+/// 1977), in at most kMaxFlipRounds rounds. In narrow polygons with many corners, ear clipping
+/// makes needles around one vertex; flips widen them.
 void flip_edges(std::vector<Corners>& triangles, const std::vector<Vec2>& flat) {
   bool has_flipped = true;
   for (int round = 0; has_flipped && round < kMaxFlipRounds; ++round) {
@@ -104,7 +108,8 @@ void flip_edges(std::vector<Corners>& triangles, const std::vector<Vec2>& flat) 
   }
 }
 
-/// Cuts a polygon into ears, whose corners index into `flat`. `flatness`: ratios such as kMinEarHeightRatios.
+/// Cuts a polygon into ears. Their corners are indices into `flat`. `flatness`: as in is_ear(), in
+/// the order in which the values are tried.
 std::vector<Corners> clip_ears(const std::vector<Vec2>& flat, std::span<const double> flatness) {
   std::vector<std::size_t> ring(flat.size());
   for (std::size_t k = 0; k < ring.size(); ++k) ring[k] = k;
@@ -112,8 +117,8 @@ std::vector<Corners> clip_ears(const std::vector<Vec2>& flat, std::span<const do
   std::size_t k = 0, tried = 0;
   while (ring.size() > 3) {
     const std::size_t n = ring.size();
-    // Each round over all corners accepts flatter ears. If the last round finds no ear either, the polygon is not
-    // simple; then cut any corner, so that the loop ends.
+    // Each round over all corners uses the next value of `flatness`. If the last round finds no
+    // ear, the polygon crosses itself or has no area: then cut corner k, so that the loop ends.
     const std::size_t round = tried / n;
     if (round < flatness.size() && !is_ear(ring, k, flat, flatness[round])) {
       k = (k + 1) % n;

@@ -52,7 +52,8 @@ class Remesher {
   }
 
  private:
-  /// Adds a vertex in the middle of every edge that is too long, and cuts the triangles at these vertices.
+  /// Adds a vertex in the middle of every edge that is too long (kMaxEdgeRatio), projects it to the
+  /// surface, and cuts the triangles at these vertices.
   void split_long_edges() {
     const EdgeSet edges = collect_edges(triangles_);
     std::vector<Index> middle(edges.edges.size(), -1);
@@ -141,13 +142,14 @@ class Remesher {
     std::vector<Index> common;
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
     if (common.size() != (on_border ? 1U : 2U)) return false;
-    // No inner edge may join two border vertices: its mirror image would be the edge itself.
+    // No inner edge may join two border vertices: its mirror image would have the same two
+    // vertices, so four triangles would share this edge after join_mirror_image().
     return on_border || !border_[z(keep)] ||
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
 
-  /// Whether `v` may move to p: the triangles at `v` that do not contain `other` turn by at most 60°, and get no edge
-  /// that is too long.
+  /// Whether `v` may move to p: the normals of the triangles at `v` that do not contain `other`
+  /// turn by at most 60°, and no edge at `v` of these triangles becomes too long (kMaxEdgeRatio).
   bool shape_allows(Index v, Index other, const Vec3& p) const {
     for (const Index t : around_[z(v)]) {
       Triangle corner = triangles_[z(t)];
@@ -197,7 +199,8 @@ class Remesher {
     }
   }
 
-  /// Makes edges locally Delaunay: flips an edge if the two angles opposite to it add up to more than π.
+  /// Flips each edge whose two opposite angles add up to more than π (it is not locally Delaunay),
+  /// unless the new edge exists already, would join two border vertices, or would fold the surface.
   void flip_edges() {
     for (const Edge& edge : edges_) {
       if (edge.triangles[1] < 0) continue;
@@ -230,7 +233,8 @@ class Remesher {
     if (angle_at(pc, pa, pb) + angle_at(pd, pa, pb) < std::numbers::pi + 1e-6) return;
     const std::vector<Index> of_c = neighbours(c);
     if (std::binary_search(of_c.begin(), of_c.end(), d)) return;
-    // Avoid folds: the new triangles must face the same way as the old ones.
+    // Avoid folds: the normals of the new triangles may deviate by at most 45° from the mean normal
+    // of the old ones.
     const Vec3 normal = (pb - pa).cross(pc - pa) + (pd - pa).cross(pb - pa);
     const Vec3 first = (pd - pa).cross(pc - pa), second = (pb - pd).cross(pc - pd);
     if (first.dot(normal) < 0.7 * first.norm() * normal.norm() ||
@@ -245,7 +249,8 @@ class Remesher {
     around_[z(d)].push_back(left);
   }
 
-  /// Moves each vertex along the surface toward the weighted mean of its neighbours.
+  /// Moves each vertex along the surface toward the weighted mean of its neighbours; a border
+  /// vertex, toward that of its neighbours on the border.
   void relax() {
     std::vector<Vec3> normals(x_.size());
     vertex_normals(triangles_, x_, normals);

@@ -8,7 +8,8 @@
 namespace weft::mesh {
 namespace {
 
-// Integrals over a solid: ∫1, ∫x, ∫x xᵀ. Summed over the tetrahedra between the origin and each surface triangle.
+// Integrals over a solid: ∫1, ∫x, ∫x xᵀ. Each is the sum over the tetrahedra between the origin and
+// the surface triangles.
 struct Moments {
   double volume = 0;
   Vec3 first = Vec3::Zero();

@@ -10,11 +10,12 @@
 
 namespace weft::mesh {
 
-/// Four particles of equal mass that together have the mass, the centre of mass and the moments of inertia of a body.
-/// They are at c + R diag(s) t_k: c is the centre of mass, the columns of R are the principal axes, s are the standard
-/// deviations of the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine Body
-/// Dynamics", 2022) is a weighted sum of the four particles, so the body and the four particles have exactly the same
-/// inertia.
+/// Four particles, each with a quarter of the mass of a body of uniform density, that together have
+/// the centre of mass and the moments of inertia of the body. They are at c + R diag(s) t_k: c is
+/// the centre of mass, the columns of R are the principal axes, s are the standard deviations of
+/// the mass along them, and t_k = corner(k). Every point of an affine body (Lan et al., "Affine
+/// Body Dynamics", 2022) is a weighted sum of the four particles, so the body and the four
+/// particles have exactly the same inertia.
 class RigidFrame {
  public:
   static constexpr std::size_t kParticles = 4;
@@ -23,7 +24,8 @@ class RigidFrame {
   /// Corner k of the regular tetrahedron with coordinates ±1.
   static Vec3 corner(std::size_t k);
 
-  /// The body is the volume inside a closed mesh. Throws std::invalid_argument if the mesh has a border or no volume.
+  /// The body is the volume inside a closed mesh. Throws std::invalid_argument if the mesh is
+  /// empty, has a border, or encloses no volume.
   RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
   double volume() const { return volume_; }               ///< [m³]

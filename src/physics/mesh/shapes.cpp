@@ -24,8 +24,8 @@ void add_quad(Mesh& mesh, const Quad& q, bool first_diagonal) {
   for (const Triangle& t : split_quad(q, first_diagonal)) mesh.topology.triangles.push_back(t);
 }
 
-/// Number of pieces of about the length `edge` into which `length` is cut; at most `limit`, because long thin bars
-/// would otherwise get thousands of rows.
+/// Number of pieces of about the length `edge` into which `length` is cut, from 1 to `limit`.
+/// Without the limit, long thin bars would get thousands of rows.
 int piece_count(double length, double edge, int limit) {
   return static_cast<int>(std::clamp(std::round(length / edge), 1.0, static_cast<double>(limit)));
 }
@@ -106,7 +106,8 @@ Mesh make_sphere(double radius, int segments) {
   const int pieces_per_side = 2 * std::max(1, static_cast<int>(std::lround(segments / (2 * 5.24))));
   const Mesh coarse = icosahedron();
   Mesh mesh;
-  // The key of a vertex is the integer weights of the coarse corners, so that neighbouring faces share the vertex.
+  // The key of a vertex lists the coarse corners with their integer weights, so that neighbouring
+  // faces share the vertices on their common side.
   std::map<std::array<std::array<int, 2>, 3>, Index> known;
   for (const Triangle& side : coarse.topology.triangles) {
     const auto vertex = [&](int b, int c) {

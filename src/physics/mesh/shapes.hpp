@@ -1,5 +1,6 @@
-// Procedural bodies, with z up and centred on the origin. All but the plane are watertight and have outward,
-// counter-clockwise triangles. Vertices of round parts lie on the exact surface, so a convex shape contains its mesh.
+// Procedural bodies, with z up. The centre is at the origin; for the half pipe, the middle of its
+// axis. All but the plane are watertight, with triangles that are counter-clockwise seen from
+// outside. Vertices of round parts lie on the exact surface, so a convex shape contains its mesh.
 #pragma once
 
 #include "physics/mesh/mesh.hpp"
@@ -7,7 +8,8 @@
 namespace weft::mesh {
 
 /// Geodesic sphere with about `segments` edges around it: an icosahedron whose edges are cut into an even number of
-/// pieces. The six points on the axes are vertices, so the bounding box is that of the sphere.
+/// pieces, with all vertices moved radially onto the sphere. The six points on the axes are
+/// vertices, so the bounding box is that of the sphere.
 Mesh make_sphere(double radius, int segments);
 
 /// Box with edge lengths `size` [m]. Its edges and corners are rounded with the radius `bevel` [m], at most 0.49 of the
@@ -16,7 +18,7 @@ Mesh make_sphere(double radius, int segments);
 Mesh make_box(const Vec3& size, double bevel, int segments);
 
 /// Base at z = -height / 2, tip at z = +height / 2. `segments`: number of edges around the axis; smaller values than 3
-/// count as 3 (the same for torus and cylinder).
+/// count as 3 (also for the torus and the cylinder).
 Mesh make_cone(double radius, double height, int segments);
 
 /// Ring around the z axis. `radius` is the distance of the tube's centre line from the axis; `tube_radius` < `radius`.
@@ -30,7 +32,7 @@ Mesh make_cylinder(double radius, double height, int segments);
 /// faces, at least two.
 Mesh make_half_pipe(double radius, double length, double thickness, int segments);
 
-/// One quad in the plane z = 0, front toward +z.
+/// One quad in the plane z = 0, front toward +z. `size`: edge lengths along x and y [m].
 Mesh make_plane(const Vec2& size);
 
 }  // namespace weft::mesh

@@ -32,7 +32,8 @@ struct Tie {
   double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
 };
 
-/// Factors of one triangle on the in-plane stiffness, bending stiffness and mass of its cloth.
+/// Factors by which one triangle multiplies the in-plane stiffness, bending stiffness and areal
+/// density of its cloth.
 struct Reinforcement {
   double stretch = 1, bend = 1, density = 1;
 
@@ -60,22 +61,24 @@ double rest_area(const Sheet& sheet, std::size_t triangle);
 /// succeeded at a grading of 50, none at 100.
 inline constexpr double kMaxUnevenness = 80;
 
-/// Triangles of a sheet whose smallest height is below (longest edge of the sheet) / kMaxUnevenness.
+/// Triangles of a sheet whose smallest height at rest is below (longest edge of the sheet) /
+/// kMaxUnevenness.
 struct FlatTriangles {
-  std::size_t count = 0, flattest = 0;  ///< number of them; index of the triangle with the smallest height
-  double least_height = 0;              ///< height of triangle `flattest` [m]
+  std::size_t count = 0, flattest = 0;  ///< their number; triangle with the smallest height of all
+  double least_height = 0;              ///< height of `flattest` [m]; infinite without triangles
   double longest_edge = 0;              ///< [m]
 };
 FlatTriangles find_flat_triangles(const Sheet& sheet);
 
 /// Makes a sheet whose rest shape is the mesh. In each triangle, the weft runs along the projection of the x axis; in
 /// triangles nearly perpendicular to that axis, along the cross product of the y axis and the normal. Thus a flat mesh
-/// in the x-y plane has x as weft and y as warp. Each triangle has its own material coordinates.
+/// in the x-y plane whose normals point toward +z has x as weft and y as warp. Each triangle has
+/// its own material coordinates.
 Sheet make_sheet_from_mesh(const Mesh& mesh);
 
 /// Smallest height of a triangle at rest [m].
 double height(const Sheet& sheet, std::size_t triangle);
-/// Smallest height of all triangles [m].
+/// Smallest height of all triangles at rest [m]; infinite without triangles.
 double min_height(const Sheet& sheet);
 
 /// How each cell of a grid is cut.

@@ -46,7 +46,8 @@ struct TopologyReport {
 /// Checks any index list. Triangles that are out of range or degenerate do not contribute edges.
 TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_count);
 
-/// The number of the connected component of each vertex. Components are numbered in the order of their first vertices.
+/// The number of the connected component of each vertex. Components are numbered in the order of
+/// their first vertices; a vertex without triangles is a component.
 std::vector<Index> components(std::span<const Triangle> triangles, std::size_t vertex_count);
 
 }  // namespace weft::mesh

@@ -6,7 +6,7 @@
 namespace weft::mesh {
 namespace {
 
-/// Maximum number of cells, except for rounding (3 %). A body of 1.8 m in cells of 3 cm has about 70,000.
+/// Maximum number of cells; rounding up along each axis can add 3 %.
 constexpr double kMaxCells = 1e6;
 
 }  // namespace

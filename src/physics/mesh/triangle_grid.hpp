@@ -20,11 +20,12 @@ struct Entry {
 /// Finds crossings of straight paths with triangles. `triangles` and `x` (vertex positions) must outlive the grid.
 class TriangleGrid {
  public:
-  /// `cell`: edge length of a cubic cell [m]; enlarged if there would be too many cells.
+  /// `cell`: edge length of a cubic cell [m]; enlarged if the longest side of the bounding box has
+  /// more than 100 cells.
   TriangleGrid(std::span<const Triangle> triangles, std::span<const Vec3> x, double cell);
 
   /// Of the triangles that the path from `from` to `to` crosses from their front, finds the first one for which
-  /// passes(index) is true.
+  /// passes(index) is true. A crossing exactly at `to` does not count.
   template <class Passes>
   Entry find_first_crossing(const Vec3& from, const Vec3& to, const Passes& passes) const {
     Entry entry{1, -1};

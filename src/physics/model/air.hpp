@@ -20,18 +20,18 @@ struct Gusts {
 /// Gravity and wind at one time.
 struct PhysicsKey {
   double time = 0;     ///< [s], strictly increasing
-  Vec3 gravity, wind;  ///< [m/s²]; [m/s]
+  Vec3 gravity, wind;  ///< [m/s²]; velocity of the air [m/s]
 };
 
 struct Physics {
   Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default is for z up
   double air_density = 1.2;   ///< [kg/m³]; 0: no air
-  Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
+  Vec3 wind{0, 0, 0};         ///< mean velocity of the air [m/s]
   Gusts gusts;
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
-  std::vector<PhysicsKey> keys;  ///< replace `gravity` and `wind`; empty: both are constant
+  std::vector<PhysicsKey> keys;  ///< if any, they replace `gravity` and `wind`
 
-  /// Largest magnitude of gravity at any key or, without keys, of `gravity` [m/s²].
+  /// Largest magnitude of gravity of all keys; without keys, the magnitude of `gravity` [m/s²].
   double largest_gravity() const {
     double largest = keys.empty() ? gravity.norm() : 0;
     for (const PhysicsKey& key : keys) largest = std::max(largest, key.gravity.norm());
@@ -41,18 +41,20 @@ struct Physics {
 
 struct FanKey {
   double time = 0;                             ///< [s], strictly increasing
-  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; wind direction, of any length but 0
-  double speed = 5;                            ///< speed of the air on the axis of the cone, at the disc [m/s]
+  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; axis of the cone,
+                                               ///< of any length but 0
+  double speed = 5;                            ///< speed of the air at the centre of the disc [m/s]
 };
 
-/// A fan: wind in a cone; see Weather.
+/// A fan: it adds a flow of air in a cone to the wind (see Weather).
 struct Fan {
   std::string name;
   std::vector<FanKey> keys{FanKey{}};  ///< at least one; a fan with a single key never changes
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
   double radius = 0.25;                                                ///< of the outlet disc [m]
   double angle = 24;                                                   ///< full opening angle of the cone [degrees]
-  double falloff = 1;  ///< exponent n: the speed on the axis falls as 1 / (distance from the cone's apex)ⁿ
+  double falloff = 1;  ///< n: the speed on the axis is proportional to 1 / (distance from the
+                       ///< apex)ⁿ
 };
 
 }  // namespace weft::model

@@ -7,16 +7,18 @@
 namespace weft::model {
 namespace {
 
-// Shells of wave numbers k around k_e; the wave number of each shell is kRatio times that of the one before.
-// kShellsBelow shells are below k_e. 1 / k ranges from four integral lengths to a thirtieth of one. Waves with larger
-// k, a tenth of the spectrum's energy, are left out.
+// The spectrum is divided into kShells shells of wave numbers k. The wave number of each shell is
+// kRatio times that of the shell before; kShellsBelow shells are below k_e. 1 / k ranges from four
+// integral lengths to a thirtieth of one. Waves with larger k, a tenth of the spectrum's energy,
+// are left out.
 constexpr int kShells = 13;
 constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
-// k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), summed over these shells with energies E and wave numbers k
-// (relative to k_e). For the whole spectrum it is 0.747.
+// k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), summed over these shells with energies E
+// and wave numbers k (relative to k_e). For the whole spectrum, this product is 0.747.
 constexpr double kLengthFactor = 0.837;
-// Rate at which waves change, relative to the turnover rate of eddies (Fung et al., 1992, Section 2).
+// Rate at which the phase of a wave changes in moving air, relative to the turnover rate of eddies
+// of its size (Fung et al., 1992, Section 2).
 constexpr double kUnsteadiness = 0.5;
 
 // Von Kármán's spectrum up to a factor; `k`: wave number relative to k_e.
@@ -36,16 +38,17 @@ GustField::GustField(const Gusts& gusts, const Vec3& wind) {
     energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());
     sum += energies.back();
   }
-  // The generator gives the same numbers on all platforms; the distributions of the standard library do not.
+  // The standard specifies the numbers of this generator, but not those of its distributions.
   std::mt19937_64 generator(static_cast<std::uint64_t>(gusts.seed));
   const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // in [0, 1)
   for (int shell = 0; shell < kShells; ++shell) {
     const double k = wave_numbers[shell] * k_e;
-    // Spectral density E(k), whose integral over k is 3/2 speed²; the shell has the width k ln(kRatio).
+    // Spectral density E(k). Its integral over k is 3/2 speed²; the width of the shell is k
+    // ln(kRatio).
     const double energy = 1.5 * gusts.speed * gusts.speed * energies[shell] / sum / (k * std::log(kRatio));
     const double turnover = std::sqrt(k * k * k * energy);
-    // Three waves along random perpendicular axes, the amplitude of each along the next axis. Their mean square is
-    // isotropic.
+    // Three waves along random perpendicular axes, the amplitude of each along the next axis: then
+    // all components of the velocity have the same mean square.
     const double a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random(), c = random();
     const Mat3 axes = Quat(std::sqrt(1 - c) * std::sin(a), std::sqrt(1 - c) * std::cos(a), std::sqrt(c) * std::sin(b),
                            std::sqrt(c) * std::cos(b))

@@ -8,7 +8,7 @@
 namespace weft::model {
 namespace {
 
-/// Vertices per task; a task takes some ten microseconds.
+/// Vertices per task; a task takes about ten microseconds.
 constexpr std::size_t kPlacedPerTask = 4096;
 
 /// Position of a number in a list; nothing if the list does not contain it.

@@ -10,7 +10,8 @@ namespace weft::model {
 /// Minimum length of a piece between two particles [diameters].
 inline constexpr double kMinRopePiece = 1.5;
 
-/// Rest length of a rope at one time. A change of length scales all pieces alike.
+/// Rest length of a rope at one time. If the length changes, the rest lengths of all pieces change
+/// by the same factor.
 struct RopeKey {
   double time = 0;    ///< [s], strictly increasing
   double length = 1;  ///< rest length [m]
@@ -25,9 +26,9 @@ struct Rope {
   double bend = 0;              ///< bending stiffness EI [N·m²]
   double damping = 0;           ///< viscosity of stretch and bending, relative to their stiffness [s]
   double diameter = 0;          ///< contact diameter [m]
-  double drag = 0;              ///< air resistance coefficient of a cylinder, for motion across the rope
+  double drag = 0;              ///< drag coefficient of a cylinder, for motion across the rope
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
-  std::vector<RopeKey> keys;                                           ///< of its length; empty: constant length
+  std::vector<RopeKey> keys;  ///< of the rest length; empty: the sum of `lengths`
 };
 
 }  // namespace weft::model

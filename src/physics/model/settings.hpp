@@ -7,24 +7,32 @@
 
 namespace weft::model {
 
-/// `kMinStep`: smallest time step that a scene may give, and smallest time between two keys [s]. `kMaxStepsInFrame`:
-/// largest number of steps in a frame, so that an int can count them.
+/// `kMinStep`: smallest Time::step that a scene may give, and smallest time between two keys [s].
+/// `kMaxStepsInFrame`: largest number of steps in a frame, so that an int can count them.
 inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
 
 struct Time {
   double fps = 25;                    ///< frames per second; frame k is at the time k / fps
-  int preroll_frames = 0;             ///< frames before frame 0; the run begins with them
-  double step = 0.01;                 ///< maximum time step [s]; frames are divided into equal steps, at most this long
-  std::optional<double> tolerance{};  ///< replaces `step`: allowed local error of positions in one step [m]
+  int preroll_frames = 0;             ///< number of frames before frame 0, with which the run
+                                      ///< begins
+  /// Maximum time step [s]: a frame is divided into the fewest equal steps that are not longer.
+  /// Exception: with implicit Euler, a frame in which everything rests may be one step.
+  double step = 0.01;
+  std::optional<double> tolerance{};  ///< if given, step lengths follow from this allowed local
+                                      ///< error of positions in one step [m], not from `step`
   integrator::Method integrator = integrator::Method::implicit_euler;
 };
 
 struct Solver {
-  double newton_tolerance = 0.4;  ///< error that the solver may leave, relative to the local truncation error
-  int newton_iterations = 60;     ///< maximum per step; a step that needs more is rejected
-  double linear_tolerance = 0.1;  ///< allowed error of a linear solve, relative to its solution, in the energy norm
+  double newton_tolerance = 0.4;  ///< error that the solver may leave in a step, relative to the
+                                  ///< local truncation error, with a visibility threshold as floor
+  int newton_iterations = 60;     ///< maximum in one solve, of which a step may need several; if it
+                                  ///< is reached without a solution, the step is rejected
+  double linear_tolerance = 0.1;  ///< allowed error of a linear solve, relative to its solution,
+                                  ///< both in the energy norm
   int linear_iterations = 1000;   ///< maximum number of conjugate gradient iterations in one linear solve
-  int halvings = 8;               ///< how often a rejected step is repeated shorter before the run ends with an error
+  int halvings = 8;               ///< how often a step may be rejected and repeated with a shorter
+                                  ///< length; at the next rejection, the run ends with an error
 };
 
 }  // namespace weft::model

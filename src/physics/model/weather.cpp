@@ -17,7 +17,7 @@ Weather::Weather(const Model& model) : gravity_(model.physics.gravity), wind_(mo
     keys_.emplace(model.physics.interpolation, std::move(times), std::move(values));
   }
   if (!model.air_acts()) return;
-  // Gusts move with Physics::wind, even if keys replace the wind itself.
+  // Gusts move with Physics::wind even if keys replace this velocity elsewhere.
   if (model.physics.gusts.speed > 0) gusts_.emplace(model.physics.gusts, model.physics.wind);
   for (const model::Fan& fan : model.fans) {
     std::vector<double> times;

@@ -10,17 +10,19 @@
 
 namespace weft::model {
 
-/// Gravity is the same everywhere. The velocity of the air is the sum of wind, gusts and fans.
+/// Gravity is the same everywhere. The velocity of the air is the sum of wind, gusts and fans. If
+/// Model::air_acts() is false, gusts and fans are left out.
 ///
-/// A fan moves air through its outlet disc into a cone. The apex of the cone is radius / tan(angle / 2) behind the
-/// disc. In front of the disc, the air moves away from the apex with the speed
+/// A fan moves air through its outlet disc into a cone, whose apex is radius / tan(angle / 2)
+/// behind the disc. In front of the disc, the fan adds a velocity away from the apex, of magnitude
 ///
 ///     u = speed · (a / s)^falloff · (1 − q²)²,
 ///
-/// where s and a are the distances of the point and of the disc from the apex along the axis, and q is the distance
-/// from the axis relative to the radius of the cone at s. A free round jet has an opening angle of about 24 degrees,
-/// and its speed falls as 1 / s (Pope, Turbulent Flows, 2000, section 5.1). (1 − q²)² approximates the jet's profile
-/// and falls to 0 with zero slope at the edge of the cone. Behind the disc and outside the cone, the fan adds no
+/// where s and a are the distances of the point and of the disc from the apex along the axis, and q
+/// is the distance of the point from the axis, relative to the radius of the cone at s. A free
+/// round jet has an opening angle of about 24 degrees, and its speed falls as 1 / s (Pope,
+/// Turbulent Flows, 2000, section 5.1). (1 − q²)² approximates the jet's profile and falls to 0
+/// with zero slope at the edge of the cone. Behind the disc and outside the cone, the fan adds no
 /// velocity.
 class Weather {
  public:
@@ -28,7 +30,8 @@ class Weather {
 
   /// Gravity at time t [s], in [m/s²].
   Vec3 gravity(double t) const { return keys_ ? Vec3(keys_->at(t).value.head<3>()) : gravity_; }
-  /// Whether keys, gusts or fans make the air differ from Model::physics.wind at some time or place.
+  /// Whether there are keys, gusts or fans. If not, the velocity of the air is Model::physics.wind
+  /// at all times and places.
   bool differs_from_wind() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
   /// Velocity of the air at x [m] and time t [s], in [m/s].
   Vec3 air(const Vec3& x, double t) const;
@@ -37,7 +40,7 @@ class Weather {
 
  private:
   struct Fan {
-    motion::Spline<7> track;  // position, direction, speed
+    motion::Spline<7> track;  // position of the disc, direction, speed
     double slope;             // tangent of half the opening angle
     double apex;              // distance of the apex behind the disc [m]
     double falloff;

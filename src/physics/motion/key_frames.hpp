@@ -19,9 +19,9 @@ struct VertexMotion {
 class KeyFrames {
  public:
   /// `first_time`: time of the first key; `interval`: time between keys, positive [s]. `keys`: positions of all
-  /// vertices at each key, at least one. `from_rest`: whether cubic splines start with zero velocity, as the body does
-  /// not move before the first key; otherwise they start with zero acceleration. Cubic splines always end with zero
-  /// acceleration.
+  /// vertices at each key, at least one. `from_rest`: if true, cubic splines start with zero
+  /// velocity, so that the velocity is continuous at the first key; if false, they start with zero
+  /// acceleration. Cubic splines always end with zero acceleration.
   KeyFrames(Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
             bool from_rest);
 

@@ -17,8 +17,8 @@ struct Pose {
   std::optional<Vec3> angles{};
 };
 
-/// Difference of Pose::angles of two poses [degrees]; nothing if one of them has no angles. The identity rotation has
-/// the angles 0 if none are given.
+/// Pose::angles of `to` minus those of `from` [degrees]; nothing if either pose has no angles. A
+/// pose without angles whose rotation is the identity counts as one with the angles 0.
 std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
 /// The rotation R that maximises tr(Rᵀ M), for M = `matrix`. It is the rotation nearest to M in the Frobenius norm. If

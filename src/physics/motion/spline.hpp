@@ -33,11 +33,13 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
 }
 
 /// Slopes at the keys of the natural cubic spline, limited per component so that the curve stays between the values of
-/// neighbouring keys. `h`, `d`: as in natural_second_derivatives(). If the segments on both sides of a key have slopes
-/// d of different signs, the slope at the key is 0. Otherwise it has their sign, and its magnitude is at most three
-/// times the smaller of their magnitudes (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer.
-/// Anal. 17, 1980; for slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). Without the limit, an object may
-/// move backward before it begins to move forward.
+/// neighbouring keys. `h`, `d`: as in natural_second_derivatives(). If the slopes d of the segments
+/// on both sides of a key differ in sign or one of them is 0, the slope at the key is 0. Otherwise
+/// the slope at the key is limited to the range from 0 to three times the d of smaller magnitude
+/// (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer. Anal. 17, 1980; for
+/// slopes of splines: Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). At the first and last key, the
+/// only adjacent segment counts as both. Without the limit, an object may move backward before it
+/// begins to move forward.
 template <class Value>
 std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
   const std::size_t n = h.size();
@@ -60,8 +62,10 @@ inline std::size_t find_segment(std::span<const double> times, double t) {
 }
 
 /// A vector-valued function of time through keys: piecewise linear, or cubic with the slopes of slopes_between_keys().
-/// The cubic has a continuous first derivative; its second derivative is continuous at keys where no slope is limited.
-/// Before the first key and from the last one on, the value is that of this key, and derivatives are zero.
+/// The cubic has a continuous first derivative between the first and the last key. Its second
+/// derivative is continuous at a key if the slopes at this key and at both neighbouring keys are
+/// not limited. Before the first key and from the last one on, the value is that of this key, and
+/// derivatives are zero.
 template <int Dim>
 class Spline {
  public:

@@ -44,7 +44,8 @@ Vec3 log_near(const Quat& q, const Vec3& guess) {
 std::optional<Vec3> turn_of_one_angle(const Pose& from, const Pose& to) {
   const std::optional<Vec3> change = change_of_angles(from, to);
   if (!change || (change->array() != 0).count() > 1) return std::nullopt;
-  // The rotations are applied in the order x, y, z: those about y and z turn the axis of x, that about z the axis of y.
+  // The rotations are applied in the order x, y, z. Thus the rotations about y and z turn the x
+  // axis, and the rotation about z turns the y axis.
   const Vec3 angles = kPi / 180 * to.angles.value_or(Vec3::Zero());
   Vec3 axis = Vec3::UnitZ();
   if (change->x() != 0) axis = Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) * Vec3::UnitX();
@@ -61,7 +62,8 @@ std::vector<Vec3> rotation_vectors_between(const std::vector<Pose>& poses) {
       continue;
     }
     Vec3 turn = log(poses[i + 1].rotation * poses[i].rotation.conjugate());
-    // The sign of a half turn's axis is rounding noise: use the direction of the previous turn.
+    // For half a turn, rounding errors decide the sign of the axis: take the sign for which the
+    // axis is closer to that of the previous turn.
     if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
       turn -= 2 * kPi * turn.normalized();
     turns.push_back(turn);
@@ -151,9 +153,9 @@ Track::Track(const PoseTrack& track, const Pose& rest)
       rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
-// A time that differs from that of a key only by rounding counts as that of the key. Otherwise a track whose last key
-// this is would differ by rounding from a track with further keys. Contacts of cloth amplify such differences to
-// millimetres.
+// A time within 1e-12 s of a key counts as the time of the key. Otherwise a track that ends at this
+// key and a track with further keys would give poses that differ by rounding errors. Contacts of
+// cloth amplify such differences to millimetres.
 PoseSample Track::at(double t) const {
   constexpr double kRounding = 1e-12;  // [s]
   const auto key = std::ranges::lower_bound(times_, t - kRounding);

@@ -30,16 +30,18 @@ struct PoseSample {
 /// derivatives. `own`: motion of the object if the parent stays at `parent_start`.
 PoseSample compose(const PoseSample& parent, const Pose& parent_start, const PoseSample& own);
 
-/// Interpolates rotations through keys. From one key to the next, the object rotates by the smallest possible angle; if
-/// this is half a turn, it rotates in the direction of the rotation before the first of the two keys. If both keys have
-/// Euler angles (change_of_angles() in pose.hpp) and at most one of the three differs, the object rotates by that
-/// difference instead, including whole turns.
+/// Interpolates rotations through keys. From one key to the next, the object rotates by the
+/// smallest possible angle. If this angle is half a turn, both directions are possible; then the
+/// object takes the one closer to its rotation in the segment before. If both keys have Euler
+/// angles (change_of_angles() in pose.hpp) and at most one of the three differs, the object rotates
+/// by that difference instead, including whole turns.
 ///
 /// Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions
 /// with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with
 /// simple high order derivatives", SIGGRAPH 1995). The angular velocity is then continuous; at the keys it is
-/// slopes_between_keys() (spline.hpp) of the rotation vectors between keys. Therefore a rotation about one axis equals
-/// the Spline of its angle.
+/// given by slopes_between_keys() (spline.hpp), with the rotation vectors between keys as
+/// differences of values. Therefore a rotation about a fixed axis has the angle that a Spline
+/// through the angles of the keys has.
 class RotationSpline {
  public:
   struct Sample {

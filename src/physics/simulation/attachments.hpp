@@ -14,8 +14,9 @@
 
 namespace weft::simulation {
 
-/// At its `begin` time, an attachment (model::Attachment) ties each of its particles to the nearest point on its
-/// target. The point moves with the target: it is a weighted sum, with constant weights, of the corners of a triangle
+/// In the first step that ends at or after its `begin` time, an attachment (model::Attachment) ties
+/// each of its particles to the nearest point on its target at the start of this step. The point
+/// moves with the target: it is a weighted sum, with constant weights, of the corners of a triangle
 /// or, if forces move the target body, of the four particles of its frame (mesh::RigidFrame).
 ///
 /// If the distance l between the particle and its point exceeds the rest length L, a spring pulls with the force k (l −
@@ -34,8 +35,8 @@ class Attachments {
   /// that begin, and computes the positions of their points on key-framed bodies at t1. `masses`: of all particles
   /// [kg].
   void begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses);
-  /// Whether the same attachments hold at t0 and t1 [s], and their triangles on key-framed bodies have the same
-  /// positions at both times.
+  /// Whether the same attachments hold at t0 and t1 [s], and the triangles of key-framed bodies to
+  /// which they tie particles have the same positions at both times.
   bool are_constant_between(double t0, double t1) const;
 
   /// Adds the spring forces to `force` [N]; `x_end`: all particles at the end of the step [m].
@@ -45,10 +46,11 @@ class Attachments {
   /// Energy of the springs [J].
   double energy(std::span<const Vec3> x_end) const;
 
-  /// Accepts the step that ends at x [m]: computes the load of each attachment, and breaks those above their breaking
-  /// load. Returns a warning for each attachment that was tied in this step and pulls particles faster than
-  /// kMaxHoldSpeed (pins.hpp).
+  /// Accepts the step that ends at x [m]: computes the load of each attachment, and breaks the
+  /// attachments whose load exceeds their breaking load. Returns a warning for each attachment that
+  /// was tied in this step and pulls particles faster than kMaxHoldSpeed (pins.hpp).
   std::vector<std::string> accept(std::span<const Vec3> x);
+  /// The load of each attachment at the end of the last accepted step.
   std::vector<AttachmentLoad> measure() const;
 
   /// Copies the state of attachments of the same name. `cloths[k]`: number, in this object, of cloth k of `there`.

@@ -52,8 +52,8 @@ double max_extension(const model::Material& m) {
   return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
 }
 
-/// Indices of one box of a lattice over the rest shape, from which build_aggregates() makes aggregates: along normal,
-/// warp and weft of a grid, or along z, y and x for triangles.
+/// Indices of one box of a lattice that divides the rest shape: along normal, warp and weft of a
+/// grid, or along z, y and x for triangles. build_aggregates() makes aggregates from such boxes.
 using Box = std::array<int, 3>;
 struct Lattice {
   std::vector<Box> boxes;       // of each particle, or of each box of the finer lattice
@@ -80,7 +80,8 @@ Lattice lattice_of(const model::Cloth& cloth) {
 }
 
 // Doubles each side of the boxes that is at most √2 times the shortest one (of axes with several boxes), so that sides
-// become more equal. Cloth is stiffest between close particles, so these are merged first.
+// become more equal. Cloth is stiffest between particles that are close together, so these are
+// merged first.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -266,7 +267,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
 
 // Divides each part into ranges that threads evaluate in parallel. If a part has more ranges than there are threads,
 // the number of its ranges is a multiple of the number of threads. Each range evaluates all forces on its particles, so
-// a force between two ranges is evaluated twice: a tenth of all forces if a range has 1,024 particles in 16 rows.
+// a force between particles of two ranges is evaluated in both.
 void ClothSystem::divide_into_ranges() {
   const Index threads = thread_count();
   for (std::size_t c = 0; c < parts(); ++c) {

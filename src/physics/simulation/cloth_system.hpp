@@ -28,8 +28,8 @@ namespace weft::simulation {
 
 /// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
 /// each body that forces move: its frame (mesh::RigidFrame). A part is a cloth or such a frame. Besides their
-/// arguments, forces depend on state that sew(), inflate() and hold() update: rest shapes of cloth that is being sewn,
-/// rope lengths, ties, enclosed air, and the set of held particles.
+/// arguments, forces depend on state that sew(), inflate(), hold() and accept() update: rest shapes
+/// of cloth that is being sewn, rope lengths, ties, enclosed air, and the set of held particles.
 class ClothSystem {
  public:
   explicit ClothSystem(const model::Model& model);
@@ -41,7 +41,7 @@ class ClothSystem {
   Index first_particle(std::size_t part) const { return first_[part]; }
   /// First frame particle of each body of the model; −1 for a body without a frame.
   std::vector<Index> first_of_frames(const model::Model& model) const;
-  /// Smallest distance between neighbouring particles of all cloths [m].
+  /// Smallest model::Cloth::spacing of all cloths [m]; infinite without cloths.
   double spacing() const { return spacing_; }
 
   /// Sets the gravity that cancel_weight_of_sewn_cloth() uses in the following steps [m/s²].
@@ -50,7 +50,8 @@ class ClothSystem {
   /// are closed.
   void cancel_weight_of_sewn_cloth(std::span<Vec3> force) const;
 
-  /// Particles of one part whose forces can be evaluated in parallel with those of other ranges.
+  /// A range of particles of one part. Forces on the particles of different ranges can be evaluated
+  /// in parallel.
   struct Range {
     std::size_t cloth;  ///< number of the part, a cloth or a frame
     Index begin, end;
@@ -58,18 +59,18 @@ class ClothSystem {
   };
   /// The ranges of all parts. The division does not change any bit of the forces.
   std::span<const Range> ranges() const { return ranges_; }
-  /// Number of ranges with an unlimited number of threads.
+  /// Number of ranges that ranges() would have with an unlimited number of threads.
   std::size_t largest_range_count() const;
 
-  /// Adds the forces on the part with number `cloth`, without its weight. `at` has positions, velocities and forces of
-  /// all particles.
+  /// Adds the forces on the part with number `cloth` (or on its range `at.range`), without their
+  /// weight. `at` has positions and velocities of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
   /// Per cloth, the linearisation of the forces that limit its extension (thread locks, forces::StretchLimit); empty
   /// for cloths without such a limit.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
-  /// These functions call, in this order, StretchLimit::begin(), update() and add_linearisation_difference(), each for
-  /// all cloths with a limit.
+  /// These three functions call StretchLimit::begin(), update() and add_linearisation_difference(),
+  /// respectively, for all cloths with a limit.
   void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
   void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
   void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
@@ -99,7 +100,8 @@ class ClothSystem {
   /// changed.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
-  /// Accepts a step that ends with particles at x [m]: tears overloaded seams.
+  /// Accepts a step that ends with particles at x [m]: updates which ties of tearable seams hold,
+  /// and tears overloaded ones.
   void accept(std::span<const Vec3> x);
   /// The load of each seam that can tear.
   std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
@@ -144,7 +146,8 @@ class ClothSystem {
   std::vector<Range> ranges_;                                                // in the order of particles
   std::vector<const forces::Membrane*> membranes_;                           // one per cloth; owned by forces_
   std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of cloths with a limit to stretch
-  /// A cloth that is sewn during the run.
+  /// A cloth made of flat panels, which are sewn together during the run or, if `duration` is 0,
+  /// before it.
   struct Sewing {
     std::size_t cloth;
     double begin, duration;  // [s]; begin: since the start of the run

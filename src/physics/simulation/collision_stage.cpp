@@ -297,7 +297,8 @@ bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemStat
   const double max_sagitta = numerics.contact.margin * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= model_.bodies[bodies_[b]].dynamics->release)) continue;
-    // Three samples are enough: the angular velocity hardly changes between keys, and a body stops at its last key.
+    // Samples of the angular velocity at the start, middle and end of the step are enough: it
+    // changes little in a step, except that a body stops at its last key.
     double angle = 0;
     for (const double fraction : {0.0, 0.5, 1.0})
       angle = std::max(angle, h * model_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
@@ -332,8 +333,9 @@ bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemS
   return true;
 }
 
-// Whether the bounds of a cloth triangle that keeps its velocity overlap the bounds that an obstacle sweeps as it turns
-// by `angle` [rad].
+// Whether the obstacle `body`, which turns by `angle` [rad] from t to t + h, may come near cloth:
+// whether the box that it sweeps, enlarged by the detection distance, overlaps the box that a
+// triangle of cloth sweeps at unchanged velocity.
 bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle,
                                       const SystemState& now) const {
   constexpr double kMaxPieceAngle = 0.25;  // [rad]

@@ -34,14 +34,17 @@ class CollisionStage {
   /// Appends the vertices of the bodies at start.bodies_time to start.x. The model must outlive the stage.
   CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start);
 
-  /// Finds all places where surfaces touch or cross at the start. A run may begin only if there is none, because the
-  /// guarantee against penetration holds only for surfaces that start apart.
+  /// Finds all places where surfaces touch or cross at the start, or are closer than
+  /// Numerics::Separation::least_gap. A run may begin only if there is none, because the guarantee
+  /// against penetration holds only for surfaces that start apart.
   std::vector<IntersectionPlace> find_intersections(const SystemState& start);
 
   /// Lifts dynamic bodies that touch something at the start, because scenes place a box exactly on its support. A body
-  /// that touches an obstacle or cloth rises by 0.2 mm along the unit vector `up`; if two dynamic bodies touch, the
-  /// upper one rises. This is repeated at most 33 times. Bodies that keys hold at t [s] stay. Returns the largest lift
-  /// [m]. If surfaces that untangle() does not move still touch, changes nothing and returns 0.
+  /// that touches an obstacle or cloth rises by 0.2 mm along the unit vector `up`; of two dynamic
+  /// bodies that touch, the one with the higher centre rises. This is repeated until nothing
+  /// touches, at most 33 times. Bodies that are not yet released at t [s] stay. Returns the largest
+  /// lift [m]. If surfaces that untangle() does not move still touch, changes nothing and returns
+  /// 0.
   double lift_bodies(const Vec3& up, double t, SystemState& start);
 
   /// Moves cloth that touches or crosses something at the start, if Cloth::may_be_untangled(). Particles in `held`
@@ -51,7 +54,8 @@ class CollisionStage {
   void untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> put_on,
                 SystemState& start);
 
-  /// Copies the pinched pairs of another stage. `cloths[k]`: number, in this stage, of cloth k of `before`.
+  /// Copies which cloth is pinched from a stage that this one replaces. `cloths[k]`: number, in
+  /// this stage, of cloth k of `before`.
   void copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths);
 
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
@@ -62,16 +66,17 @@ class CollisionStage {
                   SystemState& next);
 
   /// The search for contacts assumes that vertices move on straight lines. Returns whether an obstacle near cloth turns
-  /// so far between t and t + h [s] that its vertices deviate from such lines by more than `numerics.contact.margin`
-  /// detection distances.
+  /// so far between t and t + h [s] that its vertices may deviate from such lines by more than
+  /// `numerics.contact.margin` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether all key-framed bodies have the same positions at t0 and t1 [s], the times of `now` and `next`. Bodies that
   /// come near neither cloth nor dynamic bodies do not count. Places bodies in both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
-  /// Whether all obstacles near cloth move by at most `numerics.contact.margin` detection distances from `now` to
-  /// `next`. If so, a shorter step would not find more space for cloth.
+  /// Whether all vertices of obstacles near cloth move by at most `numerics.contact.margin`
+  /// detection distances from `now` to `next`. If so, a shorter step would not find more space for
+  /// cloth.
   bool obstacles_move_little(const SystemState& now, const SystemState& next) const;
 
   /// The vertices of dynamic bodies; nullptr if there are none.
@@ -100,8 +105,9 @@ class CollisionStage {
   /// Corrects positions and velocities of `next` until each pair has a separating plane. Cloth that has no space
   /// between obstacles becomes pinched: the obstacles may intersect it. If `may_pinch` is false, only an obstacle that
   /// pinches the cloth already may intersect it. Moves pinned particles only if nothing else separates a pair and
-  /// `may_move_pins` is true; if it is false, fails, and obstructed_pins() lists them. Returns nothing on success, else
-  /// a text that says which objects cannot be separated, and where.
+  /// `may_move_pins` is true. If a pinned particle would have to move but `may_move_pins` is false,
+  /// fails, and obstructed_pins() lists the particle. Returns nothing on success, else a text that
+  /// says which objects cannot be separated, and where.
   std::optional<std::string> push_apart(double h, bool may_pinch, bool may_move_pins, const SystemState& now,
                                         SystemState& next);
   /// After push_apart(): makes the corrected `next` the new start of the step's trajectory, and finds contacts there.

@@ -1,5 +1,5 @@
-// Detects energy without a source, because an unstable run may stay finite for long. Also detects large work of the
-// solver's residual.
+// Detects a growth of energy without a source: an unstable run may stay finite for long. Also
+// detects large work of the solver's residual.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,13 @@
 
 namespace weft::simulation {
 
-/// If nothing but pins drives a model (no moving body, no wind), its mechanical energy grows at most by the work of the
-/// pins and by the errors of the solver. A run that gains more warns (`numerics.energy.doubtful_gain`); a run that
-/// gains much more fails (`failing_gain`). If cloth can touch something and the method damps, the run only warns:
-/// contacts at long steps can add energy, which the method then damps. Any run warns if the work of the solver's
-/// residual is large: the motion stays finite but may be far from the exact one.
+/// If nothing but pins drives a model (for example, no body moves and no wind blows), its
+/// mechanical energy exceeds that of the start at most by the work of the pins and by errors of the
+/// solver. If the excess is larger than `numerics.energy.doubtful_gain` times the energy in play
+/// (Numerics::Energy), the run warns; if it is larger than `failing_gain` times this energy, the
+/// run fails. If cloth can touch something and the method damps, the run only warns: contacts at
+/// long steps can add energy, which the method then damps. Any run warns if the work of the
+/// solver's residual is large: the motion stays finite but may be far from the exact one.
 class EnergyBound {
  public:
   /// `mass`: of all particles [kg].
@@ -36,7 +38,7 @@ class EnergyBound {
   }
 
  private:
-  double energy_in_play() const;  // see Numerics::Energy [J]
+  double energy_in_play() const;  // as in Numerics::Energy [J]
   std::optional<std::string> check_gain(const FrameReport& energies);
   std::optional<std::string> check_solver(int frame);
 

@@ -50,8 +50,8 @@ struct FrameReport {
   double air_energy = 0;        ///< energy of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth since the frame before [J]
   double solver_work = 0;       ///< work of the residual of the equations of motion since the frame before [J]
-  /// Largest number, in any step, of pinched cloth triangles: obstacles leave them no space. A triangle counts once for
-  /// each obstacle limb (model::Body::limbs) that pinches it.
+  /// Largest number, in any step, of pinched cloth triangles (triangles to which obstacles leave no
+  /// space). A triangle counts once for each obstacle limb (model::Body::limbs) that pinches it.
   int pinched_pairs = 0;
   /// Largest number, in any step, of pinned particles that cannot reach their targets.
   int lagging_particles = 0;

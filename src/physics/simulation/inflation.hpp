@@ -17,23 +17,25 @@ namespace weft::simulation {
 /// If the model gives p, the energy is −p V. If the model gives an amount of air, as its volume A at the outside
 /// pressure p₀, the air is isothermal: (p₀ + p) V = p₀ A. Its energy is then p₀ (V − A − A ln(V / A)).
 ///
-/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ. It does not get −p ∂²V/∂x², which is indefinite and small against the
-/// stiffness of cloth under tension.
+/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ. It does not get −p ∂²V/∂x², which is indefinite, and
+/// small compared with the stiffness of cloth under tension.
 class Inflation {
  public:
   /// Pressure outside [Pa]: standard atmosphere.
   static constexpr double kAmbientPressure = 101325;
 
   Inflation() = default;
-  /// Selects the cloths for which Pressure::acts(). `first_particle`: of each cloth of the model.
+  /// Selects the cloths for which Pressure::acts() is true. `first_particle`: of each cloth of the
+  /// model.
   Inflation(const model::Model& model, std::span<const Index> first_particle);
 
   bool empty() const { return cloths_.empty(); }
 
-  /// Begins a step that ends at the scene time t [s], with particles at x [m]. As long as is_closed(cloth) is false,
-  /// the cloth has no gauge pressure. In the first step in which the cloth is closed, the volume that it encloses at x
-  /// becomes the reference for amounts of air. If the cloth then encloses no volume although the model gives an amount
-  /// of air, throws Error(scene_invalid).
+  /// Begins a step that ends at the scene time t [s], with particles at x [m]. As long as
+  /// is_closed(number of the cloth in the model) is false, the cloth has no gauge pressure. In the
+  /// first step in which the cloth is closed, the volume that it encloses at x becomes the
+  /// reference for amounts of air. Throws Error(scene_invalid) if the cloth then encloses no volume
+  /// although the model gives an amount of air.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
   /// Whether the model gives the same pressures or amounts of air at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;

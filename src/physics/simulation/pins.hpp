@@ -31,24 +31,28 @@ class Pins {
   const Info& info(std::size_t pin) const { return groups_[pin].info; }
   /// Index of the pin that has this particle at time t [s]. The particle must belong to a pin at t.
   std::size_t pin_of(Index particle, double t) const { return owner_at(particle, t).pin; }
-  /// Fraction of the strength of pin_of() for this particle, in (0, 1]; 0 for a particle without a pin.
+  /// Fraction, in (0, 1], of the strength of pin_of() that acts on this particle at time t [s]; 0
+  /// for a particle without a pin.
   double strength_fraction(Index particle, double t) const { return owner_at(particle, t).fraction; }
 
-  /// Fills `held` with the particles of all pins not released before t [s], and their targets at t. Each particle has
-  /// one entry. If pins share a particle, it belongs to the first of them in the model that is not released; pins that
-  /// have the particle in their region precede pins that have it in their fade (model::WeightedParticle::faded).
+  /// Fills `held` with the particles of all pins that are not released before t [s], and the
+  /// targets of these particles at t. Each particle has one entry. If pins share a particle, it
+  /// belongs to the first of them in the model that is not released; pins that have the particle in
+  /// their region precede pins that have it in their fade (model::WeightedParticle::faded).
   void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].
   bool release_between(double t0, double t1) const;
 
  private:
-  /// A point near a triangle of a deforming body without bones; the point moves as if rigidly attached to the triangle.
+  /// A point near a triangle of a deforming body; the point moves as if rigidly attached to the
+  /// triangle.
   struct Anchor {
     std::array<std::size_t, 3> corners;
     std::array<double, 3> weights;  // barycentric, of the nearest point of the triangle at the start
     Vec3 arm;                       // from that point, in the axes of the triangle [m]
   };
-  /// A pin that has a particle until its release, and the fraction of the pin's strength for this particle.
+  /// A pin that has a particle until the pin is released, and the fraction of the pin's strength
+  /// for this particle.
   struct Owner {
     std::size_t pin = 0;
     double fraction = 0;  // 0: no pin
@@ -65,8 +69,9 @@ class Pins {
     std::vector<Vec3> arms;       // start positions relative to the pose that moves the pin, in its axes [m]
     double release = -1;          // [s]; negative: never
     int follow = -1;              // number of the body that the pin follows; −1: it follows `track`
-    std::vector<Anchor> anchors;  // in place of `arms`, if the pin follows a deforming body without bones
-    // In place of `arms`, if the pin follows a body with bones: the body's vertices that represent the pin's particles.
+    std::vector<Anchor> anchors;  // in place of `arms`, if the pin follows triangles of a body
+    // In place of `arms`, if the pin has a model::Pin::first_vertex: for each particle, the vertex
+    // of the body that it follows.
     std::vector<std::size_t> followed_vertices;
     std::optional<motion::Track> track;  // motion of model::Pin::middle, if the pin follows no body
   };

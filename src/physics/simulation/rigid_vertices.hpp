@@ -15,7 +15,7 @@ namespace weft::simulation {
 /// on particles; this class distributes the resulting forces and terms to the frame particles.
 class RigidVertices {
  public:
-  /// `first`: index of the first vertex, equal to the count of particles.
+  /// `first`: index of the first vertex, equal to the number of all particles.
   explicit RigidVertices(Index first) : first_(first) {}
 
   /// Appends the vertices of a body. `first_of_frame`: first particle of its frame. The frame must outlive this object.

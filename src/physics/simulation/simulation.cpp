@@ -45,8 +45,8 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
-// What to do about these places: the advice of the model, and that of the first body that has advice and is in one of
-// the places.
+// What to do about these places: the advice of the model, then that of the first body that has
+// advice and is in one of the places.
 std::string advice_of(const model::Model& model, const std::vector<IntersectionPlace>& places) {
   const auto is_in_one = [&](const auto& object) {
     return std::ranges::any_of(
@@ -251,7 +251,8 @@ void Simulation::Impl::serialize(Archive& archive) {
   if constexpr (Archive::kReads) {
     require(saved_frame >= -model.time.preroll_frames && saved_frame < kMaxFrames, "a frame of the model");
     require(last < model.layers.size(), "a layer of the model");
-    // Makes the step loop before set_motion(): its pins need the start poses of the bodies by the motions of the model.
+    // Makes the step loop before set_motion(): pins that follow a body need its start pose, which
+    // only the original motion of the model has.
     if (last != layer) begin_layer(last);
     frame = saved_frame;
     for (const auto& [body, keys] : driven)

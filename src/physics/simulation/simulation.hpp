@@ -15,7 +15,8 @@
 
 namespace weft::simulation {
 
-/// FrameReport::stretch_ratio above which a run warns.
+/// A run warns if FrameReport::stretch_ratio rises above this value (see
+/// StepLoop::measure_stretch()).
 inline constexpr double kMaxStretchRatio = 1.1;
 
 /// All particles of the cloths that are put on (see Simulation), cloth by cloth in the order of the model.
@@ -31,11 +32,12 @@ struct ClothMotion {
 };
 
 /// A place where two objects touch or cross at the start, or one object touches or crosses itself.
+/// `centre` and `size` are those of a box around the smaller triangle of each pair.
 struct IntersectionPlace {
   std::string a, b;                            ///< names of the objects; equal: one object with itself
   std::size_t pairs = 0;                       ///< number of pairs of triangles
   Vec3 centre = Vec3::Zero();                  ///< [m]
-  double size = 0;                             ///< longest side of the bounding box [m]
+  double size = 0;                             ///< longest side of this box [m]
   std::vector<std::array<Vec3, 3>> triangles;  ///< corners of the triangles of these pairs [m]
 };
 
@@ -58,8 +60,10 @@ struct MatrixSize {
 class Simulation {
  public:
   /// Builds only what the model needs. At the start, lifts dynamic bodies off what they touch, and untangles cloth if
-  /// the model allows it. Throws Error(scene_invalid) if surfaces still touch or cross; checks each later layer alone
-  /// with the bodies, too.
+  /// the model allows it. Throws Error(scene_invalid) if surfaces still touch or cross. Checks each
+  /// later layer with the bodies, but without other layers, in the same way. Also throws
+  /// Error(scene_invalid) if cloth that is closed encloses no volume although the model gives it an
+  /// amount of air.
   explicit Simulation(model::Model model);
   Simulation(Simulation&&) noexcept;
   virtual ~Simulation();
@@ -72,18 +76,21 @@ class Simulation {
   /// Number of changes of the state so far: simulated frames, preroll included, and successful calls of restore().
   std::uint64_t changes() const;
 
-  /// Simulates the next frame. If that fails, keeps the state of the current frame. Throws Error(simulation_failed)
-  /// with the reason, or Error(scene_invalid) if cloth that is put on now touches other surfaces, or if cloth that is
-  /// closed now encloses no volume.
+  /// Simulates the next frame. If a step fails, positions and velocities return to those of the
+  /// current frame. Throws Error(simulation_failed) with the reason, or Error(scene_invalid) if
+  /// cloth that is put on now touches other surfaces, or if cloth that is closed now encloses no
+  /// volume although the model gives it an amount of air.
   FrameReport advance();
 
-  /// The report of frame 0. If there is a preroll that run_preroll() has not simulated, the report has the energies and
-  /// distances at the start of the preroll.
+  /// The report of frame 0. If the model has a preroll: until run_preroll() simulates a frame, the
+  /// report has the energies and distances at the start of the preroll; if run_preroll() stops
+  /// early, it is the report of the last frame that run_preroll() has simulated.
   FrameReport initial_report() const;
 
   /// Simulates the preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
   /// each frame; if `proceed` returns false, stops before that frame and returns false. Throws as advance() does.
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
+  /// Number of particles of all cloths, including cloths that are not put on.
   std::size_t particles() const;
   MatrixSize matrix() const;
   /// Positions of the particles of all cloths [m], in the order of the model; a cloth that is not put on is at its

@@ -36,7 +36,8 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(model_, cloth_, t + h, held_);
-  // A longer attempt, which was rejected, released a pin or body. Undo it: this step may end before the release.
+  // An earlier attempt, which was rejected, released a pin or body. Undo the release: this step may
+  // be shorter and end before it.
   if (before_release_) {
     progress_.now.v = std::move(before_release_->v);
     stepper_.return_to(std::move(before_release_->history));
@@ -143,16 +144,17 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
   }
 }
 
-// Solves the step with the current contacts and constraints; writes the result into `next_`. Sets `solved` to false if
-// the solve paused for an early check.
+// Solves the step with the current contacts and constraints; writes the result into `next_`. Sets
+// `solved` to whether the solve ended, instead of pausing for an early check.
 StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
   collisions_->append_prescribed_particles(held_);
   integrator::StepReport step = solve(attempt.h, start, check_early, report);
-  // Normal forces and friction depend on each other, and can increase each other without bound. If an unfinished solve
-  // has added much energy, solve again with fixed normal forces: friction then has a potential, and dissipates.
-  // (Measured without this: a sheet of 0.5 J with friction 10 gains 1,300 J.)
+  // Normal forces and friction depend on each other, and can increase each other without bound. If
+  // the first solve of a step is unfinished and has added much energy, solve again with fixed
+  // normal forces: friction then has a potential, and dissipates. (Measured without this: a sheet
+  // of 0.5 J with friction 10 gains 1,300 J.)
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.diverged_energy_ratio) {
     problem_.fix_normal_forces();

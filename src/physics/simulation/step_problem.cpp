@@ -199,8 +199,9 @@ bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoi
 // Evaluates forces within the active parts at the positions in the memory; with `assemble`, also their matrix rows.
 void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   const auto ranges = cloth_.ranges();
-  // Loops are counted on one thread, where each part is one range (LoopCounts in core/parallel.hpp). So that the count
-  // holds for many threads, it counts as many chunks as there would be ranges.
+  // LoopCounts (core/parallel.hpp) is measured on one thread, where each part is one range. To
+  // estimate the time on many threads, this loop counts as many chunks as there would be ranges on
+  // them.
   const CountedLoop counted(cloth_.largest_range_count());
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
     const auto& [cloth, begin, end, number] = ranges[r];
@@ -220,7 +221,8 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   });
 }
 
-// Whether a particle of a part has moved too far from where the part's rows of the matrix were assembled.
+// Whether a particle of a part has moved too far from where the part's rows of the matrix were
+// assembled: for a cloth, farther than Numerics::Newton::stale_motion; for a frame, at all.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   const solver::DiagonalBlock& part = memory_.system.blocks[cloth];
   const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();

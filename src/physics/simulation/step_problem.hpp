@@ -27,7 +27,8 @@ struct SolveMemory {
   collision::ContactLag contacts;
   ClothSystem::LockLinearisations locks;  ///< empty before the first step
 
-  // Internal forces of cloths, kept to save time: in a solve, most cloths converge before the last one does.
+  // Internal forces of cloths. They are kept to save time: in a solve, most cloths converge before
+  // the last one does.
   using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
   PaddedVec3s x, v;   ///< where each cloth's forces were last evaluated; NaN: nowhere
   PaddedVec3s force;  ///< the forces there [N]

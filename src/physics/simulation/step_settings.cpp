@@ -41,7 +41,8 @@ bool is_released(const model::Body& body, double t, double h) {
 
 using FrameVelocities = std::array<Vec3, mesh::RigidFrame::kParticles>;
 
-// Velocities of the frame particles of a body that moves as `pose`. If it is free, adds those of model::Dynamics.
+// Velocities of the frame particles of a body that moves as `pose`. If `is_free` (forces move the
+// body), adds the velocities of model::Dynamics.
 FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::PoseSample& pose, bool is_free) {
   FrameVelocities velocities;
   for (std::size_t k = 0; k < velocities.size(); ++k) {
@@ -53,8 +54,8 @@ FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::P
   return velocities;
 }
 
-// Pose of a body that keys move. The track has zero velocity from its last key on. If the body is released at the last
-// key, its velocity is that just before the key.
+// Pose of a body that keys move. From its last key on, a track has zero velocity. If the body is
+// released at the last key, this function uses the velocity just before the key instead.
 motion::PoseSample pose_of_frame(const model::Model& model, std::size_t body, double t) {
   motion::PoseSample pose = model.pose(body, t);
   const bool rests = pose.velocity == Vec3::Zero() && pose.angular_velocity == Vec3::Zero();

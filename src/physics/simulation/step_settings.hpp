@@ -27,14 +27,16 @@ SystemState start_of(const model::Model& model, const ClothSystem& cloth, double
 void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
-/// Whether a dynamic body is released in the step from t to t + h [s]: forces move it from then on.
+/// Whether a dynamic body is released at a time in [t, t + h) [s], up to rounding. Then forces move
+/// it in the whole step from t to t + h.
 bool any_frame_is_released(const model::Model& model, double t, double h);
 
 /// Sets the velocities of the frame particles of the bodies that are released in this step: those of their keys at t,
 /// plus Dynamics::velocity and Dynamics::angular_velocity.
 void release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v);
 
-/// Whether all dynamic bodies that keys hold at t0 [s] are still held at t1 [s] and have no motion.
+/// Whether all dynamic bodies that are released after t0 [s] are still held at t1 [s] and have no
+/// motion.
 bool frames_are_constant(const model::Model& model, double t0, double t1);
 
 }  // namespace weft::simulation

@@ -14,7 +14,8 @@ struct StepWork {
 };
 
 /// Work in the last step of the stepper, from `start` to `end`. `pinned`: particles that pins or keys hold. Uses the
-/// forces of the stage, so the error of the work has the order of the method.
+/// forces of the stage (integrator::StagePoint), so the error of the work has the order of the
+/// method.
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end);
 

@@ -1,4 +1,4 @@
-// Assembles a cloth's matrix from one block for each pair of particles.
+// Assembles the matrix of all particles from one block for each pair of particles.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,14 @@
 
 namespace weft::solver {
 
-/// Assembles the symmetric BlockMatrix of the forces and masses of a cloth. Forces between particles do not change if
-/// all particles translate together, so their blocks sum to zero in each row. Therefore such forces add only the block
-/// (i, j) of each pair of particles i < j: a triangle adds three blocks instead of nine. What acts on a single particle
-/// (its mass, the drag of air) adds to the own block of this particle. complete_rows() sets each block (j, i) to the
-/// transpose of block (i, j), and each diagonal block such that its row sums to the own block; until then, the diagonal
-/// block holds the own block without its constant part.
+/// Assembles the symmetric BlockMatrix of the forces and masses of all particles. Forces between
+/// particles do not change if all particles translate together, so the blocks of these forces sum
+/// to zero in each row. Therefore such forces add only the block (i, j) of each pair of particles
+/// i < j: a triangle adds three blocks instead of nine. Each particle also has an own block, to
+/// which the terms of this particle alone are added (its mass, the drag of air). complete_rows()
+/// sets each block (j, i) to the transpose of block (i, j), and each diagonal block such that its
+/// row sums to the own block. Before complete_rows(), the diagonal block holds the own block
+/// without its constant part.
 ///
 /// Bending adds scalar multiples of the identity; each pair stores that scalar, part of which is constant.
 class Assembly {
@@ -32,18 +34,20 @@ class Assembly {
   void clear();
   /// Makes the scalars added so far the constant part.
   void keep_constant();
-  /// Resets the rows [begin, end): sets their own blocks, and the blocks of all pairs whose smaller index is in this
-  /// range, to zero, and the scalars of these pairs to their constant part.
+  /// Resets the rows [begin, end): sets their own blocks (without the constant parts), and the
+  /// blocks of all pairs whose smaller index is in this range, to zero. Sets the scalars of these
+  /// pairs to their constant part.
   void start(Index begin, Index end, BlockMatrix& matrix);
 
   /// Adds `value` times the identity to the constant part of a row's own block.
   void add_constant_to_own(Index row, double value) { constant_own_[at(row)] += value; }
   void add_scalar(Index scalar, double value) { scalars_[at(scalar)] += value; }
 
-  /// Once everything is added: adds the scalars of the pairs whose smaller index is in [begin, end) to their full
-  /// blocks.
+  /// Call it after all forces have added their blocks: adds the scalars of the pairs whose smaller
+  /// index is in [begin, end) to the full blocks of these pairs.
   void complete_pairs(Index begin, Index end, BlockMatrix& matrix) const;
-  /// After that, once all pairs of the particles [begin, end) are complete: completes the rows of these particles.
+  /// Call it after complete_pairs() for all pairs of the particles [begin, end): completes the rows
+  /// of these particles.
   void complete_rows(Index begin, Index end, BlockMatrix& matrix) const;
 
  private:
@@ -60,13 +64,15 @@ class Assembly {
   std::vector<Index> scalar_of_isotropic_;  // of each isotropic block, row by row: its pair's scalar
 };
 
-/// Adds to the rows [begin, end) of a matrix during its assembly, and to the pairs whose smaller index is in this
-/// range. Ignores values for other rows and pairs. If each thread owns a range of rows and adds all elements in the
-/// same order, the sums have the same bits as with one thread. A default-constructed object holds no rows.
+/// Adds to the own blocks of the rows [begin, end) during the assembly of a matrix, and to the
+/// pairs whose smaller index is in this range. Ignores values for other rows and pairs. If each
+/// thread owns a range of rows and adds all elements of this range in the same order as one thread
+/// would, the sums have the same bits as with one thread. A default-constructed object has no
+/// matrix and converts to false.
 class AssemblyRows {
  public:
   AssemblyRows() = default;
-  /// For scalars alone.
+  /// For scalars alone, of all pairs.
   AssemblyRows(Assembly& assembly) : assembly_(&assembly), scalars_{0, static_cast<Index>(assembly.scalars_.size())} {}
   AssemblyRows(Assembly& assembly, BlockMatrix& matrix) : AssemblyRows(assembly, matrix, 0, matrix.rows()) {}
   AssemblyRows(Assembly& assembly, BlockMatrix& matrix, Index begin, Index end)

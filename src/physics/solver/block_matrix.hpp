@@ -12,8 +12,8 @@
 
 namespace weft::solver {
 
-/// Position of one block among the values of a BlockMatrix. Negative if the block is a multiple of the identity: then
-/// ~slot is its position among the scalars.
+/// Position of one block among the values of a BlockMatrix. Negative if the pattern allows only a
+/// multiple of the identity there: then ~slot is its position among the scalars.
 using Slot = Index;
 
 using Lanes = PaddedVec3<double>;
@@ -49,9 +49,9 @@ inline PackedBlock packed_scalar(double value) {
 }
 
 /// Stores the upper and the lower triangle, so that each row of a product is computed on its own, with the same bits on
-/// any number of threads. A block that can only be a multiple of the identity is stored as one number: 30 of the 37
-/// blocks in a row of a garment's matrix, which come from bending alone. Thus a product reads a third of the memory
-/// that full blocks would need.
+/// any number of threads. A block that can only be a multiple of the identity is stored as one
+/// number. In the matrix of a garment, these are 30 of the 37 blocks of a row, which come from
+/// bending alone; there, a product reads a third of the memory that full blocks would need.
 class BlockMatrix {
  public:
   BlockMatrix() = default;

@@ -14,8 +14,9 @@ constexpr double kMinIndependentEnergy = 1e-4;
 
 using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
-// Row k: weighted sum of direction k over those particles of a term that belong to one diagonal block. Times the term's
-// stiffness and a displacement, it gives the work of the term's force along each direction.
+// Row k: weighted sum of direction k over those particles of a term that belong to one diagonal
+// block. Row k times the term's stiffness, times the term's weighted sum of displacements, is the
+// work of the term's force along direction k.
 using TermForces = Eigen::Matrix<double, kDirections, 3>;
 
 // Contributions of terms to the projected system (lower triangle), and to its products with the motions, per diagonal
@@ -63,7 +64,8 @@ class SelectionIndex {
 
 }  // namespace
 
-// Finds the directions of a diagonal block that are independent of those before them.
+// Marks the motions of a diagonal block that are not independent of the directions before them as
+// not used.
 void BlockMotions::find_used(std::size_t part, const Block& block) {
   std::vector<int> used;
   for (int k = 0; k < kDirections; ++k) {

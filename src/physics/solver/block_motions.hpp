@@ -16,12 +16,14 @@ namespace weft::solver {
 inline constexpr int kMaxMotions = 2;
 /// Directions of one diagonal block: three translations, then the motions.
 inline constexpr int kDirections = 3 + kMaxMotions;
-/// Coefficients of these directions in a displacement of one diagonal block, or the work of forces along them.
+/// One number per direction of a diagonal block: its coefficient in a displacement, or the work of
+/// forces along it.
 using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 
-/// The linear system, projected on these directions. Uses the translations of a diagonal block only if no constraint
-/// acts on its particles. Skips a motion that is nearly a combination of the directions before it
-/// (kMinIndependentEnergy).
+/// The linear system, projected on the directions of the selected diagonal blocks. Uses the
+/// translations of a diagonal block only if no constraint acts on its particles. Skips a motion
+/// that is nearly a combination of the directions before it (kMinIndependentEnergy in
+/// block_motions.cpp).
 class BlockMotions {
  public:
   /// Column m: the system (matrix and terms) times motion m, projected on the directions of one diagonal block.
@@ -36,8 +38,8 @@ class BlockMotions {
                const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
                std::span<const Mat3> row_sums, std::span<const Products> products);
 
-  /// Returns the coefficients of the displacement that balances `forces`. Both have one entry per selected diagonal
-  /// block.
+  /// Returns the coefficients of the displacement that balances forces with the work `forces` along
+  /// the directions. The argument and the result have one entry per selected diagonal block.
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;
 
  private:

@@ -15,9 +15,10 @@ namespace {
 // take 361, 1,018 and 2,345 Newton iterations; in double 355, 1,126 and 2,932.)
 constexpr double kMaxSingleStiffness = 1e7;
 
-// Number of prepare() calls with AggregateSums::recompute after which ConjugateGradient frees the memory of an unused
-// precision. To allocate it again takes the time of a few iterations. (Measured: if cloth is pulled through a ring, 40
-// of 356 iterations, in 95 solves, use double precision.)
+// If more than this number of successive prepare() calls with AggregateSums::recompute have not
+// used a precision, ConjugateGradient frees its memory. To allocate the memory again takes the time
+// of a few iterations. (Measured: if cloth is pulled through a ring, 40 of 356 iterations, in 95
+// solves, use double precision.)
 constexpr int kSolvesUnused = 16;
 
 // Whether no particle exceeds kMaxSingleStiffness. False without a mass-weighted norm.
@@ -121,7 +122,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
     copy_as_vec3(double_.recurrence->residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
-  // Without iterations, or with a residual of zero, the error counts as zero.
+  // Without iterations, or if only rounding remains in the residual, the error counts as zero.
   for (const Progress::BlockProgress& part : progress.blocks)
     report.errors.push_back(
         part.gains.empty() || progress.is_exact ? 0 : std::sqrt(part.error_energy() * part.error_norm_ratio()));

@@ -12,7 +12,7 @@ namespace weft::solver {
 
 struct LinearReport {
   int iterations = 0;
-  std::vector<double> errors = {};  ///< per diagonal block: estimated error, see solve(); 0: not in the solve
+  std::vector<double> errors = {};  ///< per diagonal block: estimated error, see solve()
   bool converged = false;
   bool definite = true;  ///< false: the iteration ended at a direction without positive curvature
 };
@@ -27,22 +27,28 @@ class ConjugateGradient {
  public:
   /// Sets the system that the following calls solve. The system must not change between these calls: the first one that
   /// needs the preconditioner prepares it. With AggregateSums::reuse, the preconditioner reuses sums over aggregates
-  /// that have been computed since the last call with AggregateSums::recompute. Frees the memory of a precision that
-  /// has not been used for some time.
+  /// that have been computed since the last call with AggregateSums::recompute. Frees the memory of
+  /// a precision that is not used for more than kSolvesUnused (conjugate_gradient.cpp) successive
+  /// calls with AggregateSums::recompute.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
-  /// Returns P⁻¹ b, a rough solution of A x = b that obeys the constraints. Valid until the next call.
+  /// Returns P⁻¹ b, a rough solution of A x = b that obeys the constraints. b must obey the
+  /// constraints. The result is valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
 
-  /// Iterates from zero (ignores the content of x) until the estimated error meets `goal`, or for `max_iterations`.
+  /// Starts from zero (ignores the content of x) and takes the step along Directions::start. Then
+  /// iterates until the estimated error meets `goal`, or for `max_iterations`.
   ///
   /// The steps of the iteration estimate the error e. A step of length α along a search direction, from the residual r,
   /// reduces ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these
   /// steps (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
-  /// 2005). Each diagonal block has its own summand of rᵀz. The squared error in the mass-weighted norm is estimated as
-  /// q times this estimate. q is the largest ratio of a step's squared mass-weighted norm to its gain over these steps,
-  /// at most 1, and 1 if there is no such norm. √(rᵀz) cannot replace the estimate: for smooth motion this root is far
-  /// below ‖e‖_A, and flat sheets would fold in free fall.
+  /// 2005). Each diagonal block has its own summand of rᵀz. LinearReport::errors estimates the
+  /// error in the mass-weighted norm: the squared error is q times the estimate of ‖e‖²_A. q is the
+  /// largest ratio of a step's squared mass-weighted norm to its gain over these steps, at most 1,
+  /// and 1 if the system has no `norm_weights`. The reported error is 0 for diagonal blocks that
+  /// are not in the solve, without iterations, and if the residual is zero up to rounding. √(rᵀz)
+  /// cannot replace the estimate: for smooth motion, √(rᵀz) is far below ‖e‖_A, and flat sheets
+  /// would fold in free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});
   /// Solves for these diagonal blocks only: all other particles count as held, so x is zero there.

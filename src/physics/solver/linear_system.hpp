@@ -1,4 +1,5 @@
-// The linear system of one Newton iteration: the assembled matrix, contact terms beside it, and constraints.
+// The linear system of one Newton iteration: the assembled matrix, the terms of contacts and
+// springs, and constraints.
 #pragma once
 
 #include <array>
@@ -19,32 +20,33 @@ struct ParticleConstraint {
   Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
 };
 
-/// Contribution of a contact to the matrix, w wᵀ ⊗ stiffness: a spring against the weighted sum of the particles'
-/// displacements, with the weights w. Contacts change with every step; therefore the sparsity pattern of the matrix
-/// does not contain them.
+/// Contribution w wᵀ ⊗ stiffness of a contact or attachment to the matrix: a spring against the
+/// weighted sum of the particles' displacements, with the weights w. Contacts change with every
+/// step; therefore the sparsity pattern of the matrix does not contain them. Below, "contact terms"
+/// also stand for attachments and springs of pins.
 struct StencilTerm {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for unused entries
   Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
 };
 
-/// A StencilTerm for contacts of rigid bodies: a contact point on a body is a weighted sum of the body's four
-/// particles.
+/// A StencilTerm for contacts and attachments of rigid bodies: a point on a body is a weighted sum
+/// of the four particles of the body.
 struct WideTerm {
   std::array<Index, 8> particles{};
   std::array<double, 8> weights{};
   Mat3 stiffness = Mat3::Zero();
 };
 
-/// A StencilTerm for a single particle.
+/// A StencilTerm for a single particle, with the weight 1.
 struct DiagonalTerm {
   Index particle = 0;
   Mat3 stiffness = Mat3::Zero();  ///< symmetric, positive semidefinite [N/m]
 };
 
 /// stiffness · d dᵀ over the rows of one diagonal block: the contribution of a quantity that depends on all of the
-/// block's particles, such as the enclosed volume (d is its derivative). Such terms are few and dense, so they are kept
-/// out of the matrix.
+/// block's particles, such as the enclosed volume (d is its derivative). Such terms are few and
+/// dense, so the matrix does not contain them.
 struct RankOneTerm {
   Index begin = 0;              ///< first row
   std::vector<Vec3> direction;  ///< d, one entry per row from `begin` on
@@ -62,9 +64,9 @@ struct Aggregates {
 struct DiagonalBlock {
   Index begin = 0, end = 0;
   std::uint64_t version = 1;  ///< changes whenever the values of these rows change
-  /// Few rows with stiff forces between them, such as the four particles of a rigid body. On every level of the
-  /// preconditioner, each of these particles is an aggregate of its own, so that the coarsest level solves the block
-  /// exactly.
+  /// Few rows with stiff forces between them, such as the four particles of a rigid body. On every
+  /// level of the preconditioner, each of these particles must be an aggregate of its own; then the
+  /// coarsest level solves the block exactly.
   bool is_small = false;
 };
 

@@ -18,7 +18,7 @@ constexpr std::size_t kMaxLevels = 16;
 // definite. The fraction must be below the ratio of mass part to thread stiffness (measured: with 1e-9 of the mean
 // trace, cells of 0.1 m by 1e-5 m take twenty times the iterations).
 constexpr double kMinRelativeShift = 1e-13;
-// Total weight of the neighbours' aggregates in a member's motion. Values above 1/2 invert the shortest waves.
+// Total interpolation weight of neighbours' aggregates. Values above 1/2 invert the shortest waves.
 constexpr double kInterpolation = 0.5;
 constexpr double kLevelStiffness = 0.5;  // factor of the stiffness per level; see Preconditioner
 

@@ -12,9 +12,11 @@
 
 namespace weft::solver {
 
-/// Whether prepare() computes the sums over aggregates from the current matrix, or reuses those of an earlier matrix.
-/// If the constraints have changed, it computes them in either case. Particle blocks and contact terms (StencilTerm,
-/// WideTerm, DiagonalTerm) are current in either case.
+/// Whether prepare() computes the sums over aggregates from the current matrix (in diagonal blocks
+/// whose version has changed), or reuses those of an earlier matrix. If the constraints, the system
+/// object or the use of interpolation have changed, prepare() computes all sums in either case.
+/// Particle blocks and contact terms (StencilTerm, WideTerm, DiagonalTerm) are current in either
+/// case.
 enum class AggregateSums { recompute, reuse };
 
 /// P⁻¹ = S Σ_l T_l A_l⁻¹ T_lᵀ S, where T_l interpolates from level l to particles and S is the projection on the free
@@ -31,15 +33,18 @@ enum class AggregateSums { recompute, reuse };
 /// aggregates as wholes, with all strain at their boundaries. Interpolated motion has its strain over the whole width
 /// of the aggregates. This width doubles per level, and a displacement that is spread over twice the width has half of
 /// the stiffness. Therefore the stiffness (the matrix without its mass part, `norm_weights`) enters A_l with the factor
-/// 1/2 per level (1 in a DiagonalBlock that is_small), and the mass part with the factor 1. Contact terms are not part
-/// of the matrix. Their stiffness at each particle is added to the aggregates from which the particle interpolates,
-/// with the weights of this interpolation; this is an upper bound of the contact part of the diagonal of T_lᵀ A T_l.
-/// The last level contains T_lᵀ A T_l of the contact terms exactly.
+/// 1/2 per level (1 in a DiagonalBlock that is_small), and the mass part with the factor 1. Contact
+/// terms are not part of the matrix. The stiffness of contact terms at each particle is added to
+/// the aggregates from which the particle interpolates, with the weights of this interpolation; the
+/// sum is an upper bound of the contact part of the diagonal of T_lᵀ A T_l. The last level contains
+/// T_lᵀ A T_l of the contact terms exactly.
 ///
-/// If threads are so stiff that the trace of a particle's 3×3 block exceeds `stiff_particle` times the sum of
-/// `norm_weights` over its DiagonalBlock (not tested in a block that is_small), no level interpolates: T_l = R_lᵀ, and
-/// the factor per level is 1. Interpolated motion would stretch threads inside of aggregates where cloth is folded, and
-/// R_l A R_lᵀ contains only the threads that cross the boundaries of aggregates.
+/// If the trace of any particle's 3×3 block exceeds `Numerics::Linear::stiff_particle` times the
+/// sum of `norm_weights` over its DiagonalBlock (not tested in a block that is_small, or without
+/// `norm_weights`), threads count as very stiff and no level interpolates: T_l = R_lᵀ, and the
+/// factor per level is 1. Interpolated motion would stretch threads inside of aggregates where
+/// cloth is folded, and R_l A R_lᵀ contains only the threads that cross the boundaries of
+/// aggregates.
 ///
 /// Set up in double, applied in `Real`.
 template <class Real>
@@ -55,7 +60,7 @@ class Preconditioner {
  private:
   struct Level {
     std::vector<Index> aggregate_of;        // per particle
-    std::vector<Index> parent;              // per aggregate: its aggregate on the next level
+    std::vector<Index> parent;              // per aggregate: its aggregate on the coarser level
     Weights<Real> interpolation;            // per member (a particle, or an aggregate of the finer level)
     Weights<Real> restriction;              // per aggregate: its members
     std::vector<RowRange> of_part;          // aggregates of each diagonal block
@@ -110,7 +115,7 @@ class Preconditioner {
   // Per 3×3 block of the matrix: first level on which one aggregate contains its row and its column; the number of
   // levels if there is none.
   std::vector<std::uint8_t> common_level_full_, common_level_isotropic_;
-  std::vector<std::vector<Index>> members_of_coarse_;  // particles
+  std::vector<std::vector<Index>> members_of_coarse_;  // per coarsest aggregate: its particles
   std::vector<std::size_t> selected_;                  // diagonal blocks of the last apply()
   RowChunks rows_;                                     // their rows
   Eigen::MatrixXd coarse_matrix_without_terms_, coarse_matrix_;

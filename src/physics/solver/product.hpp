@@ -10,14 +10,16 @@
 
 namespace weft::solver {
 
-/// A block matrix A in single precision, which halves the memory to read. Its product is y_i = D_i x_i + Σ_j A_ij (x_j
-/// − x_i), where the sum D_i of a row's blocks is computed in double. Thus rounding affects only the stiffness against
-/// relative motion; the much smaller mass part is not lost.
+/// A block matrix A in single precision, which takes half of the memory of double precision. Its
+/// product is y_i = D_i x_i + Σ_j A_ij (x_j − x_i), where the sum D_i of a row's blocks is computed
+/// in double. Thus the rounding errors of A_ij act only on relative motion, and do not hide the
+/// much smaller mass part.
 class DifferenceMatrix {
  public:
   void copy_pattern(const BlockMatrix& matrix);
   /// Copies the rows [begin, end).
   void copy_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end);
+  /// y = A x on the rows [begin, end).
   void multiply(std::span<const PaddedVec3<float>> x, std::span<PaddedVec3<float>> y, std::size_t begin,
                 std::size_t end) const;
   /// D_i for i = `row`
@@ -28,7 +30,7 @@ class DifferenceMatrix {
   BlockMatrix::Pattern full_;  // without the diagonal
   /// The first eight numbers of a block, column by column, for one vector register; `ninths_` hold the last numbers.
   using Octet = float __attribute__((vector_size(32)));
-  std::vector<Octet> octets_;  // of full blocks
+  std::vector<Octet> octets_;  // of full blocks off the diagonal
   std::vector<float> ninths_;
   std::vector<Octet> octets_of_sum_;  // D_i of each row
   std::vector<float> ninths_of_sum_;
@@ -82,7 +84,7 @@ class Product {
   Mat3 sum_of_row(std::size_t row) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<DiagonalBlock> blocks_;  // when the matrix was read
+  std::vector<DiagonalBlock> blocks_;  // at the last prepare()
   DifferenceMatrix matrix_;            // used in single precision only
   std::vector<Real> norm_weights_;
   std::vector<std::size_t> selected_;

@@ -30,7 +30,8 @@ class RankOneTerms {
   /// Adds k d dᵀ p of each selected term to q, where d is filtered by the constraints; returns the increase of p·q.
   double multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q) const;
 
-  /// Changes z from P⁻¹ r to (P + Σ k d dᵀ)⁻¹ r, with the sum over the selected terms.
+  /// Changes z from P⁻¹ r to (P + Σ k d dᵀ)⁻¹ r, with the sum over the selected terms. Needs
+  /// prepare_inverses().
   void correct(std::span<PaddedVec3<Real>> z) const;
 
   bool empty() const { return terms_.empty(); }
@@ -40,7 +41,7 @@ class RankOneTerms {
     std::size_t begin = 0, part = 0;
     double stiffness = 0;
     std::vector<PaddedVec3<Real>> direction;  // filtered by the constraints
-    std::vector<PaddedVec3<Real>> inverse;    // w, on all rows
+    std::vector<PaddedVec3<Real>> inverse;    // w, where P includes the terms before
     double factor = 0;                        // k / (1 + k d·w)
     bool is_selected = false;
   };

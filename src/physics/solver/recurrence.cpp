@@ -25,8 +25,8 @@ void convert_to_padded(std::span<const Vec3> from, std::span<PaddedVec3<Real>> t
 
 }  // namespace
 
-// Sums absolute values: contact terms and the coarsest level couple diagonal blocks, so the gain of one may be
-// negative.
+// Sums absolute values: contact terms and the coarsest level couple diagonal blocks, so the gain of
+// a single diagonal block may be negative.
 double Progress::BlockProgress::error_energy() const {
   return std::accumulate(gains.end() - count_recent(), gains.end(), 0.0,
                          [](double sum, double gain) { return sum + std::abs(gain); });
@@ -51,8 +51,9 @@ bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> select
   });
 }
 
-// If the step along `start` is the solution, only rounding remains in the residual: in single precision at most this
-// fraction of the step's energy. Iterations on this residual would add uneven motion, of micrometres in a fall of 5 m.
+// If the step along `start` is the solution, only rounding remains in the residual r: in single
+// precision, r·z (z = P⁻¹ r) is then at most this fraction of the energy that the step gains.
+// Iterations on such a residual would add uneven motion, of micrometres in a fall of 5 m.
 constexpr double kRoundedEnergy = 1e-11;
 
 template <class Real>
@@ -137,7 +138,8 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   }
 }
 
-// Takes the step along `start`. Stores it in double outside of x_, as start_multiple_ times start_.
+// Takes the step along `start`, if the matrix has positive curvature along it. Stores the step in
+// double outside of x_, as start_multiple_ times start_.
 template <class Real>
 void Recurrence<Real>::step_along_start(std::span<const Vec3> start) {
   start_.assign(start.begin(), start.end());
@@ -203,8 +205,8 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
   return End::out_of_iterations;
 }
 
-// The work of forces v along the directions of each selected block. The motions are p_ and, if there is a second one,
-// z_.
+// The work of forces v along the directions of each selected block: the translations, p_ and, if
+// `has_second`, z_.
 template <class Real>
 std::vector<AlongMotions> Recurrence<Real>::along_motions(std::span<const PaddedVec3<Real>> v, bool has_second) const {
   const std::vector<double> first = dots(p_, v),

@@ -27,11 +27,12 @@ struct LinearGoal {
 
 /// Known directions of the solution; each may be empty.
 struct Directions {
-  /// The first step of a solve is along this direction, of the length that is best in the energy norm. It costs one
-  /// product with the matrix.
+  /// The first step of a solve is along this direction, of the length that is best in the energy
+  /// norm. This step costs one product with the matrix.
   std::span<const Vec3> start = {};
-  /// Motion to which the caller adds the solution. At the end of a solve with at least one iteration, the residual does
-  /// no work along the sum of motion and solution, and it sums to zero over each diagonal block without constraints
+  /// Motion to which the caller adds the solution. At the end of a solve with at least one
+  /// iteration and without End::indefinite, the residual does no work along the sum of motion and
+  /// solution, and the residual sums to zero over each diagonal block without constraints
   /// (Galerkin's condition for these directions of each diagonal block).
   std::span<const Vec3> motion = {};
   /// Second motion along which the residual does no work at the end; ignored without `motion`.

@@ -31,7 +31,8 @@ struct Weights {
                                     std::vector<std::vector<Index>>& neighbours);
   /// The transpose, with `rows` rows: the number of columns of this matrix.
   Weights transposed(std::size_t rows) const;
-  /// The product of this interpolation with `next`, the interpolation between this level and the next coarser one.
+  /// The product of this interpolation and `next`, the interpolation from the next coarser level to
+  /// this one.
   Weights times(const Weights& next) const;
 };
 

@@ -41,8 +41,8 @@ std::vector<Index> label_islands(const UntangleInput& input, const std::set<std:
   return island;
 }
 
-/// A point of the line of crossing, and the normal of the crossed surface there. In Island::line, the normal points to
-/// the side of the rest of the cloth.
+/// A point of the line of crossing, and the normal of the crossed surface there. In Island::line,
+/// the normal points from the island to the mesh beside it.
 struct CutPoint {
   Vec3 place, normal;
 };
@@ -65,7 +65,8 @@ CrossedPair crossed_pair_of(const UntangleInput& input, const Crossing& c) {
 }
 
 // Adds to `cut` the edges of the body `cloth` that would cross the other surface if that surface were extended beyond
-// its border. Side of a particle: its side of the plane of the triangle that is crossed nearest to the particle.
+// its border: those whose two particles are on different sides. A particle is on a side of the
+// plane of the crossed triangle whose crossing point is nearest to the particle.
 void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings, std::size_t cloth,
                 std::span<const Vec3> x, std::set<std::array<Index, 2>>& cut) {
   std::vector<CutPoint> line;
@@ -89,7 +90,7 @@ void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings,
 
 // Moves that raise the particles of the island along `up` to at least `height` above the plane perpendicular to `up`
 // through the nearest point of the line. If the island crosses a single other surface, the moves also raise the
-// particles along the normal of that surface to at least `height` above it.
+// particles along the normal of that surface on the side of `up` to at least `height` above it.
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;
@@ -136,13 +137,14 @@ Vec3 direction_of(std::span<const CutPoint> line) {
   return along;
 }
 
-// The cheapest moves to the side of the rest of the cloth: flattened, or folded to one of two sides. Folding must cost
-// a tenth less than the best candidate so far. Empty if no direction is clear.
+// The cheapest moves (stretch_cost()) to the side of the mesh beside the island: flattened, or
+// folded to one of two sides. Folding must cost a tenth less than the best candidate so far. Empty
+// if the normals of the line cancel each other.
 std::vector<Move> best_moves(const UntangleInput& input, const Island& island, double height,
                              const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
   Vec3 up = Vec3::Zero();
   for (const CutPoint& c : island.line) up += c.normal;
-  if (up.norm() < 0.1 * static_cast<double>(island.line.size())) return {};  // the normals cancel: no clear direction
+  if (up.norm() < 0.1 * static_cast<double>(island.line.size())) return {};
   up.normalize();
   std::vector<Move> best = flatten(island, up, height, surfaces, x);
   double min_cost = stretch_cost(input, best, x);

@@ -21,13 +21,16 @@ struct CrossedPair {
 /// layers.
 std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::span<const Crossing> crossings);
 
-/// Lines of crossing divide a mesh into islands. Returns moves for each island except the largest of its mesh, the
-/// smallest island first. The moves take the island to the side of the crossed surface on which the largest island is
-/// (similar to flood filling in Baraff, Witkin & Kass, "Untangling Cloth", 2003). The island is flattened onto that
-/// side, or folded over the line of crossing if folding costs a tenth less (see stretch_cost()). If islands cut each
-/// other off, only the smallest moves. Ignores crossings with solids, floors and layers. `surfaces`: the broad phase,
-/// refitted at x. `above`: height of the moved island over the crossed surface, per body of cloth [m]. `only`:
-/// restricts the search to this pair. If its two surfaces differ, `only->other` is extended beyond its border as a
+/// Lines of crossing divide a mesh into islands. Returns moves for each island that may move, the
+/// smallest island first. The moves take the island to the side of the crossed surface on which the
+/// mesh beside the island is (similar to flood filling in Baraff, Witkin & Kass, "Untangling
+/// Cloth", 2003). The largest island of a mesh and islands with held particles stay. The island is
+/// flattened onto that side, or folded over the line of crossing if folding costs a tenth less (see
+/// stretch_cost()). An island also stays if an island beside it, or a triangle that it crosses,
+/// already moves. Thus, if islands cut each other off, only the smallest moves. Ignores crossings
+/// with solids, floors and layers. `surfaces`: the broad phase, refitted at x. `above`: height of
+/// the moved island over the crossed surface, per body of cloth [m]. `only`: restricts the search
+/// to this pair. If its two surfaces differ, `only->other` is extended beyond its border as a
 /// plane, so that a line of crossing that ends at this border still divides `only->cloth`.
 std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,

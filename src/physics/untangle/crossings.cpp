@@ -60,7 +60,7 @@ std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Ve
 }
 
 // Tests the edges of triangle `of_edge` against `triangle`. `without`: vertex that both share, or −1; edges that end in
-// it are skipped. Returns whether any edge crosses.
+// this vertex are skipped. Adds the crossings to `crossings_`. Returns whether there are any.
 bool CrossingFinder::test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x) {
   bool any = false;
   for (const Index e : input_.edges.of_triangle[of_edge]) {

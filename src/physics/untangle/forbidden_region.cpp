@@ -10,12 +10,14 @@ namespace weft::untangle {
 namespace {
 
 // Offset from a face at which the constructor tests whether the front of the face is inside another shell, relative to
-// the size of the body: below any detail, above rounding.
+// the diagonal of the body's bounding box: smaller than any detail, larger than rounding errors.
 constexpr double kProbeOffset = 1e-6;
-// Weight of a corner below which the nearest point of a face counts as on the opposite edge.
+// Barycentric weight of a corner up to which the nearest point of a face counts as on the opposite
+// edge.
 constexpr double kMaxZeroWeight = 1e-9;
-// Direction of rays that count windings: nearly along an axis, so that bounding boxes of rays are thin, but not along
-// an axis or diagonal, because edges of models often are.
+// Direction of rays that count windings: nearly along an axis, so that bounding boxes of rays are
+// thin; not exactly along an axis or diagonal, because rays must not hit edges of models, which
+// often have these directions.
 const Vec3 kRayDirection(1, 0.00137, 0.00211);
 
 }  // namespace
@@ -95,8 +97,8 @@ bool ForbiddenRegion::inside(const Vec3& p) const {
   return turns < 0;
 }
 
-// If the nearest point of the layer is on its border, p is beside the cloth, neither in front of it nor behind it, and
-// counts as outside.
+// If all corners of the layer that determine its nearest point are on its border, p is beside the
+// cloth, neither in front of it nor behind it, and counts as outside.
 ForbiddenRegion::Exit ForbiddenRegion::exit_of_layer(const Vec3& p) const {
   const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
   const Vec3 place = p - point.height * point.normal;
@@ -128,7 +130,7 @@ ForbiddenRegion::Exit ForbiddenRegion::exit(const Vec3& p) const {
   for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
   collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
   const Vec3 place = p - point.height * point.normal;
-  // Where shells cross, the sign of `point.height` may be wrong.
+  // If shells cross near p, the sign of `point.height` may be wrong, so inside() decides.
   const double side = inside(p) ? -1 : 1;
   if (side * point.height < 0) point.normal = -point.normal;
   return {place, point.normal, side * std::abs(point.height)};

@@ -15,9 +15,9 @@ namespace weft::untangle {
 /// Kinds of surfaces, by the sides on which other cloth may be.
 enum class SurfaceKind : std::uint8_t {
   cloth,  ///< cloth to be untangled; other cloth may be on both sides
-  solid,  ///< closed body; cloth may not be inside
+  solid,  ///< closed or nearly closed body; cloth may not be inside
   floor,  ///< cloth may not be below it
-  open,   ///< any other obstacle; cloth may be on both sides
+  open,   ///< other obstacle, or cloth that does not move; cloth may be on both sides
   layer,  ///< cloth that does not move; cloth worn over it may be on its outer side only
 };
 
@@ -38,12 +38,12 @@ struct UntangleInput {
 
   const collision::Bodies& bodies;
   std::vector<SurfaceKind> kinds;              ///< per body
-  std::span<const std::uint8_t> movable;       ///< per vertex
+  std::span<const std::uint8_t> movable;       ///< per vertex: 1 if it may move
   mesh::EdgeSet edges;                         ///< of all triangles, with global numbers
   std::vector<Link> links;                     ///< of cloth
   std::vector<std::vector<Index>> neighbours;  ///< per particle
-  std::vector<std::uint8_t> on_border;         ///< per vertex
-  std::vector<double> thickness;               ///< per body [m]
+  std::vector<std::uint8_t> on_border;         ///< per vertex: 1 if it is on a border
+  std::vector<double> thickness;               ///< contact thickness per body [m]
   std::vector<std::uint8_t> can_move;          ///< per body: whether any of its vertices is movable
 
   bool is_cloth(Index vertex) const { return vertex < particles(); }
@@ -56,8 +56,9 @@ struct Move {
   Vec3 target;  ///< [m]
 };
 
-/// Cost of moves: mean squared strain of the threads of the moved particles. Strain is the relative excess over the
-/// maximum length, or the relative deficit below the minimum length. Excess or deficit before the moves does not count.
+/// Cost of moves: mean squared strain, after the moves, of the threads of the moved particles; 0 if
+/// they have no threads. Strain is the relative excess over the maximum length, or the relative
+/// deficit below the minimum length. Excess or deficit before the moves does not count.
 double stretch_cost(const UntangleInput& input, std::span<const Move> moves, std::span<const Vec3> x);
 
 }  // namespace weft::untangle

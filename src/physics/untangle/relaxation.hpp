@@ -10,19 +10,20 @@
 namespace weft::untangle {
 
 /// Sweeps `sweeps` times over all links in order, and corrects the length of each before it reads the next one
-/// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). Corrects links
-/// of bending only in part. After every few sweeps and after the last one, calls raise(). `above`: minimum height over
-/// solids [m], per body.
+/// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics",
+/// 2007). Corrects only a fifth of the error of a bending link. After every fifth sweep and after
+/// the last one, calls raise(). `above`: minimum height over solids [m], per body.
 void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
            int sweeps, std::span<Vec3> x);
 
-/// Moves movable particles that are lower than `above` over a solid to the height `above` over their nearest exit
-/// (ForbiddenRegion::Exit).
+/// Moves movable particles that are inside a solid, or less than `above` [m] over it, to the height
+/// `above` over their nearest exit (ForbiddenRegion::Exit). `above`: per body.
 void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
            std::span<Vec3> x);
 
-/// Moves movable particles within `rings` edges of the given ones to the centre of their neighbours, `times` times. For
-/// a particle on the border, only neighbours on the border are used, so that it stays on the border.
+/// Moves movable particles within `rings` edges of the given ones to the mean of their neighbours,
+/// `times` times. For a particle on the border, only neighbours on the border count, so that it
+/// stays near the border; with fewer than two of them, the particle does not move.
 void smooth(const UntangleInput& input, std::span<const Index> particles, int rings, int times, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -16,31 +16,33 @@ namespace {
 constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, relative to the larger thickness of the two: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
-// Distance below which two surfaces coincide: neither is on a side of the other [m].
+// Two surfaces at most this far apart coincide: neither is on a side of the other [m].
 constexpr double kTouchDistance = 1e-9;
 constexpr int kMaxRounds = 400;
-// After kPatience rounds in which the number of crossings does not reach a new minimum, the cloth around the remaining
-// crossings is smoothed, each time over a larger area, at most kMaxSmoothings times.
+// After kPatience rounds in which the number of crossing pairs does not reach a new minimum, the
+// cloth around the remaining crossings is smoothed, each time over a larger area, at most
+// kMaxSmoothings times.
 constexpr int kPatience = 12, kMaxSmoothings = 12;
 // Maximum number of islands of a CrossedPair that are tried one by one.
 constexpr std::size_t kMaxSingleIslands = 12;
 constexpr int kSweepsAfterMove = 120, kSweeps = 8;
 // Maximum displacement that takes a region (InsideRegion) out of a body, relative to the region's size. A region that
-// needs more is locked: it has no way out.
+// needs more is locked (it has no way out), unless it is shallow (kShallowDepth).
 constexpr double kMaxDisplacementRatio = 1.5;
 // Maximum number of passes over all bodies: a region that leaves one body may enter another.
 constexpr int kMaxPasses = 3;
 // A region is shallow if its displacement is less than this multiple of the height to which cloth is moved
 // (kHeightInThicknesses). Shallow regions always move; only strain after the move can lock them.
 constexpr double kShallowDepth = 4;
-// Maximum strain of a thread after the move. If it is larger, the body probably goes through the cloth, and the region
-// is locked. (Measured: the largest strain of a valid start is 0.44, of a tube 4 cm too small; trousers with a leg
-// through the seat have 4.9.)
+// Maximum strain of a thread after the move. If a thread is strained more, the body probably goes
+// through the cloth, and the region is locked. (Measured: the largest strain of a valid start is
+// 0.44, of a tube 4 cm too small; trousers with a leg through the seat have 4.9.)
 constexpr double kMaxStrain = 1.5;
 // Maximum fraction of a region's threads that may still go through the body after the move. It is not 0, because
 // relax() frees threads at the region's border.
 constexpr double kMaxBlockedFraction = 0.2;
-// Maximum displacement per round by shorten_contours(), relative to the mean length of threads.
+// Maximum displacement per round by shorten_contours(), relative to the mean of the maximum lengths
+// of threads.
 constexpr double kStep = 0.12;
 constexpr int kMaxGapRounds = 60;
 
@@ -79,7 +81,8 @@ class Untangling {
   }
 
  private:
-  // Moves the regions of cloth inside solids out of these. If a region is locked, restores the start and returns false.
+  // Moves the regions of cloth that are inside solids out of them. If a region is locked, restores
+  // the start and returns false.
   bool move_out_of_solids() {
     for (int pass = 0; pass < kMaxPasses && report_.locked.empty(); ++pass) {
       std::vector<InsideRegion> regions;
@@ -122,10 +125,11 @@ class Untangling {
     return any;
   }
 
-  // Separates coincident surfaces, because neither is on a side of the other. Of two cloths, moves the later one in the
-  // model to the front (the side of the normal) of the earlier one; if particles of the later one are held, also moves
-  // the earlier one back. If the second surface cannot move (an obstacle), moves the cloth to the front of that
-  // surface. If that surface has no front (a rope), moves the cloth against its own normal.
+  // Separates surfaces that coincide, because neither is on a side of the other. Of two triangles
+  // of different bodies, moves that of the later body to the front (the side of the normal) of the
+  // other. If the later triangle has held particles, also moves the earlier one to the back of the
+  // later one. If the later body cannot move at all, moves the earlier triangle to the front of the
+  // later one or, if that has no front (a rope), against its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {
@@ -232,8 +236,9 @@ class Untangling {
   }
   void return_to_best() { std::ranges::copy(best_x_, x_.begin()); }
 
-  // Call if nothing crosses, but gaps may be too small: pushes close pairs apart until all gaps are large enough. Stops
-  // at the last state without crossings.
+  // Call if nothing crosses, but gaps may be too small: pushes close pairs apart until all gaps are
+  // large enough, in at most kMaxGapRounds rounds. If this makes triangles cross, restores the last
+  // state without crossings.
   void restore_gaps() {
     std::vector<Vec3> good(x_.begin(), x_.end());
     double max_gap = 0;
@@ -252,7 +257,8 @@ class Untangling {
     std::ranges::copy(good, x_.begin());
   }
 
-  // Pushes two triangles apart to slightly more than the minimum gap. Returns whether any particle has moved.
+  // If the gap between two triangles is too small, pushes them apart to 1.1 times the minimum gap.
+  // Returns whether any particle has moved.
   bool push(const collision::CornerPair& pair) {
     const double wanted = kGapInThicknesses * std::max(input_.thickness[input_.bodies.body_of(pair.a[0])],
                                                        input_.thickness[input_.bodies.body_of(pair.b[0])]);

@@ -19,21 +19,23 @@
 namespace weft::untangle {
 
 struct Options {
-  bool self = true;       ///< cloth with cloth
-  bool obstacles = true;  ///< cloth with obstacles
+  bool self = true;       ///< separate cloth from cloth
+  bool obstacles = true;  ///< separate cloth from surfaces that do not move
 };
 
 struct Report {
   int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
-  int rounds = 0;                         ///< of attempts to reduce the number of crossings
+  int rounds = 0;                         ///< rounds that tried to reduce the number of crossings
   double farthest = 0;                    ///< largest displacement of a particle [m]
   double stretch = 0;                ///< largest excess of a thread over its maximum length, relative to that length
   std::vector<InsideRegion> locked;  ///< regions without a way out; if there are any, nothing was moved
 };
 
-/// Moves particles in x [m] until no triangle of cloth crosses cloth or an obstacle, and the gap between two surfaces
-/// is at least a tenth of the larger of their thicknesses. If this is not reached within a bounded number of rounds,
-/// keeps the state with the fewest crossings. If a region is locked, moves nothing. The result is deterministic.
+/// Moves particles in x [m] until no triangles cross of which one is cloth (Options select the
+/// pairs), and the gap between two surfaces is at least a tenth of the larger of their thicknesses.
+/// If crossings remain after a bounded number of rounds, keeps the state with the fewest crossing
+/// pairs. If only gaps remain too small, keeps the last state without crossings. If a region is
+/// locked, moves nothing. The result is deterministic.
 Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

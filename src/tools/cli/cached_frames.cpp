@@ -42,7 +42,8 @@ struct Missing {
 
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial) {
   const FrameRange wanted = resolve_frames(selection, reader.manifest().frame_count);
-  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // frames before the first missing one
+  // Frames before the first missing or broken one.
+  FrameRange before{wanted.begin, wanted.begin, wanted.step};
   Missing missing;
   for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
     missing.check_frame(reader, frame);

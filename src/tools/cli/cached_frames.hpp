@@ -7,10 +7,12 @@
 
 namespace weft::cli {
 
-/// Returns the selected frames, or all frames of the scene if `selection` names none. Verifies each frame, so that the
-/// command finds a damaged one before it writes anything. If frames are missing or broken, throws Error(frames_missing)
-/// with their numbers. With `partial`, warns instead, and returns the frames before the first missing or broken frame;
-/// throws only if there is no such frame. Throws Error(usage) if the selection is empty or exceeds the scene.
+/// Returns the selected frames; all frames of the scene if `selection` has no bounds and no step.
+/// Verifies each frame, so that the command finds a damaged frame before it writes anything. If
+/// frames are missing or broken, throws Error(frames_missing) with their numbers. With `partial`,
+/// warns instead, and returns the frames before the first missing or broken frame; if this frame is
+/// the first selected one, throws nevertheless. Throws Error(usage) if the selection is empty or
+/// exceeds the scene.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
 /// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights).

@@ -12,13 +12,14 @@ namespace weft::cli {
 /// File name of the tools program, which has the commands that `weft` does not have.
 inline constexpr const char* kToolsName = "weft-tools";
 
-/// Path of the program `weft`: the running program or, if that is the tools program, `weft` beside it.
+/// Path of the program `weft`: the running program or, if that is the tools program, `weft` in the
+/// same folder. Throws Error(usage) if /proc is not mounted.
 std::filesystem::path own_program();
 
-/// Starts the program `arguments[0]`, which it searches in PATH as a shell does, with empty standard input. Standard
-/// output and standard error of the program go to the file `log` or, if `log` is empty, to those of this process. The
-/// kernel kills the program when the calling thread ends. Throws Error(output_failed) if the program cannot be started
-/// or `log` cannot be written.
+/// Starts the program `arguments[0]` with empty standard input. Searches the program in PATH as a
+/// shell does. Standard output and standard error of the program go to the file `log` or, if `log`
+/// is empty, to those of this process. The kernel kills the program when the calling thread ends.
+/// Throws Error(output_failed) if the program cannot be started or `log` cannot be written.
 pid_t start_process(const std::vector<std::string>& arguments, const std::filesystem::path& log);
 
 struct ProcessResult {

@@ -19,8 +19,8 @@ ExitCode render(const RenderOptions& options);
 /// Checks scenes. Mistakes go to standard error, valid scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 
-/// Draws one still of each scene: the given frame, else the frame with the highest saliency (render/saliency.hpp); or
-/// the start.
+/// Draws one still of each scene: the start if `options.start` is set, else the given frame, else
+/// the frame with the highest saliency (film/render/saliency.hpp).
 ExitCode thumbnail(const ThumbnailOptions& options);
 
 /// Draws evenly spaced frames of a scene into one picture, with their numbers and times.
@@ -46,11 +46,13 @@ std::vector<std::string> template_names();
 /// drawings.
 ExitCode watch(const WatchOptions& options);
 
-/// Prints processor, libraries and OpenGL of this machine, and tests them.
+/// Prints processor, libraries, OpenGL and encoder of this machine, and tests drawing and encoding.
+/// Returns the exit code of the first failed test; 0 if none failed.
 ExitCode doctor(const DoctorOptions& options);
 
-/// Measures stability, accuracy, speed or fabrics, and writes tables and plots. Without a scene, `bench stability`
-/// returns exit code 1 if a simulation gains energy without bound or computes values that are not finite.
+/// Measures stability, accuracy, speed or fabrics, and writes tables and plots. Without a scene,
+/// `bench stability` returns exit code 1 if a simulation computes values that are not finite, or
+/// ends with more energy than allowed without a warning in any frame.
 ExitCode bench(const BenchOptions& options);
 
 /// Prints the difference of each pair of a reference and a picture. Returns exit code 4 if a file cannot be read, else

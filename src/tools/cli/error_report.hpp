@@ -19,6 +19,7 @@ std::string error_summary(const run_error::ErrorEstimate& estimate);
 std::string error_sentence(const run_error::ErrorEstimate& estimate, double cloth_size);
 
 /// A length [m] as text, in mm and relative to `cloth_size`: "1.2 mm (0.12 % of the cloth's size)".
+/// If `cloth_size` is 0, only in mm.
 std::string relative_length(double length, double cloth_size);
 
 /// The estimate in SI units: {"comparable", "parts": {"time_steps": {"position_m", ...}, ...}, "all", "advice",

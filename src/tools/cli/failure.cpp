@@ -58,7 +58,8 @@ Failure describe_failure(const std::exception_ptr& exception) {
 }
 
 void report(const Failure& failure) {
-  // Mistakes of a scene begin with file and line, as compiler messages do, so that editors can jump there.
+  // Mistakes of a scene get no prefix: they begin with file and line, as compiler messages do, so
+  // that editors can jump there.
   log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
 }
 

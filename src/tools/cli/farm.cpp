@@ -26,9 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Ratios of the time and memory that tasks request to those measured in a trial. Frames with contact take longer than
-// the first frames. A task near its time limit stops and is queued again (scripts/task.sh); a task that exceeds its
-// memory is killed.
+// Factors from the time and memory measured in a trial to those that tasks request. Frames with
+// contact take longer than the first frames. A task near its time limit stops and is queued again
+// (scripts/task.sh); a task that exceeds its memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
 constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
@@ -199,7 +199,8 @@ class Farm {
     return last;
   }
 
-  /// One text for each task that ended with an exit code other than 0, with the path of its log.
+  /// One text, with the path of the log, for each task that ended with an exit code other than 0 or
+  /// could not write its exit code.
   std::vector<std::string> failures() const {
     std::vector<std::string> lines;
     std::error_code none;

@@ -17,7 +17,8 @@ struct Needs {
   int simulate_minutes, draw_minutes;  ///< time limits [min]
 };
 
-/// What the scripts contain. A job is one run; tasks simulate it, draw parts of it and join them.
+/// What the scripts contain. A job is one run. Tasks simulate a job, draw parts of its frames, and
+/// join the parts.
 struct FarmPlan {
   std::vector<SweepJob> jobs;          ///< all runs of the sweep
   std::vector<std::size_t> submitted;  ///< indices of the jobs that are not done yet, ascending
@@ -32,7 +33,8 @@ struct FarmPlan {
 /// extension is the folder into which tasks unpack the archive.
 std::string program_tar(const std::string& archive);
 
-/// Text of `farm/task.sh`. Its paths are valid on all machines that share the folder.
+/// Text of `farm/task.sh`. The script uses absolute paths, so the folder of the runs and the scene
+/// must have the same paths on all machines.
 std::string task_script(const FarmOptions& options, const FarmPlan& plan);
 
 /// Text of `farm/submit.sh`, which calls sbatch, and writes numbers and names of the Slurm jobs to `farm/jobs`.

@@ -80,7 +80,7 @@ class Film {
   /// camera instead.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
-    // Makes the first frame even after a stop request, so that the run has a picture; it costs little time.
+    // Makes the first frame even after a stop request, so that the run has a picture.
     for (int frame = made_.begin; frame <= last; frame += made_.step) {
       if (frame > made_.begin && stop_) {
         result_.interrupted = true;

@@ -46,11 +46,12 @@ struct FilmResult {
   std::vector<FrameRecord> frames;  ///< all frames that were made, in order
   /// Number of frames that all stages have completed.
   int written = 0;
-  double cloth_size = 0;     ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
-  bool interrupted = false;  ///< `stop` became true before the last frame was made or drawn
+  /// Longest side of the bounding box of the largest cloth or rope in the first frame [m]; 0: none.
+  double cloth_size = 0;
+  bool interrupted = false;      ///< `stop` became true before the last frame was made or drawn
   std::string painter = "none";  ///< description of the painter
-  /// Exception of the failed stage; if several stages failed, that of the latest one in the pipeline; null if none
-  /// failed.
+  /// Exception of the failed stage; null if none failed. If several stages failed, the exception of
+  /// the last of them in the pipeline.
   std::exception_ptr failure;
   bool finished_output = false;  ///< the output has its final name; it may have fewer frames than wanted
 };

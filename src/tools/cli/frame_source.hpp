@@ -34,8 +34,8 @@ class FrameSource {
 /// (store.hpp); after them, simulated ones.
 class SceneSource : public FrameSource {
  public:
-  /// Opens `store` for new frames. `stop` interrupts the preroll, the frames before frame 0; `progress` counts its
-  /// frames.
+  /// Opens `store` for new frames. `stop` interrupts the preroll, the frames before frame 0;
+  /// `progress` counts the frames of the preroll.
   SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress);
 
   MadeFrame next() override;

@@ -86,7 +86,8 @@ Piece read_picture(const fs::path& file) {
   return piece;
 }
 
-// Decodes the whole video, so that frames that cannot be decoded count as missing.
+// Decodes the whole video. Frames that the metadata name but the video lacks count as missing. If a
+// frame cannot be decoded, the whole video counts as unreadable.
 Piece read_video(const fs::path& file) {
   video::Decoder decoder(file);
   Piece piece{.file = file, .width = decoder.width(), .height = decoder.height(), .film = decoder.metadata()};
@@ -135,8 +136,10 @@ class Film {
   const Piece& first() const { return pieces_.front(); }
   bool of_videos() const { return is_video(first().file); }
 
-  /// The requested frames, or with `partial` those before the first missing one. Throws Error(frames_missing) with the
-  /// numbers of the missing frames. Without `partial`, also throws this error if a file is unreadable.
+  /// Returns the requested frames if none is missing and every file is readable; otherwise throws
+  /// Error(frames_missing) with the numbers of the missing frames. With `partial`, warns instead,
+  /// and returns the frames before the first missing one; if no frame is before it, throws
+  /// nevertheless.
   FrameRange frames(const JoinOptions& options) const;
 
  private:

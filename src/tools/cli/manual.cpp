@@ -116,7 +116,8 @@ std::string bash_completion(const CLI::App& app) {
 }
 
 std::string zsh_completion(const CLI::App& app) {
-  // Escapes brackets and colons, which separate the fields of a specification.
+  // Escapes brackets, colons and backslashes, since brackets and colons separate the fields of a
+  // specification.
   const auto field = [](const std::string& text) {
     std::string result;
     for (const char c : text)

@@ -49,7 +49,8 @@ struct RunOptions {
   bool resume = false;
   int depth = 8;  ///< bits per channel of PNG pictures, 8 or 16
   VideoOptions video;
-  bool error = false, mesh_error = false;  ///< estimate the error of the run; mesh_error: also that due to the mesh
+  /// Estimate the error of the run; mesh_error: also estimate the error due to the mesh.
+  bool error = false, mesh_error = false;
 };
 
 struct SimulateOptions : RunOptions {
@@ -65,7 +66,7 @@ struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> overrides;
   std::filesystem::path against;  ///< a scene, an effective scene or a cache to compare with; empty: none
-  bool plan = false;              ///< also list the parts of the program that the scene uses
+  bool plan = false;              ///< also list which parts of the program the scene uses
   bool estimate = false;          ///< also estimate time and memory of a run
 };
 
@@ -208,8 +209,8 @@ using Command =
                  SweepOptions, FarmOptions, NewOptions, WatchOptions, SchemaOptions, DoctorOptions, BenchOptions,
                  DiffOptions, AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
 
-/// `arguments`: without the program's name. Throws Error(usage), which says what was expected. If a name is unknown and
-/// a known one is similar, the message names the latter.
+/// `arguments`: without the program's name. Throws Error(usage), which says what was expected. If a
+/// name is unknown and a known name is similar, the message suggests the known name.
 Command parse_command_line(const std::vector<std::string>& arguments);
 
 /// Parses `1280x720`. Throws Error(usage).

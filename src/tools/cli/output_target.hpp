@@ -25,7 +25,8 @@ struct VideoOptions {
 /// The codec of a video file. Throws Error(usage) if the options do not fit its extension.
 video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& options);
 
-/// A file name with a placeholder for the frame number: `{frame}`, or `{frame:05}` for five digits.
+/// A file name with a placeholder for the frame number: `{frame}`, or `{frame:05}` for at least
+/// five digits.
 class FramePattern {
  public:
   /// Throws Error(usage) unless the text has exactly one placeholder, with 1 to 10 digits.

@@ -34,10 +34,11 @@ class PathLedger {
   /// contains.
   void register_output_folder(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) if an output file exists and `overwrite` is false, or if there is a folder of this
-  /// name. If `overwrite` is false, the command does not replace files that other processes create after this call
-  /// either. `own`: outputs() of the run that is resumed; existing files of these outputs may be replaced if `is_own`
-  /// returns true.
+  /// Throws Error(output_failed) if a folder has the name of an output file, or if an output file
+  /// exists and `overwrite` is false. An existing file is allowed if it has the content given to
+  /// writes_content(), or if its output is in `own` and `is_own` returns true for the file. `own`:
+  /// outputs() of the run that is resumed. If `overwrite` is false, the command also does not
+  /// replace files that other processes create after this call.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.

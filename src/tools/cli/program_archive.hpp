@@ -13,7 +13,7 @@ class ProgramArchive {
   /// Throws Error(asset_unreadable) with the defect.
   explicit ProgramArchive(const std::filesystem::path& file);
 
-  /// Hash of the content; 16 hexadecimal digits.
+  /// Hash of the compressed archive; 16 hexadecimal digits.
   const std::string& fingerprint() const { return fingerprint_; }
   /// Writes the archive uncompressed, so that any tar program can read it. Throws Error(output_failed).
   void write_tar(const std::filesystem::path& tar) const;

@@ -47,7 +47,8 @@ struct FilmPlan {
 
   bool draws() const { return target.kind != Kind::none; }
 
-  /// Plans to make all frames, not only the wanted ones, so that the computed camera does not depend on their range.
+  /// Plans to make all frames, not only the wanted ones, so that the computed camera does not
+  /// depend on --frames.
   void make_all(const scene::Scene& of) {
     made = {0, of.frame_count(), 1};
     simulated = of.preroll_frames() + made.count();

@@ -30,7 +30,8 @@ struct RunReport {
   std::uint64_t scene_hash = 0;
   std::vector<frame::ObjectInfo> objects;
   std::size_t particles = 0;
-  double cloth_size = 0;  ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
+  /// Longest side of the bounding box of the largest cloth or rope in the first frame [m]; 0: none.
+  double cloth_size = 0;
   int threads = 0;
   std::string gl;             ///< description of OpenGL; "none" if nothing is drawn
   int width = 0, height = 0;  ///< [pixels]; 0 if nothing is drawn
@@ -55,7 +56,8 @@ struct RunReport {
 };
 
 struct StageTotals {
-  StageTime simulate, collide, forces, preconditioner, linear;  ///< all others are parts of `simulate`
+  /// `collide`, `forces`, `preconditioner` and `linear` are parts of `simulate`.
+  StageTime simulate, collide, forces, preconditioner, linear;
   StageTime render, encode, meshes;
 };
 

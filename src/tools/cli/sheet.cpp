@@ -26,7 +26,8 @@ PictureSize small_size(const render::Settings& settings) {
   return {kPictureWidth, std::max(1, static_cast<int>(std::lround(height)))};
 }
 
-/// Selects `count` frames as evenly as possible, with the first and the last; the middle one if `count` is 1.
+/// Selects `count` frames as evenly as possible, with the first and the last; the middle one if
+/// `count` is 1; all frames if there are at most `count`.
 std::vector<int> evenly_spaced(const std::vector<int>& frames, int count) {
   const auto all = static_cast<int>(frames.size());
   if (count >= all) return frames;

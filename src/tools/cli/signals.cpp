@@ -18,7 +18,7 @@ constexpr long long kRepeatWindow = 1'000'000'000;  // [ns]
 
 std::atomic<bool> g_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
-std::string_view g_promise;  // set before any handler is installed
+std::string_view g_promise;  // set before on_signal() is installed
 std::array<struct sigaction, kSignals.size()> g_previous;
 
 // Signal handlers make only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.

@@ -1,4 +1,4 @@
-// Ends the process in order on SIGINT (Ctrl-C), SIGTERM and SIGHUP.
+// Handles SIGINT (Ctrl-C), SIGTERM and SIGHUP, so that the process leaves no temporary files.
 #pragma once
 
 #include <atomic>

@@ -32,9 +32,9 @@ Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
 }
 
-// Fraction of the picture that shows the triangles of a place. saliency_of() measures how much cloth is visible, so
-// only these triangles are marked as cloth. They are drawn first, so that they hide the original surface, which has the
-// same depth.
+// Fraction of the picture that shows the triangles of a place. saliency_of() measures how much
+// cloth is visible, so only these triangles are marked as cloth. These triangles are drawn first,
+// so that they hide the original surface, which has the same depth.
 double visible_fraction(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                         const frame::Camera& camera, double aspect) {
   auto marks = std::make_shared<frame::Surface>();

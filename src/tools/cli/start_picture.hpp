@@ -10,8 +10,9 @@
 
 namespace weft::cli {
 
-/// Draws the whole scene, and close-ups of the places with the most pairs of touching or crossing triangles. Outlines
-/// these triangles in red, even if something hides them. `painter` must use the first camera of each snapshot.
+/// Draws the whole scene, and close-ups of the first five places of `start`. Outlines the touching
+/// or crossing triangles of all places in red, even if something hides them. `painter` must use the
+/// first camera of each snapshot.
 std::vector<image::SheetPicture> draw_start(const production::StartView& start, const render::Settings& settings,
                                             FramePainter& painter);
 

@@ -29,12 +29,13 @@ class Stills {
   const std::vector<int>& frames() const { return frames_; }
 
   virtual void add_inputs(PathLedger& paths) const = 0;
-  /// Number of frames to simulate, with the preroll, until frame `last` is available; 0 for a cache.
+  /// Number of frames that at() counts as progress until frame `last` is available: those of the
+  /// preroll and frames 0 to `last`; 0 for a cache.
   virtual int cost(int last) const = 0;
   /// Returns a frame. Call it with ascending frame numbers. Throws Error(interrupted) after a stop signal.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
-  /// The camera path, computed from the frames of the cache that have the current looks, or from those simulated so
-  /// far. Call it after at() for all frames to draw.
+  /// The camera path. A computed path uses the frames of the cache that have the current looks or,
+  /// for a scene, the frames simulated so far. Call it after at() for all frames to draw.
   render::CameraPath camera();
   /// Whether a stop signal has arrived.
   bool is_stopped() const { return signals_.requested(); }

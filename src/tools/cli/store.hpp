@@ -39,7 +39,7 @@ class Store {
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
 
-  /// Number of frames of an earlier run.
+  /// Number of frames of an earlier run; 0 if its cache cannot be read.
   std::size_t leftover_frames() const;
   bool has_leftover() const { return cache::is_cache(lock_.folder()); }
 

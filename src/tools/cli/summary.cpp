@@ -72,8 +72,9 @@ std::string joule(double energy) {
   return fmt::format("{:.3g} J", std::abs(energy) < 1e-12 ? 0.0 : energy);
 }
 
-// One sentence: the error of positions, its main source, and how to reduce it. Without --error, it reports only the
-// frame with the largest error: the errors of frames do not add up, since later motion may reduce or amplify them.
+// One sentence: the error of positions, its main source, and how to reduce the error. Without
+// --error, the sentence covers only the frame with the largest error: the errors of frames do not
+// add up, since later motion may reduce or amplify them.
 std::string error_text(const RunReport& report) {
   if (report.error) return error_sentence(*report.error, report.cloth_size);
   const auto of_frame = [](const FrameRecord& record) {

@@ -36,8 +36,9 @@ struct Job : SweepJob {
 
   fs::path log() const { return folder / "run.log"; }
 
-  /// Returns `ok` if the run is done, else the exit code of its failure from the statistics. Returns frames_missing if
-  /// the statistics name no failure: they or the video are missing, or they belong to another scene.
+  /// Returns `ok` if the run is done, else the exit code of its failure from the statistics.
+  /// Returns frames_missing if the statistics name no failure: the statistics or the video are
+  /// missing, or the statistics belong to another scene.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
     const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 // Whether an output has the expected metadata; the OpenGL implementation may differ.
 bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
-  // The metadata have such an entry only if the run was given the option. If the current run was not, the output must
-  // not have the entry.
+  // Weft writes these entries only if the setting has a value. If the current setting has no value,
+  // the output must not have the entry.
   for (const char* option : {"camera", "look", "motion_blur"})
     if (found.contains(option) && !expected.contains(option)) return false;
   return std::ranges::all_of(expected, [&](const auto& entry) {

@@ -117,8 +117,8 @@ Limits for_size(Limits limits, const Figures& figures) {
 }
 
 double counted_pixels(const Figures& figures, const Limits& limits) {
-  // With this weight, the default budget allows twice the largest fraction of edge pixels that differed between CPU
-  // types: 21 of 57,600 pixels (README.md, Decisions).
+  // With this weight, the default budget allows 2.2 times the largest fraction of edge pixels that
+  // differed between CPU types: 21 of 57,600 pixels (README.md in this folder, Decisions).
   constexpr double kEdgePixelWeight = 1.0 / 40;
   const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
   return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;

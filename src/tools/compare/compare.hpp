@@ -10,9 +10,9 @@
 
 namespace weft::compare {
 
-/// Limits beyond which two images count as different. The defaults tolerate differences between CPU types and Mesa
-/// versions: single pixels at the edges of cloth, shadows and printed patterns (README.md, Decisions). The defaults
-/// reject differences that a viewer sees if the images alternate.
+/// Limits beyond which two images count as different. The defaults tolerate differences between CPU
+/// types: single pixels at the edges of cloth, shadows and printed patterns (README.md in this
+/// folder, Decisions). The defaults reject differences that a viewer sees if the images alternate.
 struct Limits {
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
   /// Fraction of the pixels that may differ by more than pixel_tolerance. The default value has two more rules: a pixel
@@ -21,16 +21,18 @@ struct Limits {
   /// Limit on the mean of the FLIP map. It detects small differences of many pixels: the default corresponds to a
   /// difference of one level at 2 % of the pixels. `for_size` raises the default for small pictures.
   double flip = 5e-4;
-  /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget allows: a spot of
-  /// 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels. It tolerates a pixel of which one of the
-  /// four samples falls on the wrong side of an edge: its FLIP value is up to 0.25.
+  /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget
+  /// allows: a spot of 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels. If
+  /// one of the four samples of a pixel falls on the wrong side of an edge, the FLIP value of this
+  /// pixel is up to 0.25, which the default tolerates.
   double spot = 0.3;
 };
 
-/// Widens those limits that have their default values, for lossy videos: the encoder amplifies small differences where
-/// it divides gradients into coding blocks. Measured between H.264 videos at crf 18 from two CPU types: up to 1.35 % of
-/// the pixels over the tolerance, mean FLIP 0.011, largest FLIP 0.28. The wider limits are twice the first two values,
-/// and 0.4 for the largest FLIP.
+/// For lossy videos: widens those limits that have their default values, since the encoder
+/// amplifies small differences where it divides gradients into coding blocks. Measured between
+/// H.264 videos at crf 18 from two CPU types: up to 1.35 % of the pixels over the tolerance, mean
+/// FLIP 0.011, largest FLIP 0.28. The wider limits are twice the first two values, and 0.4 for the
+/// largest FLIP.
 Limits with_encoder_noise(Limits limits);
 
 /// Selects the pixels that are compared: those whose value is not 0.
@@ -68,8 +70,9 @@ struct Comparison {
 Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance,
                    const Mask* mask = nullptr);
 
-/// Multiplies the default limit on mean FLIP by √(640 · 360 / number of pixels) if the picture has fewer than 640x360
-/// pixels, since edges cover a larger fraction of a small picture.
+/// If `limits.flip` has its default value and the picture has fewer than 640x360 pixels, multiplies
+/// this limit by √(640 · 360 / number of pixels), since edges cover a larger fraction of a small
+/// picture.
 Limits for_size(Limits limits, const Figures& figures);
 
 /// Number of pixels that count against the budget; fractional if edge pixels count as 1/40.

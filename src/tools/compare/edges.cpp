@@ -9,8 +9,8 @@
 namespace weft::compare {
 namespace {
 
-// Limit on the pixels of a group. The largest group measured has 3 pixels, in pictures of twelve scenes drawn with and
-// without `GALLIUM_OVERRIDE_CPU_CAPS=sse4.1`.
+// Limit on the pixels of a group. The largest group between pictures drawn with and without
+// `GALLIUM_OVERRIDE_CPU_CAPS=sse4.1` has 3 pixels.
 constexpr std::size_t kMaxGroupSize = 4;
 
 struct Pixel {

@@ -22,7 +22,8 @@ std::string size_problem(int width, int height, int test_width, int test_height)
   return fmt::format("{}x{} pixels, the reference has {}x{}", test_width, test_height, width, height);
 }
 
-// Reads a mask; pixels whose mean of the channels is at least 128 are white. Throws Error(asset_unreadable).
+// Reads a mask; pixels whose mean of the channels is at least 128 are white. Throws
+// Error(asset_unreadable), also if the mask has another size or no white pixel.
 Mask read_mask(const std::filesystem::path& file, int width, int height) {
   const image::Image picture = image::read_png(file);
   if (picture.width != width || picture.height != height) {
@@ -37,7 +38,7 @@ Mask read_mask(const std::filesystem::path& file, int width, int height) {
   return mask;
 }
 
-// Compares two pictures or frames, adds them to `result`, and returns their figures.
+// Compares two pictures or frames, adds the comparison to `result`, and returns the figures.
 Figures add_frame(FileComparison& result, image::Image&& reference, image::Image&& test, const Limits& limits,
                   const std::optional<Mask>& mask) {
   Comparison frame = compare(reference, test, limits.pixel_tolerance, mask ? &*mask : nullptr);
@@ -57,7 +58,8 @@ Figures add_frame(FileComparison& result, image::Image&& reference, image::Image
   return figures;
 }
 
-// Recounts the frames that exceed a limit; counts those with spill, see is_spill(), separately.
+// Recounts the frames that exceed a limit. Counts the frames that are spill separately; see
+// is_spill().
 void count_spill(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
   result.frames_differing = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -152,7 +154,7 @@ FileComparison compare_files(const std::filesystem::path& reference, const std::
   result.test = test;
   result.video = is_video(reference) && is_video(test);
   try {
-    // If only one of the two files is a video, it counts as an unreadable picture.
+    // compare_pictures() finds the video unreadable if only one of the two files is a video.
     result.video ? compare_videos(result, limits, mask) : compare_pictures(result, limits, mask);
   } catch (const Error& error) {
     if (error.code() != ExitCode::asset_unreadable) throw;

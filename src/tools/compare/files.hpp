@@ -10,8 +10,10 @@ namespace weft::compare {
 
 /// Whether the file is a video, by its extension: .mp4, .mov, .mkv, .webm or .avi.
 bool is_video(const std::filesystem::path& file);
-/// Whether the file is a video whose encoder has changed the pictures; false if it cannot be read.
+/// Whether the file is a video whose encoder may have changed the pictures (Decoder::lossy); false
+/// if the file cannot be read.
 bool is_lossy_video(const std::filesystem::path& file);
+/// Whether the file is a picture (.png) or a video, by its extension.
 bool is_comparable(const std::filesystem::path& file);
 /// Limits for two files: those of with_encoder_noise() if either is a lossy video, else `limits`.
 Limits limits_for(const Limits& limits, const std::filesystem::path& reference, const std::filesystem::path& test);
@@ -31,22 +33,26 @@ struct FileComparison {
   std::filesystem::path reference, test;
   Outcome outcome = Outcome::same;
   std::string problem;       ///< what is wrong, for the outcomes from `size` on; else empty
-  bool video = false;        ///< whether both files are videos; a picture counts as one frame
-  int frames = 0;            ///< number of compared frames
+  bool video = false;        ///< whether both files are videos
+  int frames = 0;            ///< number of compared frames; a picture counts as one
   int frames_differing = 0;  ///< number of frames that exceed a limit, without spill
   int frames_of_spill = 0;   ///< number of frames that exceed a limit only by spill; see is_spill()
-  int first_differing = 0;   ///< index, from 0, of the first frame that frames_differing counts; undefined if it is 0
-  int worst_frame = 0;       ///< frame with the largest mean FLIP; of those that exceed a limit, if there are any
-  Comparison worst;          ///< of the worst frame; empty if none was compared
+  /// Index, from 0, of the first frame that frames_differing counts; undefined if it counts none.
+  int first_differing = 0;
+  /// Index, from 0, of the frame with the largest mean FLIP among the frames that exceed a limit
+  /// (frames of spill included); among all frames, if none exceeds a limit.
+  int worst_frame = 0;
+  Comparison worst;  ///< of the worst frame; empty if none was compared
   /// The worst frame as read from both files; empty if none was compared.
   image::Image reference_picture, test_picture;
 
   bool good() const { return outcome == Outcome::same || outcome == Outcome::within; }
 };
 
-/// Compares two existing files. If one of them or the mask cannot be read, the outcome is `unreadable`. `limits`: from
-/// limits_for() if the files may be lossy videos. `mask`: a picture file, white where the files are compared and black
-/// elsewhere; empty: none.
+/// Compares two existing files. If one of them or the mask cannot be used, or if only one file is a
+/// video, the outcome is `unreadable`. `limits`: from limits_for() if the files may be lossy
+/// videos. `mask`: a picture file, white where the files are compared and black elsewhere; empty:
+/// none.
 FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
                              const Limits& limits, const std::filesystem::path& mask = {});
 

@@ -73,8 +73,9 @@ struct FeatureKernels {
   std::vector<float> smooth, edge, point;
 };
 
-// A Gaussian and its first two derivatives. As in the paper, they are scaled so that in two dimensions (a derivative in
-// one direction, the Gaussian in the other) the positive weights sum to 1 and the negative ones to -1.
+// A Gaussian and its first two derivatives. As in the paper, the kernels are scaled so that in two
+// dimensions (a derivative in one direction, the Gaussian in the other) the positive weights sum to
+// 1 and the negative weights to -1.
 FeatureKernels make_feature_kernels() {
   constexpr double kWidth = 0.082;  // [degrees], of the eye's edge detector (Section 4.2.1)
   const double sigma = 0.5 * kWidth * kPixelsPerDegree;

@@ -39,7 +39,8 @@ float hyab(const Color& a, const Color& b);
 /// distance between pure green and pure blue, then maps [0, 0.4] linearly to [0, 0.95] and the rest to [0.95, 1].
 float remap_distance(float distance);
 
-/// Filters channel 0 to 2 of Y C_x C_z with the contrast sensitivity function of the eye (Section 4.1.1, Table 1).
+/// Filters one channel of Y C_x C_z with the contrast sensitivity function of the eye (Section
+/// 4.1.1, Table 1). `channel`: 0 for Y, 1 for C_x, 2 for C_z.
 Plane<float> filter_by_contrast_sensitivity(const Plane<float>& plane, int channel);
 
 /// Difference of edges and points, 0 to 1 (Section 4.2). Arguments: Y channels, scaled to [0, 1].

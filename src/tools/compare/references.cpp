@@ -74,7 +74,7 @@ std::vector<std::string> comparable_names(const fs::path& folder) {
   // Follows links to folders; a cycle of links causes an error.
   fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-    // Weft writes to a hidden file and renames it when it is complete.
+    // Skips hidden files: Weft writes to a hidden file, and renames the file when it is complete.
     const bool hidden = entry->path().filename().string().starts_with('.');
     std::error_code ignored;
     if (entry->is_directory(ignored)) {

@@ -1,6 +1,7 @@
-// Folders of reference pictures. Pictures depend slightly on the version of Mesa and on the vector width of the
-// processor. These two define the machine class. A machine class has references of its own if its pictures differ by
-// more than the limits. Of these files, the first one that exists is used:
+// Folders of reference pictures. Pictures depend slightly on the version of Mesa and on the vector
+// width of the processor. These two define the machine class. A machine class needs references of
+// its own if its pictures differ from the default references by more than the limits. For machines
+// of the class mesa-22.3-256bit, the first of these files that exists is the reference:
 //
 //     references/mesa-22.3-256bit/name.png   only for this machine class
 //     references/default/name.png
@@ -20,7 +21,8 @@ namespace weft::compare {
 /// version of Mesa and, if given, vector width of llvmpipe. Empty if `gl` names no version of Mesa.
 std::string machine_class(const std::string& gl);
 
-/// Class of the machine that drew a picture or video. Empty if another program made the file, or it cannot be read.
+/// Class of the machine that drew a picture or video. Empty if the metadata of the file name no
+/// version of Mesa, or if the file cannot be read.
 std::string machine_class_of(const std::filesystem::path& file);
 
 /// The reference of this name that is used for the machine class `machine`; none if no file exists.
@@ -30,8 +32,9 @@ std::optional<std::filesystem::path> find_reference(const std::filesystem::path&
 /// Sorted names of all references that are used for the machine class `machine`.
 std::vector<std::string> reference_names(const std::filesystem::path& folder, const std::string& machine);
 
-/// Sorted names of all pictures and videos below a folder, such as "front/name.png". Skips hidden files and folders.
-/// Throws Error(asset_unreadable).
+/// Sorted names of all pictures and videos below a folder, such as "front/name.png". Skips hidden
+/// files and folders. Follows links to folders. Throws Error(asset_unreadable) if a folder cannot
+/// be listed or links form a cycle.
 std::vector<std::string> comparable_names(const std::filesystem::path& folder);
 
 }  // namespace weft::compare

@@ -58,7 +58,8 @@ double structural_similarity(const image::Image& reference, const image::Image& 
     }
     return sum;
   };
-  // An image smaller than the window has no window inside, so all of its pixels are used.
+  // If a side is shorter than the window, no window fits inside, so all pixels along this side are
+  // used.
   const int margin_x = a.width > 2 * kRadius ? kRadius : 0, margin_y = a.height > 2 * kRadius ? kRadius : 0;
   const int rows = a.height - 2 * margin_y, columns = a.width - 2 * margin_x;
   const double sum =

@@ -42,7 +42,8 @@ const char* extension(const Material& material) {
   return "REPEAT";
 }
 
-// Picture and mapping of each material. They are in the script since MTL cannot express every mapping.
+// Picture and mapping of each material that has a picture, by name of the material. The script
+// contains them, since MTL cannot express every mapping.
 Json pictures_json(const frame::Surface& surface) {
   Json result = Json::object();
   const Materials materials = materials_of(surface);
@@ -114,7 +115,7 @@ void BlenderScript::add(int frame, const std::vector<View>& views) {
 }
 
 std::string BlenderScript::text() const {
-  // ASCII JSON never contains three consecutive quotes, so it cannot end the Python literal early.
+  // JSON never contains three consecutive quotes, so the data cannot end the Python string early.
   const std::string data = json_text(film_, -1, JsonLetters::ascii);
   std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
                                  json_text(film_["name"], -1, JsonLetters::ascii), kVersion, data);

@@ -10,8 +10,9 @@
 
 namespace weft::exporter {
 
-/// Collects the data that the script contains: cameras, lights, colours. The script reads the meshes from files that
-/// are named after the objects.
+/// Collects the data that the script contains: cameras, lights, mappings of pictures, and colours
+/// of the backs of cloth. The script reads meshes and motions from the files <object>.obj and
+/// <object>.pc2 beside it.
 class BlenderScript {
  public:
   /// `width`, `height`: of the rendered pictures [pixels].
@@ -21,7 +22,7 @@ class BlenderScript {
   /// Adds the next frame, starting with the first.
   void add(int frame, const std::vector<View>& views);
 
-  /// Runs in Blender 3.4 or later without additional modules.
+  /// The text of the script. Blender 3.4 or later runs it without additional modules.
   std::string text() const;
 
  private:

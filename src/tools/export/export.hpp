@@ -16,7 +16,7 @@ enum class Format {
   obj,      ///< per object and frame: quads or triangles, weft and warp, normals, materials (MTL), pictures
   pc2,      ///< per object: the OBJ of the first frame, and a point cache that moves its vertices; y is up
   gltf,     ///< one file: all visible objects with colours, pictures and motion, and the cameras
-  usd,      ///< the contents of gltf as text, with the axes of the scene
+  usd,      ///< as gltf, but as text with the axes of the scene; pictures are files beside it
   usdz,     ///< as usd, but packed in one file
   blender,  ///< the files of pc2, and a script that loads them with cameras and lights
 };
@@ -31,18 +31,20 @@ struct Request {
   /// Returns the cameras of a frame; the first is the camera of the pictures. Used by gltf, usd, usdz and blender;
   /// called once per frame, in order. Null: no cameras.
   std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
-  Lighting lighting = {};  ///< for blender
+  Lighting lighting = {};  ///< for blender: the lighting of the first frame, used for all frames
 };
 
-/// All files that write() will write, except shared_files(). `first`: the first requested frame.
+/// All files that write() will write, except shared_files(). `first`: snapshot of the first
+/// requested frame.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
 
-/// A material file or a picture. It is the same for all frames of a film, so an earlier export of other frames may have
-/// written it already.
+/// A material file or a picture. All frames of a film have the same material files and pictures, so
+/// an earlier export of other frames may have written this file already.
 struct SharedFile {
   std::filesystem::path file;
   std::string content;
 };
+/// The material files and pictures that write() will write beside the other files.
 std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first);
 
 /// Reads each frame once, in order, and writes it. Calls `stop` before each frame, and ends early if `stop` returns

@@ -143,7 +143,7 @@ int GltfFile::append(const void* data, std::size_t size, int target) {
   return static_cast<int>(document_["bufferViews"].size()) - 1;
 }
 
-// These three functions append numbers and return the index of their accessor.
+// The next three functions append numbers to the buffer, and return the index of their accessor.
 int GltfFile::add_vectors(const std::vector<float>& vectors) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::max());
@@ -188,7 +188,8 @@ int GltfFile::add_places(const std::vector<Vec2>& places) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-// Returns the index of the texture for this picture and these wrap modes. `images`: indices of images already written.
+// Returns the index of the texture with the picture and the wrap modes of `material`. `images`: per
+// picture, the index of its image; -1: not yet written.
 json GltfFile::texture(const Materials& materials, const Material& material, std::vector<int>& images) {
   if (images.empty()) images.assign(materials.pictures.size(), -1);
   int& image = images[material.picture];
@@ -330,7 +331,8 @@ void GltfFile::add_cameras(json& animation, double aspect) {
     for (const auto& [path, type, values] :
          {std::tuple("translation", "VEC3", &camera.positions), std::tuple("rotation", "VEC4", &camera.turns)}) {
       const std::ptrdiff_t each = type[3] - '0';
-      if (std::equal(values->begin() + each, values->end(), values->begin())) continue;  // the camera does not move
+      // A value that never changes needs no channel.
+      if (std::equal(values->begin() + each, values->end(), values->begin())) continue;
       const int input = animation["samplers"].empty() ? add_values(times_, "SCALAR", true)
                                                       : animation["samplers"][0]["input"].get<int>();
       animation["channels"].push_back(

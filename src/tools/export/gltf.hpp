@@ -14,16 +14,19 @@
 
 namespace weft::exporter {
 
-/// Each object is a mesh with the vertices of the first frame, and one morph target per later frame. At the time of a
-/// later frame, the weight of its target is 1, and all other weights are 0; between frames, weights and thus positions
-/// are interpolated linearly. Morph targets are the only way of the standard to move vertices independently; assimp,
-/// Blender and three.js read them. Objects that never move have no targets.
+/// Each object is a mesh with the vertices of the first frame, and one morph target per later
+/// frame. At the time of a later frame, the weight of its target is 1, and all other weights are 0;
+/// between frames, weights and thus positions are interpolated linearly. Morph targets are the only
+/// way of the standard to move vertices independently; assimp, Blender and three.js read them.
+/// Objects that never move have no targets. Normals have targets as well, since the normals of the
+/// first frame would be wrong in later frames.
 ///
-/// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. Normals have targets as
-/// well, since the normals of the first frame would be wrong in later frames. Texture coordinates are (weft, 1 − warp)
-/// [m], as v points down in glTF; vertices on a seam occur once for each panel. Pictures are embedded. If these
-/// coordinates do not map the picture, a second set of texture coordinates does. A mesh has one primitive per material;
-/// all primitives share its vertices.
+/// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. v
+/// points down in glTF, so texture coordinates are (weft, 1 − warp) [m]. If these coordinates do
+/// not map the pictures of an object, the object also has a second set of texture coordinates,
+/// which does. A vertex on a seam occurs once for each panel; a vertex on a crease, once for each
+/// normal. Pictures are embedded. A mesh has one primitive per material; all primitives share its
+/// vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.
@@ -32,8 +35,8 @@ class GltfFile {
   /// Adds the next frame, at `time` [s] after the first.
   void add(const frame::FrameSnapshot& snapshot, double time);
 
-  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their field of view, so
-  /// they keep that of the first frame.
+  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their
+  /// field of view, so each camera keeps the field of view of its first frame.
   void add_views(const std::vector<View>& views);
 
   /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed 4

@@ -60,8 +60,9 @@ std::size_t add_picture(std::vector<PictureFile>& pictures, PictureFile picture,
   return pictures.size() - 1;
 }
 
-// Exported formats have no Wrap::once (the picture occurs once along this axis). An empty rim with Wrap::clamp looks
-// the same. `row`: the row of Material::picture_from_uv for this axis.
+// The export formats have no Wrap::once (the picture occurs once along this axis). A transparent
+// rim with Wrap::clamp looks the same. `pixels`: size of the picture along this axis. `row`: the
+// row of Material::picture_from_uv for this axis.
 void add_rim(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row) {
   rim = wrap == Wrap::once;
   if (!rim) return;

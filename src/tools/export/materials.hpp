@@ -10,16 +10,18 @@
 
 namespace weft::exporter {
 
-/// A picture beside or inside the exported files. Other programs cannot combine it with a colour, so its pixels already
-/// include the surface's colour: multiplied by the picture or, with Alpha::over_color, shown through transparent parts
-/// of the picture and around it.
+/// A picture beside or inside the exported files. The export formats cannot combine a picture with
+/// a colour as Weft does, so the pixels already include the surface's colour. The colour is
+/// multiplied by the picture; with Alpha::over_color, it shows through transparent parts of the
+/// picture and on the rim.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
   Vec3 color;  ///< linear colour of the surface
   frame::Paint::Alpha alpha = frame::Paint::Alpha::ignored;
-  bool rim_u = false, rim_v = false;  ///< whether a rim of one empty pixel is added at both ends of this axis; readers
-                                      ///< continue the rim beyond the edges
+  /// Whether one transparent pixel is added at both ends of this axis. With Wrap::clamp, readers
+  /// repeat this pixel beyond the edges.
+  bool rim_u = false, rim_v = false;
 
   /// The bytes of the PNG file; it has alpha only if the picture cuts holes.
   std::string png() const;

@@ -14,7 +14,8 @@ struct NormalGroups {
   std::vector<Index> vertex_of;                 ///< vertex, per group
 };
 
-/// Groups the corners. Creases are the edges whose angle at `positions` exceeds Surface::crease_angle.
+/// Groups the corners. An edge is a crease if, at `positions`, the normals of its two triangles
+/// differ by more than Surface::crease_angle.
 NormalGroups group_normals(const frame::Surface& surface, const std::vector<Vec3>& positions);
 
 /// Unit normals per group, weighted by triangle area; (0, 0, 1) if a group has no area.

@@ -78,7 +78,8 @@ void append_faces(const std::vector<Face>& faces, const Materials& materials, co
   }
 }
 
-// MTL options for the offset and scale of a picture; nullopt if the picture is rotated, which MTL cannot express.
+// MTL options for scale, offset and clamping of a picture; nullopt if the picture is rotated or
+// skewed, which MTL cannot express.
 std::optional<std::string> map_options(const Material& material) {
   const auto& map = material.picture_from_uv;
   if (map(0, 1) != 0 || map(1, 0) != 0) return std::nullopt;

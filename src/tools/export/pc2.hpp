@@ -19,8 +19,9 @@
 
 namespace weft::exporter {
 
-/// Blender's modifier ignores the field "frames between samples", so there is a sample for every frame of the scene.
-/// Samples between two added frames are interpolated linearly.
+/// Blender's modifier ignores the field "frames between samples". So the file has a sample for
+/// every frame of the scene from the first to the last added frame. Samples between two added
+/// frames are interpolated linearly.
 class PointCache {
  public:
   /// `given`: number of frames that will be added, `step` apart. All functions throw Error(output_failed).

@@ -9,8 +9,9 @@
 
 namespace weft::exporter {
 
-/// Triangles whose corners are places. A place is a vertex of the surface with one pair of texture coordinates, so that
-/// panels are separate along their seams. The first place of vertex i has the index i; additional places follow.
+/// Triangles whose corners are places. A place is a vertex of the surface with one value of `uv`
+/// and of `picture_uv`, so that panels are separate along their seams. The first place of vertex i
+/// has the index i; additional places follow.
 struct CutSurface {
   std::vector<Index> vertex_of;  ///< per place
   std::vector<Vec2> uv;          ///< per place; empty if the surface has none

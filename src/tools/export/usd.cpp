@@ -21,8 +21,8 @@
 namespace weft::exporter {
 namespace {
 
-// Film width of a 35 mm camera: 36 mm, in tenths of the stage's unit (1 m), as USD prescribes. Only its ratio to the
-// focal length matters.
+// Film width of a 35 mm camera: 36 mm. USD gives it in tenths of the stage's unit, which is 1 m.
+// Only the ratio of film width to focal length matters.
 constexpr double kFilmWidth = 0.36;
 
 // A valid name of a primitive: letters, digits and underscores, no leading digit.
@@ -146,7 +146,8 @@ bool UsdFile::Samples::add(int frame, std::string value) {
   const bool changed = value != last_;
   if (changed && text_.empty()) {
     text_ = fmt::format("            {}: {},\n", first_frame_, first_);
-    // The value was constant until now. Readers interpolate samples linearly, so the previous frame repeats it.
+    // The value was constant until the previous frame. Readers interpolate samples linearly, so the
+    // previous frame needs a sample too.
     if (last_frame_ != first_frame_) text_ += fmt::format("            {}: {},\n", last_frame_, first_);
   }
   if (!text_.empty()) text_ += fmt::format("            {}: {},\n", frame, value);
@@ -179,8 +180,8 @@ UsdFile::UsdFile(const frame::FrameSnapshot& first, const std::string& name, dou
     object.smooth = object.groups.of_corner == surfaces_[s]->triangles;
     objects_.push_back(std::move(object));
   }
-  // The materials of objects and of parts are in one scope, so their names must differ. Parts get theirs last, so that
-  // the names of objects stay unchanged.
+  // The materials of objects and of parts are in one scope, so their names must differ. Parts get
+  // their names last, so that the names of objects stay unchanged.
   for (Object& object : objects_) {
     const std::vector<frame::SurfacePart>& parts = surfaces_[object.surface]->parts;
     for (std::size_t p = 0; p < parts.size(); ++p)
@@ -232,8 +233,8 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    }\n";
 }
 
-// Writes the texture coordinates that map the pictures as `st`. If they differ from weft and warp, also writes weft and
-// warp as `weft_warp`.
+// Writes the texture coordinates that map the pictures as `st`. If `st` differs from weft and warp,
+// also writes weft and warp as `weft_warp`.
 void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
   const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
   if (cut.uv.empty()) return;

@@ -19,7 +19,7 @@ struct View {
   double field_of_view = 35;                                      ///< vertical [degrees]
 };
 
-/// The lighting of a film, as in its pictures.
+/// The lighting of one frame, as in its picture.
 struct Lighting {
   std::vector<frame::Light> lights = {};
   Vec3 sky_color = Vec3::Ones();  ///< linear

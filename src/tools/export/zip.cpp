@@ -46,7 +46,8 @@ std::string entry_of(const StoredFile& file) {
 }
 
 void append_file(std::string& bytes, const StoredFile& file, const std::string& entry) {
-  // An extra field pads the header so that the content is aligned. It has at least four bytes, its own header.
+  // An extra field pads the header so that the content is aligned. The field has at least four
+  // bytes, its own header.
   std::size_t padding = (kAlignment - (bytes.size() + kLocalHeader + file.name.size()) % kAlignment) % kAlignment;
   if (padding > 0 && padding < 4) padding += kAlignment;
   bytes += "PK\x03\x04" + entry;

@@ -25,7 +25,8 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-// All regular files below the folder, sorted by path. Skips links, since the page would publish their targets.
+// All regular files below the folder, sorted by path. Skips hidden files and folders, and review
+// pages. Skips links, since the page would publish their targets.
 std::vector<fs::path> list_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
@@ -194,9 +195,10 @@ class Search {
     runs_.push_back(std::move(run));
   }
 
-  // Finds the video or pictures that the statistics name as output. Looks for each trailing part of this path in the
-  // folder of the statistics, since the folders may have been moved or copied from other machines. If it finds none,
-  // uses the video with the name of the statistics.
+  // Finds the video or pictures that the statistics name as output. The folders may have been moved
+  // or copied from another machine. So, for the output a/b.mp4, this function tries a/b.mp4 and
+  // then b.mp4 in the folder of the statistics. If neither exists, it takes the video with the name
+  // of the statistics.
   void take_pictures(RunFiles& run) {
     const fs::path beside = run.stats.parent_path();
     const auto named_output = run.stats_json.find("output");

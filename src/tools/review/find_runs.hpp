@@ -21,16 +21,18 @@ struct RunFiles {
   std::filesystem::path stats;                  ///< JSON file of --stats
   Json stats_json;                    ///< content of `stats`, without invalid values; null if there is no such file
   std::filesystem::path effective;    ///< effective scene: the scene with all defaults and changes
-  std::vector<std::string> problems;  ///< unusable files, each with the reason
-  Json values;                        ///< for a sweep: changed values by key; otherwise null
+  std::vector<std::string> problems;  ///< unusable files and values, each with reason
+  Json values;                        ///< values that a sweep changed, by key; else null
 };
 
-/// Name of the index file that weft sweep writes beside its runs. It lists `runs`, each with its `folder`, and in `set`
-/// the values that the sweep changed.
+/// Name of the index file that `weft sweep` and `weft farm` write into the folder of their runs.
+/// For each run, the list `runs` contains its `folder` and, in `set`, the values that the sweep
+/// changed.
 inline constexpr const char* kSweepName = "sweep.json";
 
-/// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips hidden files, links and
-/// review pages. Throws Error(asset_unreadable) if `folder` is not a folder or cannot be listed.
+/// All runs below `folder`, ordered by name; runs of a sweep in the order of the sweep. Skips
+/// hidden files and folders, links and review pages. Throws Error(asset_unreadable) if `folder` is
+/// not a folder or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
 /// Returns whether `run.stats_json` has the form of statistics of a run. If so, removes the values that the page cannot
@@ -40,10 +42,12 @@ bool take_statistics(RunFiles& run);
 /// The file with decisions about runs; see decisions.hpp.
 inline constexpr const char* kDecisionsName = "review.json";
 
-/// The number at the end of the file name without extension: 12 for band_00012.png; -1 if the name ends in no number.
+/// The number at the end of the file name without extension: 12 for band_00012.png. Returns -1 if
+/// the name ends in no number, or if the number does not fit.
 long long picture_number(const std::filesystem::path& picture);
 
-/// Whether `weft review` wrote the page in `folder`.
+/// Whether `folder` contains a page of `weft review`: kPageMark is in the first 1024 bytes of its
+/// index.html.
 bool is_review_page(const std::filesystem::path& folder);
 
 /// Text that index.html of every review page contains.

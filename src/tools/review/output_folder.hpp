@@ -8,12 +8,13 @@
 
 namespace weft::review {
 
-/// Name of the file that lists the files of a page, one per line. A later page that replaces this page may remove only
-/// these files.
+/// Name of the file that lists the files of a page, one per line. `weft review` replaces a page
+/// only if this list names all files in its folder.
 inline constexpr const char* kFileList = "files.txt";
 
-/// Throws Error(output_failed) unless `folder` is new, empty, or a page that may be replaced: `overwrite` is set, and
-/// the list of the page names all files in the folder.
+/// Returns if `folder` does not exist, is empty, or contains a page that may be replaced; otherwise
+/// throws Error(output_failed). A page may be replaced if `overwrite` is set and kFileList names
+/// all files in the folder.
 void check_replaceable(const std::filesystem::path& folder, bool overwrite);
 
 /// A hidden temporary folder beside the final one. The destructor removes it unless commit() has succeeded.
@@ -24,8 +25,9 @@ class OutputFolder {
 
   const std::filesystem::path& path() const { return temporary_->path(); }
 
-  /// Flushes everything to disk and gives the folder its final name. If a page with this name exists, exchanges the two
-  /// folders (atomically, if the file system supports it), and removes the old page. Throws Error(output_failed).
+  /// Flushes all files to disk, and gives the folder its final name. If a page with this name
+  /// exists, exchanges the two folders (atomically, if the file system supports it); the destructor
+  /// then removes the old page. Throws Error(output_failed).
   void commit();
 
  private:

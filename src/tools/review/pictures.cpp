@@ -15,7 +15,7 @@ namespace weft::review {
 namespace {
 
 constexpr std::size_t kMaxTiles = 16;
-constexpr int kTileWidth = 320;  // [pixels]; twice that of the page's overview, for high-density screens
+constexpr int kTileWidth = 320;  // [pixels]; over twice the width on the page
 constexpr int kHeatWidth = 640;  // maximum width of a FLIP map [pixels]
 
 // Reads pictures one after the other, from a video or from files.
@@ -49,7 +49,8 @@ class Reader {
   long long next_ = 0;
 };
 
-// Shrinks by taking the largest value of each square of pixels, so that a thin line keeps its brightness.
+// Shrinks a plane to at most `width` pixels across. Each new value is the largest value of a square
+// of pixels, so that a thin line keeps its brightness.
 compare::Plane<float> shrink_to_largest(const compare::Plane<float>& plane, int width) {
   const int side = (plane.width + width - 1) / width;
   compare::Plane<float> small((plane.width + side - 1) / side, (plane.height + side - 1) / side);

@@ -20,7 +20,7 @@ struct Tile {
 /// Result of one pass over the pictures of a run.
 struct Survey {
   std::vector<Tile> tiles;    ///< evenly spaced: all pictures if there are fewer than 16, else 8 to 15
-  long long count = 0;        ///< number of readable pictures
+  long long count = 0;        ///< number of pictures
   double fps = 0;             ///< frame rate of a video [1/s]; 0 if the file does not state it, and for stills
   int width = 0, height = 0;  ///< of the first picture [pixels]; 0 if there is none
 };
@@ -36,9 +36,10 @@ struct PairComparison {
   image::Image heat;  ///< FLIP map in colours, at most 640 pixels wide; empty if the pictures are equal
 };
 
-/// Compares the pictures whose indices are in `at` (ascending) with those of the reference at the same times. Skips a
-/// picture if the reference has no picture at this time, or if that reference picture was already compared with an
-/// earlier picture. Throws Error(asset_unreadable) if pictures cannot be read or differ in size.
+/// Compares pictures of a run with the pictures of its reference at the same times. `at`: indices
+/// of the pictures of the run, ascending. Skips a picture if the reference has no picture at its
+/// time, or if that picture of the reference was already compared. Throws Error(asset_unreadable)
+/// if pictures cannot be read or differ in size.
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
                                                    const RunFiles& reference, const PictureTimes& reference_times,
                                                    const std::vector<long long>& at);

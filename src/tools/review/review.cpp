@@ -217,8 +217,8 @@ class Page {
     entry.json["pictures"]["files"] = std::move(files);
   }
 
-  // Adds the contact sheet and its middle tile as poster. Takes number and rate of the pictures from the picture files
-  // instead of the statistics.
+  // Adds the contact sheet, and its middle tile as poster. Takes the number of pictures, and the
+  // frame rate of a video, from the pictures instead of the statistics.
   void add_tiles(Entry& entry) const {
     if (entry.json["pictures"]["kind"] == "none") return;
     const Survey found = survey(*entry.run);
@@ -273,7 +273,8 @@ class Page {
     entry.json["accept"] = std::move(accept);
   }
 
-  // Compares the pictures of the contact sheet with those of the reference.
+  // Compares the pictures of the contact sheet with the pictures of the reference at the same
+  // times.
   void compare(Entry& entry, const Entry& reference) {
     entry.json["reference"] = reference.json["id"];
     if (reference.tiles.empty()) entry.problem("the reference has no pictures that can be read");

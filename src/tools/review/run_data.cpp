@@ -13,8 +13,8 @@
 namespace weft::review {
 namespace {
 
-// Rounds a number to six significant digits. A plot cannot show more digits, and rounding halves the size of the data
-// file of the page.
+// Rounds floating-point numbers to six significant digits, which suffice for plots, to make the
+// data file of the page smaller. Keeps integers and booleans. Other values become null.
 Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();

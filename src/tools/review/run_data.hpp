@@ -8,9 +8,9 @@
 
 namespace weft::review {
 
-/// The frames of a run's statistics as one array per quantity: {"frame": [0, 1], "max_strain": [0, 0.01]}. Missing
-/// values, and those that are neither numbers nor booleans, become null. Floating-point numbers keep six significant
-/// digits.
+/// The frames of a run's statistics as one array per quantity: {"frame": [0, 1], "max_strain": [0,
+/// 0.01]}. Missing values, and values that are neither finite numbers nor booleans, become null.
+/// Floating-point numbers keep six significant digits.
 Json frame_columns(const Json& frames);
 
 /// Summary of the numbers in each column: {"count", "min", "min_frame", "max", "max_frame", "last", "sum"}. Columns
@@ -23,16 +23,18 @@ struct PictureTimes {
   double fps = 0;  ///< pictures per second; 0 if unknown
 };
 
-/// Takes `first`, `step` and `count` from the names of the numbered pictures or, if there are none, from the frames of
-/// the statistics; takes `fps` from the statistics.
+/// Takes `first`, `step` and `count` from the names of the numbered pictures. If there are none,
+/// takes them from the written frames of the statistics. `fps` is the frame rate in the statistics
+/// divided by `step`; 0 if there are no statistics.
 PictureTimes picture_times(const RunFiles& run);
 
-/// Each value of an effective scene by its path, as in --set: {"cloth.band.material.stretch": "1000000.0"}. Throws
-/// Error(asset_unreadable) if the text is not TOML.
+/// Each value of an effective scene by its path, as in --set: {"cloth.band.material.stretch":
+/// "1000000"}. Throws Error(asset_unreadable) if the text is not TOML.
 Json scene_values(const std::string& toml, const std::string& file);
 
-/// All data of a run except its pictures. "problems" names missing files; missing statistics only if there is no other
-/// problem. "columns" and "effective" are large; only the page of this run needs them, not the overview.
+/// All data of a run except its pictures. "problems" also names missing pictures and a missing
+/// effective scene; missing statistics only if there are pictures and `run.problems` is empty.
+/// "columns" and "effective" are large, and the overview of all runs does not need them.
 Json run_data(const RunFiles& run);
 
 }  // namespace weft::review

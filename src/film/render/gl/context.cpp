@@ -30,8 +30,8 @@ void use_own_mesa() {
 /// Sets environment variables that Mesa reads once, when the process makes its first context.
 void set_rasteriser_environment(int threads) {
   use_own_mesa();
-  // Without this variable, EGL may use a graphics card, whose pictures differ slightly. It also has no llvmpipe
-  // threads, whose time rasteriser_cpu_seconds() measures.
+  // Without this variable, EGL may use a graphics card, whose pictures differ slightly. Then there
+  // are also no llvmpipe threads, whose time rasteriser_cpu_seconds() measures.
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
   // llvmpipe of Mesa 22.3 crashes with 512-bit vectors and 4x multisampling. Its default width always works.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");

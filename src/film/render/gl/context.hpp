@@ -38,13 +38,15 @@ class Context {
   std::string description_;
 };
 
-/// Makes a context and binds it to the calling thread. `automatic`: OSMesa, or EGL if OSMesa fails. `threads`: number
-/// of threads of the software rasteriser (0: its default). The driver reads this number only for the first context of
-/// the process. Throws Error(usage) if the library is absent or lacks OpenGL 4.5, Error(internal) if a call fails. If
-/// both libraries fail for `automatic`, throws Error(usage) with both errors.
+/// Makes a context and binds it to the calling thread. `automatic`: OSMesa, or EGL if OSMesa fails.
+/// `threads`: number of threads of the software rasteriser (0: its default). The driver reads this
+/// number only for the first context of the process. Throws Error(usage) if the library or one of
+/// its functions is missing or the driver provides less than OpenGL 4.5, and Error(internal) if a
+/// call fails. If both libraries fail for `automatic`, throws Error(usage) with both errors.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
-/// CPU seconds that the threads of llvmpipe have used so far in all contexts; 0 for other drivers.
+/// CPU seconds used so far by all llvmpipe threads of the process that still run; 0 for other
+/// drivers.
 double rasteriser_cpu_seconds();
 
 std::unique_ptr<Context> make_osmesa_context();

@@ -8,7 +8,7 @@
 
 namespace weft::render {
 
-/// Owner of one GL name. `Kind` defines how it is made and deleted.
+/// Owner of one GL name. `Kind` defines how the object is made and deleted.
 template <class Kind>
 class GlObject {
  public:

@@ -1,4 +1,5 @@
-// Off-screen Mesa: draws into memory without display or device. Mesa 25.1 and later do not include it.
+// OSMesa (off-screen Mesa): draws into memory without display or device. Mesa 25.1 and later do not
+// include OSMesa.
 #include <array>
 #include <cstdint>
 

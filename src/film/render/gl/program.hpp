@@ -11,8 +11,9 @@ namespace weft::render {
 class Program {
  public:
   Program() = default;
-  /// `vertex` and `fragment`: file names in shaders/; `fragment` is empty if no colours are drawn. `defines` ("CLOTH",
-  /// "LIGHTS 2") precede the sources. Throws Error(internal) with the compiler's message.
+  /// `vertex` and `fragment`: file names in shaders/; `fragment` is empty if no colours are drawn.
+  /// `defines` ("CLOTH", "LIGHTS 2") precede the sources. Throws Error(internal) with the message
+  /// of the compiler or linker.
   Program(const Gl& gl, const std::string& vertex, const std::string& fragment,
           const std::vector<std::string>& defines = {});
 

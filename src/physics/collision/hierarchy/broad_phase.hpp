@@ -1,4 +1,5 @@
-// Broad phase: one hierarchy per surface. Options that are known only at run time select how to refit and traverse.
+// Broad phase: lists pairs of triangles with overlapping bounds, with one hierarchy per surface.
+// Options that are known only at run time select how hierarchies are refitted and traversed.
 //
 //   BroadPhase broad_phase(surfaces, x, options);      // once; surface s is surfaces[s]
 //   broad_phase.refit(s, x_t0, x_t1, margin);          // in each step, each surface that has moved
@@ -24,19 +25,22 @@
 
 namespace weft::collision {
 
-/// Effect of the options on the time of the search, in the scenes of tests/bench/README.md, "Collision heuristics": 8
-/// triangles per leaf instead of 1 make it 2 to 3 times as fast, and 8 children instead of 2 save 6 to 26 %. Separation
-/// lists save at most a tenth. Velocity and normal cones cost at least as much as they save. 18 directions instead of 6
-/// list about a quarter fewer candidates but refit more slowly: broad and narrow phase together take 1.0 to 1.1 times
-/// as long, or 0.8 times if layers are slanted to the axes. 26 directions (Etzmuß et al. 2001) list the fewest
-/// candidates.
+/// Effect of the options on the time of the search, in the scenes of tests/bench/README.md,
+/// "Collision heuristics": 8 triangles per leaf instead of 1 make the search 2 to 3 times as fast,
+/// and 8 children per node instead of 2 save 6 to 26 % of its time. Separation lists save at most a
+/// tenth of the time. Velocity and normal cones cost at least as much as they save. With 18
+/// directions instead of 6, about a quarter fewer pairs are listed, but refitting is slower: broad
+/// and narrow phase together take 1.0 to 1.1 times as long, or 0.8 times if layers are slanted to
+/// the axes. With 26 directions (Etzmuß et al. 2001), the fewest pairs are listed.
 struct BroadPhaseOptions {
-  /// Directions of the bounds: 6 (boxes), 18 or 26. More directions cost more and list only a part of the pairs that
-  /// boxes list.
+  /// Directions of the bounds: 6 (boxes), 18 or 26. With more directions, each bound costs more
+  /// time, and fewer pairs are listed: a subset of those of boxes.
   int directions = 6;
-  /// Children per node, 2 to 8. Changes only the order of the pairs.
+  /// Children per node, 2 to 8. Changes only the order of the pairs and, with `normal_cones`, which
+  /// pairs are skipped.
   int children = 8;
-  /// Maximum number of triangles per leaf, 1 to 8. Changes only the order of the pairs.
+  /// Maximum number of triangles per leaf, 1 to 8. Changes only the order of the pairs and, with
+  /// `normal_cones`, which pairs are skipped.
   int leaf = 8;
   /// Of two overlapping nodes, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001). false:
   /// descend into both. Changes only the order of the pairs.
@@ -44,9 +48,10 @@ struct BroadPhaseOptions {
   /// Resume each traversal where the last one stopped. Lists the same pairs, in an order that depends on earlier
   /// traversals.
   bool separation_list = false;
-  /// Refit lazily (Tree::refit_lazily): bounds of slow vertices get a slack of at most an eighth of the margin and stay
-  /// unchanged while the vertices stay inside. The slack adds pairs farther apart than 2 · margin. (CoherentDetection
-  /// uses velocity cones, too, but keeps whole detection results.)
+  /// Refit lazily (Tree::refit_lazily): the bound of a slow vertex gets a slack of at most an
+  /// eighth of the margin and stays unchanged while the vertex stays within the slack. The slack
+  /// adds pairs of triangles that are farther apart than 2 · margin. (CoherentDetection has
+  /// velocity cones of its own, which do not depend on this option.)
   bool velocity_cones = false;
   /// Skip pairs inside regions of a surface that are provably flat enough (NormalCones).
   bool normal_cones = false;
@@ -58,13 +63,15 @@ class BroadPhase {
  public:
   BroadPhase() = default;
 
-  /// Builds over the surfaces at x (global array, [m]) and fits them there without margin. The triangles must outlive
-  /// the broad phase. Throws Error(internal) if an option or index is out of range.
+  /// Builds a hierarchy over each surface at x (global array, [m]) and fits it there without
+  /// margin. The triangles must outlive the broad phase. Throws Error(internal) if an option or
+  /// index is out of range.
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
-  /// As Tree::refit, or with `velocity_cones` as Tree::refit_lazily; `margin` in [m]. The pairs then include all
-  /// triangles that meet on any motion whose starts and ends differ from those of `motion` by at most the margin: in
-  /// Euclidean distance or, with 6 directions, along each axis.
+  /// As Tree::refit, or with `velocity_cones` as Tree::refit_lazily; `margin` in [m]. The pairs
+  /// then include all pairs of triangles that meet on any motion whose starts and ends differ from
+  /// those of `motion` by at most the margin: in Euclidean distance or, with 6 directions, along
+  /// each axis.
   void refit(std::size_t surface, const Motion& motion, double margin);
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);

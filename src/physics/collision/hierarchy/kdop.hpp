@@ -84,9 +84,10 @@ struct alignas(32) KDop {
 template <int K>
 inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   constexpr const Directions<K>& dir = kDirections<K>;
-  // Rounding to float changes a value by at most 2^-24 of itself. Rounding the sum of three products in double changes
-  // it by less than 2^-50 of the coordinates (not at all for 6 directions). The subtracted terms exceed both; 1e-38 is
-  // for values near zero.
+  // Rounding to float changes a value by at most 2^-24 of itself. Rounding the sum of three
+  // products in double changes it by less than 2^-50 of the coordinates (not at all for 6
+  // directions). The subtracted terms exceed both. The term 1e-38 exceeds the rounding of values
+  // near zero, where floats are denormal.
   const double cancel = K == 6 ? 1e-38 : 1e-38 + 0x1p-50 * (p.cwiseAbs().sum() + q.cwiseAbs().sum() + margin);
   KDop<K> bound;
   for (int r = 0; r < kRows<K>; ++r) {
@@ -98,9 +99,10 @@ inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   return bound;
 }
 
-/// Support values of a set whose points move linearly: at the start of the step in rows 0 to K − 1, at its end in the
-/// next K rows. The gap between two such sets along a direction is concave in time, so if it is positive at both ends,
-/// it is positive throughout. Therefore two sets that move together with a gap between them do not overlap.
+/// Support values of a set whose points move linearly: at the start of the step in rows 0 to K − 1,
+/// at its end in the next K rows. The gap between two such sets along a direction is concave in
+/// time, so if it is positive at both ends, it is positive throughout. Therefore two sets that move
+/// together do not overlap if there is a gap between them along one direction.
 template <int K>
 struct alignas(32) MovingKDop {
   float row[(2 * K + 7) / 8 * 8];
@@ -128,7 +130,8 @@ struct alignas(32) MovingKDop {
   static double length(int d) { return kDirections<K>.length[2 * d]; }
 };
 
-/// Bound of a vertex that moves from p to anywhere in the box `low` to `high`, enlarged by `margin` [m].
+/// Bound of a vertex that moves from p to anywhere in the box from `low` to `high`, enlarged by
+/// `margin` [m].
 template <int K>
 inline MovingKDop<K> moving_point(const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   const KDop<K> start = swept_point<K>(p, p, margin);

@@ -33,9 +33,9 @@ struct alignas(32) LaneBounds {
   float row[2 * K][kLanes];
 };
 
-/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r * stride]. They
-/// overlap unless the gap along one direction is positive at the start and at the end. The sign of a sum of two floats
-/// is exact.
+/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r *
+/// stride]: that is, unless the gap along one direction is positive both at the start and at the
+/// end. The sign of a sum of two floats is exact.
 template <int K>
 inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* query, std::size_t stride) {
 #if defined(__AVX__)
@@ -82,7 +82,7 @@ inline void raise_to(Lanes8& a, const Lanes8& b) {
   a = a > b ? a : b;
 }
 
-/// Bit l is set if lane l is negative.
+/// Bit l is set if the sign bit of lane l is set: the lane is negative or −0.
 inline std::uint32_t sign_mask(const Lanes8& lanes) {
 #if defined(__AVX__)
   return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(lanes)));
@@ -93,7 +93,8 @@ inline std::uint32_t sign_mask(const Lanes8& lanes) {
 #endif
 }
 
-/// As above, for the result of a vector comparison, which has all bits set in the lanes for which it is true.
+/// Bit l is set if lane l is negative. A vector comparison sets all bits of the lanes for which it
+/// is true, so these count as negative.
 inline std::uint32_t sign_mask(const IntLanes8& lanes) {
   return sign_mask(reinterpret_cast<const Lanes8&>(lanes));
 }

@@ -14,10 +14,10 @@ using DistanceSq = std::function<double(Index)>;
 /// A triangle counts as nearest if its squared distance exceeds the smallest one by at most this fraction.
 inline constexpr double kNearestTolerance = 1e-6;
 
-/// Replaces `out` by the nearest triangles to p (within kNearestTolerance), sorted by number; empty if `distance_sq`
-/// excludes all. Branch and bound: skips subtrees whose bounds are farther than the best triangle so far. At the
-/// positions that `distance_sq` uses, each triangle must lie inside its bound of the last refit; larger bounds only
-/// cost time.
+/// Replaces `out` by the triangles nearest to p (within kNearestTolerance), sorted by number. `out`
+/// is empty if `distance_sq` excludes all. Branch and bound: skips subtrees whose bounds are
+/// farther than the best triangle so far. At the positions that `distance_sq` uses, each triangle
+/// must lie inside its bound of the last refit; larger bounds only cost time.
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 

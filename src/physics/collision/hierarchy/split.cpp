@@ -7,7 +7,7 @@ namespace weft::collision {
 
 namespace {
 
-/// The pair of opposite faces that are furthest apart.
+/// Number of the pair of opposite faces that are furthest apart.
 template <int K>
 int longest_side(const KDop<K>& hull) {
   int best = 0;

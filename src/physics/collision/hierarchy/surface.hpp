@@ -29,8 +29,9 @@ struct TrianglePair {
   friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
 };
 
-/// A list of pairs that keeps its memory when cleared. Callers reserve space for several pairs at once, so that no pair
-/// needs its own capacity check. Reserved memory is not initialised, so the system need not provide unused pages.
+/// A list of pairs that keeps its memory when cleared. Callers reserve space for several pairs at
+/// once, so the capacity is not checked for every pair. Reserved memory is not initialised, so the
+/// system need not provide unused pages.
 class PairList {
  public:
   void clear() { size_ = 0; }
@@ -40,7 +41,8 @@ class PairList {
   const TrianglePair* begin() const { return storage_.get(); }
   const TrianglePair* end() const { return storage_.get() + size_; }
 
-  /// Reserves space for `count` more pairs. Write them to the returned place, then call grow() with their end.
+  /// Reserves space for `count` more pairs. Write the pairs to the returned address, then call
+  /// grow() with the address after the last one.
   TrianglePair* reserve_more(std::size_t count) {
     if (size_ + count > capacity_) {
       capacity_ = size_ + count + (size_ + count) / 2;

@@ -17,15 +17,15 @@ struct Regions {
   bool has_nothing_near(std::int32_t ref) const { return (ref >= 0 ? node[ref] : leaf[~ref]) != 0; }
 };
 
-/// How to traverse. Two options change which pairs are found: pairs inside `regions` are skipped, and pairs with one
-/// common vertex if `one_shared` is false.
+/// Options of a traversal. Only `regions` and `one_shared` change which pairs are found.
 struct Traversal {
   /// Of two overlapping nodes, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001, "Detection
   /// Process").
   bool open_longer_side = false;
-  /// If not null: resume where the last traversal stopped, and record where this one stops. One list per pair of trees.
+  /// If not null: resume where the last traversal with this list stopped, and record where this one
+  /// stops. Each pair of trees needs its own list.
   SeparationList* list = nullptr;
-  const Regions* regions = nullptr;  ///< for self_pairs(); null: none
+  const Regions* regions = nullptr;  ///< self_pairs() skips pairs inside these; null: none
   /// Also list pairs with one common vertex.
   bool one_shared = true;
 };

@@ -9,8 +9,9 @@
 
 namespace weft::collision {
 
-// Threads are used if both trees together have at least this many leaves. The traversal is then divided into at least
-// kMinThreadTasks tasks, if possible.
+// A traversal without a separation list uses threads if both trees together have at least
+// kMinLeavesForThreads leaves. (A tree that is traversed against itself counts twice.) The
+// traversal is then divided into at least kMinThreadTasks tasks, if possible.
 constexpr std::size_t kMinLeavesForThreads = 512, kMinThreadTasks = 64;
 
 /// One traversal of two trees, which may be the same. kLonger: of two nodes, descends only into the one with the longer
@@ -46,8 +47,9 @@ class Traverser {
  private:
   static std::size_t index(Ref ref) { return static_cast<std::size_t>(ref); }
 
-  /// Lists the same pairs as from_roots(), in the same order. Expands the traversal level by level into deferred calls,
-  /// until there are enough of them to share among the threads.
+  /// Lists the same pairs as from_roots(), in the same order. Expands the traversal level by level
+  /// into deferred calls, until there are at least kMinThreadTasks of them or no more can be
+  /// expanded. Threads then share these calls.
   void from_roots_in_threads() {
     const bool is_large = a_.leaves().size() + b_.leaves().size() >= kMinLeavesForThreads;
     if (thread_count() == 1 || !is_large) {
@@ -85,7 +87,8 @@ class Traverser {
   void resume() {
     SeparationList& list = *how_.list;
     if (list.size() + list.self_leaves.size() + list.closed.size() == 0) return from_roots();
-    // Keep the old entries, where this traversal resumes, apart from those that this traversal adds.
+    // Move the old entries, at which this traversal resumes, out of `list`, to which this traversal
+    // adds new ones.
     SeparationList before;
     std::swap(before.missed, list.missed);
     std::swap(before.leaf_pairs, list.leaf_pairs);
@@ -153,8 +156,9 @@ class Traverser {
     }
   }
 
-  /// Lists all pairs of a triangle below ref_a and one below ref_b, whose bounds are known to overlap. Unless kLonger,
-  /// descends into both nodes, because testing a bound against all children of a node costs as much as against one.
+  /// Lists all pairs of a triangle below ref_a and one below ref_b. The bounds of ref_a and ref_b
+  /// must overlap. Unless kLonger, descends into both nodes, because testing a bound against all
+  /// children of a node costs as much as against one.
   void traverse_pair(Ref ref_a, Ref ref_b) {
     if (deferred_ != nullptr) return deferred_->push_back({ref_a, ref_b, false});
     open(ref_a, ref_b);

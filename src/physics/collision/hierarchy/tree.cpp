@@ -12,8 +12,9 @@ namespace weft::collision {
 
 namespace {
 
-/// Sets of triangles deeper in the tree than this are split into halves of equal size. A split at the centre may
-/// separate only one triangle, so without this limit the depth could be as large as the number of triangles.
+/// A set of triangles that results from this many splits at the centre is split further into halves
+/// of equal size. A split at the centre may separate only one triangle, so without this limit the
+/// depth of the tree could be as large as the number of triangles.
 constexpr int kMaxCentreSplits = 64;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
@@ -188,8 +189,8 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
   if (vertex_slack.slack >= 0 && to_one_place && (p - vertex_slack.place).squaredNorm() <= slack_sq &&
       (low - vertex_slack.place).squaredNorm() <= slack_sq)
     return false;
-  // The bound covers the ball of radius `slack` around the end of this step. The ball contains the start, too. If
-  // `slack` is too large, the bound is as tight as after refit.
+  // The bound covers the ball of radius `slack` around the end position of the vertex. The ball
+  // contains its start, too. If `slack` is too large, the bound is as tight as after refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
     vertex_slack = {low, slack};

@@ -8,8 +8,9 @@ namespace weft::collision {
 
 namespace {
 
-/// Weights below this count as zero, so that, despite rounding, a point above a shared edge is on the edge for both
-/// faces. This rule moves the closest point by up to 1e-13 of an edge; rounding moves it by a few times 1e-16.
+/// Weights below this count as zero. So if the closest point is on an edge that two faces share,
+/// both faces find it on the edge, despite rounding. This rule moves the closest point by up to
+/// 1e-13 of an edge; rounding moves it by a few times 1e-16.
 constexpr double kSnap = 1e-13;
 
 /// Relative rounding error of a squared distance; also that of a distance, relative to the edge lengths.
@@ -36,8 +37,9 @@ ClosestPoints infinitely_far() {
   return {{}, Vec3::Zero(), std::numeric_limits<double>::infinity()};
 }
 
-/// Chooses between the boundary solution and the interior solution of a nearly degenerate pair. The interior one must
-/// be closer by more than rounding, so that collinear points always give an end of an edge or a corner.
+/// Chooses between the boundary solution and the interior solution of a nearly degenerate pair.
+/// Chooses the interior solution only if it is closer by more than rounding, so that collinear
+/// points always give an end of an edge or a corner.
 ClosestPoints choose_closer(const ClosestPoints& boundary, const ClosestPoints& inside, double length) {
   return std::sqrt(inside.distance_sq) < std::sqrt(boundary.distance_sq) - kRounding * length ? inside : boundary;
 }

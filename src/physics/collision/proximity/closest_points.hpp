@@ -8,9 +8,10 @@
 
 namespace weft::collision {
 
-/// If the squared sine of the angle between two edges is below this, their cross product has lost many digits. The
-/// interior solution is then refined, and the boundary is tested as well. At the limit the error is 1e-16 / 1e-2 of the
-/// edge length.
+/// If the squared sine of the angle between two edges does not exceed this, their cross product has
+/// lost many digits. The solution inside the features is then refined, and their boundaries are
+/// searched as well. At the limit, the error without refinement is about 1e-16 / 1e-2 of the edge
+/// length.
 inline constexpr double kNearlyParallelSq = 1e-4;
 
 /// Closest points of two features that have four vertices x together: x_a = Σ (positive weights) x on side a, x_b = −Σ
@@ -20,8 +21,8 @@ struct ClosestPoints {
   Vec3 difference;                ///< x_a - x_b [m]
   double distance_sq;             ///< [m²]
 
-  /// Bit i is set if vertex i has a non-zero weight. A closest point inside a face sets three bits, inside an edge two,
-  /// at a vertex one. Weights outside the feature are exactly zero.
+  /// Bit i is set if vertex i has a non-zero weight. A closest point inside a face sets three bits,
+  /// inside an edge two, at a vertex one. All other weights are exactly zero, despite rounding.
   unsigned support() const {
     unsigned bits = 0;
     for (unsigned i = 0; i < 4; ++i) bits |= static_cast<unsigned>(weights[i] != 0) << i;
@@ -38,9 +39,10 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
 /// point. For parallel segments, returns one of the closest pairs, the same one for the same input.
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1);
 
-/// Fast test before closest_vertex_face: true only if the distance certainly exceeds √reach_sq. Lower bounds: the
-/// distance to the plane of the triangle; beyond an edge, that to the plane through the edge perpendicular to the
-/// triangle.
+/// Fast test before closest_vertex_face: true only if the distance certainly exceeds √reach_sq. The
+/// test uses two lower bounds of the distance. One is the distance of p from the plane of the
+/// triangle. If p lies beyond an edge, the other is the distance of p from the plane through this
+/// edge perpendicular to the triangle.
 inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;  // far above the rounding of the products
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
@@ -53,7 +55,8 @@ inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, con
   return beyond(b1, e2.squaredNorm()) || beyond(b2, e1.squaredNorm()) || beyond(b0, (e2 - e1).squaredNorm());
 }
 
-/// As is_surely_farther, but for two edges. Lower bound: the distance of their lines. False for nearly parallel edges.
+/// As is_surely_farther, but for two edges. The lower bound is the distance of the two lines. False
+/// for nearly parallel edges.
 inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0;
@@ -63,8 +66,9 @@ inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3&
          height * height > kSafety * reach_sq * n_sq;
 }
 
-/// Fast test before closest_edge_edge: true only if the closest points of the two lines are outside an edge or farther
-/// apart than √reach_sq; false for nearly parallel edges.
+/// Fast test before closest_edge_edge: true only if one of the closest points of the two lines is
+/// certainly outside its edge, or these points are certainly farther apart than √reach_sq. False
+/// for nearly parallel edges.
 inline bool is_surely_not_interior(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;

@@ -11,9 +11,10 @@
 
 namespace weft::collision {
 
-/// The lowest-numbered triangle that contains a vertex or edge owns it. If a loop over triangle pairs uses only owned
-/// features, it visits each pair of features once (Curtis, Tamstorf & Manocha, "Fast Collision Detection for Deformable
-/// Models using Representative-Triangles", 2008).
+/// The lowest-numbered triangle that contains a vertex or edge owns it. If a loop over pairs of
+/// triangles uses, for each triangle, only the vertices and edges that it owns, it visits each pair
+/// of features once (Curtis, Tamstorf & Manocha, "Fast Collision Detection for Deformable Models
+/// using Representative-Triangles", 2008).
 class Features {
  public:
   Features() = default;
@@ -24,18 +25,19 @@ class Features {
   std::span<const Triangle> triangles() const { return triangles_; }
   const Triangle& triangle(Index t) const { return triangles_[t]; }
 
-  /// Bits 0 to 2: the triangle owns corner c. Bits 3 to 5: it owns the edge from corner c to corner c + 1.
+  /// Bit c (0 to 2) is set if triangle t owns its corner c. Bit 3 + c is set if it owns the edge
+  /// from corner c to corner c + 1 (corner 3 is corner 0).
   std::uint8_t owned(Index t) const { return owned_[t]; }
 
-  /// Vertices opposite to the edge from corner c to corner c + 1, which triangle t must own: one for each triangle at
-  /// that edge.
+  /// Vertices opposite to the edge from corner c to corner c + 1, one for each triangle at that
+  /// edge. Triangle t must own the edge.
   std::span<const Index> apexes(Index t, std::size_t c) const {
     const auto edge = static_cast<std::size_t>(edge_[t][c]);
     return std::span(apexes_).subspan(at(apexes_begin_[edge]), at(apexes_begin_[edge + 1] - apexes_begin_[edge]));
   }
 
-  /// The other triangle at the edge from corner c to corner c + 1, which triangle t must own. −1 unless exactly two
-  /// triangles share the edge.
+  /// The other triangle at the edge from corner c to corner c + 1. −1 if triangle t does not own
+  /// the edge, or unless exactly two triangles share it.
   Index across(Index t, std::size_t c) const { return across_[t][c]; }
 
   /// Triangles at a vertex, lowest number first.

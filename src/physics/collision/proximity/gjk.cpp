@@ -9,8 +9,8 @@ namespace weft::collision {
 
 namespace {
 
-/// The search ends when the upper and lower bounds of the distance differ by this fraction of the size of both sets: a
-/// few rounding errors.
+/// The search ends when the upper and lower bounds of the distance differ by at most this fraction
+/// of the size of both sets. The fraction is a few rounding errors.
 constexpr double kTolerance = 1e-14;
 /// Sets of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
 constexpr int kMaxRounds = 40;
@@ -57,8 +57,9 @@ std::size_t furthest(std::span<const Vec3> points, const Vec3& d) {
   return best;
 }
 
-/// Finds the point of triangle i, j, k that is nearest to the origin, and stores it in `simplex` if it is nearer than
-/// the best point so far (`least_sq`). closest_vertex_face also accepts needles, segments and points.
+/// Finds the point of triangle i, j, k that is nearest to the origin. If its squared distance is
+/// below `least_sq`, stores the point in `simplex` and its squared distance in `least_sq`.
+/// closest_vertex_face also accepts needles, segments and points.
 void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, std::size_t k) {
   const auto& c = simplex.corner;
   const ClosestPoints points = closest_vertex_face(Vec3::Zero(), c[i].w, c[j].w, c[k].w);

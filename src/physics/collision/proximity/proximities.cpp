@@ -14,10 +14,11 @@ namespace {
 
 // Number of triangles whose pairs with a common vertex form one batch. Each triangle has six to nine such pairs.
 constexpr std::size_t kTrianglesPerBatch = 64;
-// Number of listed pairs from which AppendPairs appends one batch of candidates.
+// Number of listed pairs that one call of AppendPairs checks for candidates.
 constexpr std::size_t kPairsPerBatch = 4 * kGrainSize;
 
-/// Unit vector along v. If the features touch, v has no direction; the result then has that of `fallback`.
+/// Unit vector along v. If v is zero because the features touch: along `fallback`; if this is zero,
+/// too: along z.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
   if (const double length_sq = v.squaredNorm(); length_sq > 1e-280) return v / std::sqrt(length_sq);
   for (const Vec3& tiny : {v, fallback}) {
@@ -36,7 +37,8 @@ struct ProximityFinder::GatherParameters {
   double min_fold;
 };
 
-/// Finds the pairs of features within a radius in pairs of triangles.
+/// Finds the pairs of features that may be closer than a radius, among those of given pairs of
+/// triangles.
 class ProximityFinder::Gathering {
  public:
   Gathering(const ProximityFinder& finder, const GatherParameters& parameters, FeaturePairs& found)
@@ -49,8 +51,9 @@ class ProximityFinder::Gathering {
         radius_rounded_(parameters.radius_rounded),
         min_fold_(static_cast<float>(parameters.min_fold)) {}
 
-  /// Tests all owned features of each pair of triangles against each other. Tests their boxes first, for eight pairs at
-  /// once and without branches, because branches would be mispredicted (with branches, it takes three times as long).
+  /// Tests all owned features of each pair of triangles against each other. Tests their boxes
+  /// first, for eight pairs at once and without branches, because branches would be mispredicted
+  /// (with branches, the box tests take three times as long).
   void test_pairs(std::span<const TrianglePair> pairs) {
     for (; pairs.size() >= 8; pairs = pairs.subspan(8)) test_eight_pairs(pairs.first<8>(), 8);
     if (pairs.empty()) return;
@@ -99,7 +102,7 @@ class ProximityFinder::Gathering {
     }
   };
 
-  /// Bit l is set if the boxes in lane l are closer than the radius.
+  /// Bit l is set if the boxes in lane l are closer than the radius along every axis.
   static std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b, const Lanes8& radius) {
     Lanes8 gap = a_low.axis[0] - b.high.axis[0];
     raise_to(gap, b.low.axis[0] - a_high.axis[0]);
@@ -110,8 +113,9 @@ class ProximityFinder::Gathering {
     return sign_mask(gap - radius);
   }
 
-  /// The radius for the box tests in float. Rounding changes a gap between coordinates by less than four times 2^-24 of
-  /// the largest one. Uses only coordinates of the pair, so other bodies do not affect the result.
+  /// The radius for the box tests in float. Rounding changes a gap between two coordinates by less
+  /// than four times 2^-24 of the largest coordinate. Uses only coordinates of the pair, so other
+  /// bodies do not affect the result.
   Lanes8 rounded_radius(const Boxes& a, const Boxes& b) const {
     Lanes8 largest = a.high.axis[0];
     for (const Boxes* box : {&a, &b})
@@ -208,7 +212,8 @@ class ProximityFinder::Search {
     for (std::size_t c = 0, n = 0; c < 3; ++c)
       if (points.weights[c + 1] != 0 && n < 2) support[n++] = corners[c];
 
-    // If the closest points are two vertices, list only the pair of the vertex with the lower number.
+    // If the closest points are two vertices, list only the pair of the lower-numbered vertex with
+    // a face around the other.
     if (support[1] < 0 && vertex > support[0]) {
       const auto star = features_.triangles_at(vertex);
       const auto apart = [&](Index t) { return !has_vertex(features_.triangle(t), support[0]); };
@@ -255,7 +260,8 @@ class ProximityFinder::Search {
     return max_sine;
   }
 
-  /// Sine of the angle from the wedge of a vertex (see Proximity) to the direction towards its closest point; 0 inside.
+  /// Sine of the angle from the wedge of a vertex (see Proximity) to the direction towards its
+  /// closest point; 0 if this direction is inside the wedge.
   double outside_vertex_wedge(Index vertex, const ClosestPoints& points) const {
     const Vec3 point = at(vertex) - points.difference;
     double least_sq = (1 - kRoundoff) * points.distance_sq;
@@ -291,7 +297,8 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
       normals[t] =
           (at(triangles[t][1]) - at(triangles[t][0])).cross(at(triangles[t][2]) - at(triangles[t][0])).normalized();
   });
-  // 1 − cos θ = 2 sin² (θ / 2) for the fold angle θ
+  // The sine of half the fold angle θ follows from 1 − cos θ = 2 sin² (θ / 2). It is 1 unless
+  // exactly two triangles share the edge.
   const auto fold = [&](std::size_t t, Index other) {
     return static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * normals[t].dot(normals[other]))));
   };
@@ -334,8 +341,9 @@ void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const S
     test_pairs(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())), parameters);
 }
 
-// In cloth without sharp creases all triangles are clear, so no pair with a common vertex is tested. Testing these
-// pairs would take 13 % of the time of ball_through_cloth.
+// In cloth without sharp creases, all triangles away from the border are clear, so few pairs with a
+// common vertex are tested. If all were tested, this would take 13 % of the time of
+// ball_through_cloth.
 void ProximityFinder::gather(std::size_t count, const AppendPairs& append_apart, std::span<const Surface> deformable,
                              std::span<const Vec3> x, double radius, double min_fold,
                              std::span<const std::uint8_t> clear) {
@@ -391,7 +399,8 @@ void ProximityFinder::find(std::span<const Vec3> x, double detection_distance, s
     Search search(features_, x, detection_distance, list);
     for (std::size_t p = begin; p < end; ++p) search.edges(edge_edges[p]);
   });
-  // The order of candidates depends on the shape of the trees, and later sums depend on the order by rounding.
+  // The order of candidate pairs depends on the shape of the trees. Without sorting, the rounding
+  // of later sums would depend on this order.
   std::ranges::sort(out, {}, [](const Proximity& near) { return std::tie(near.kind, near.vertices); });
 }
 

@@ -18,12 +18,13 @@ namespace weft::collision {
 
 /// Two near features with their closest points: Σ weights x = distance · normal.
 struct Proximity : FeaturePair {
-  /// Sine of the angle by which the contact direction, between the closest points, leaves the wedge of a feature. The
-  /// wedge of a vertex or edge consists of the directions (of an edge: perpendicular to it) in which no adjacent face
-  /// is closer than the vertex or edge itself. Edge pair: values of edge a and edge b, negative inside the wedge.
-  /// Vertex-face pair: the first value is that of the vertex, or 0 inside its wedge or if the closest point is inside
-  /// the face; the second is 0. If a value is above 0, a neighbouring pair is closer, so the response may skip this
-  /// one.
+  /// Sine of the angle by which the contact direction, between the closest points, leaves the wedge
+  /// of a feature. The wedge of a vertex or edge consists of the directions (of an edge:
+  /// perpendicular to it) in which no adjacent face is closer than the vertex or edge itself. For
+  /// an edge pair, these are the values of edge a and edge b, negative inside the wedge. For a
+  /// vertex-face pair, the first value is that of the vertex, and the second is 0. The first is 0,
+  /// too, inside the wedge of the vertex, or if the closest point is inside the face. If a value is
+  /// above 0, a neighbouring pair is closer, so the response may skip this pair.
   std::array<double, 2> outside_wedge{};
 };
 
@@ -34,11 +35,12 @@ struct Proximity : FeaturePair {
 ///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. If several faces
 ///     are equally close, it lists only one pair.
 ///
-/// Every near pair that is not listed is represented by a listed pair that is at least as close. Proof: let the point
-/// of a face closest to a vertex lie on the edge or vertex S of the face. Every face around S contains that point, so
-/// the vertex is no farther from each of them. Likewise, if the closest point of an edge pair is an end of one edge,
-/// this end is no farther from the faces around the other edge. Going from face to face, distances never grow, and of
-/// equal distances the face with the lower number wins, so the chain ends at a listed pair.
+/// Every near pair that is not listed is represented by a listed pair that is at least as close.
+/// Proof: let the point of a face closest to a vertex lie on the edge or vertex S of the face.
+/// Every face around S contains that point, so the vertex is no farther from each of them.
+/// Likewise, if a closest point of an edge pair is an end of its edge, this end is no farther from
+/// the faces around the other edge. Going from face to face, distances never grow, and of equal
+/// distances the face with the lower number wins, so the chain ends at a listed pair.
 class ProximityFinder {
  public:
   ProximityFinder() = default;
@@ -46,14 +48,16 @@ class ProximityFinder {
   /// `triangles`: of all surfaces in their global numbering; must outlive this object.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
-  /// Gathers all pairs of features closer than `radius` [m] at x [m], and some that are farther apart. The candidates
-  /// must include every pair of triangles closer than `radius`, except pairs with a common edge, which gather() adds
-  /// for each surface of `deformable`. Skips an edge pair if the sines of half the fold angles along both edges add up
-  /// to less than `min_fold`: between two smooth layers, four of five pairs are edge pairs, but vertex-face pairs
-  /// suffice.
+  /// Gathers all pairs of features closer than `radius` [m] at x [m], and some that are farther
+  /// apart. The candidates must include every pair of triangles closer than `radius`, except pairs
+  /// with a common edge, which gather() adds for each surface of `deformable`. Skips an edge pair
+  /// if the sines of half the fold angles along both edges add up to less than `min_fold`: between
+  /// two smooth layers, four of five pairs would be edge pairs, but vertex-face pairs suffice to
+  /// keep the layers apart.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
               double radius, double min_fold = 0);
-  /// Appends those of the pairs [begin, end) of a list that are candidates. Several threads call it.
+  /// Appends those of the pairs [begin, end) of a list that are candidates. Several threads call
+  /// this function at the same time.
   using AppendPairs = std::function<void(std::size_t begin, std::size_t end, PairList& pairs)>;
   /// As the first gather(), with candidates from a list of `count` pairs without a common vertex. Adds the pairs of
   /// `deformable` with one or two common vertices, except pairs with a `clear` triangle (found by
@@ -61,9 +65,11 @@ class ProximityFinder {
   void gather(std::size_t count, const AppendPairs& append_apart, std::span<const Surface> deformable,
               std::span<const Vec3> x, double radius, double min_fold, std::span<const std::uint8_t> clear);
 
-  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m] and not represented by other
-  /// pairs (see above), sorted by kind and by the numbers of their vertices. The list is complete if no vertex is
-  /// farther than (radius − detection_distance) / 2 from its position in gather(), with its `radius`.
+  /// Replaces `out` by the gathered pairs that are closer than `detection_distance` [m] and not
+  /// represented by other pairs (see above), sorted by kind and by the numbers of their vertices.
+  /// Let `radius` be that of the last gather(). The list is complete if no vertex is farther than
+  /// (radius − detection_distance) / 2 from its position in that gather(). Edge pairs that gather()
+  /// skipped because of `min_fold` are missing in any case.
   void find(std::span<const Vec3> x, double detection_distance, std::vector<Proximity>& out) const;
 
   void find(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
@@ -105,7 +111,7 @@ class ProximityFinder {
   void measure_folds(std::span<const Vec3> x);
 
   Features features_;
-  std::vector<std::array<float, 3>> folds_;  ///< per triangle and owned edge: sine of half the fold angle; 1 at borders
+  std::vector<std::array<float, 3>> folds_;  ///< per owned edge; see measure_folds() in the .cpp
   std::vector<Rounded> rounded_;             ///< all positions, for the box tests
   FeaturePairs pairs_;
 };

@@ -22,8 +22,8 @@ ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x)
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
 }
 
-// Angle [rad] that a face spans around its point with these weights: at a corner the angle of the face, on an edge π,
-// inside 2π.
+// Angle [rad] that a face spans around its point with these weights: at a corner, the angle of the
+// face there; on an edge, π; inside the face, 2π.
 double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
   const auto on = [&](std::size_t c) { return weights[c] > kRoundoff; };
   const int support = on(0) + on(1) + on(2);
@@ -33,7 +33,8 @@ double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::sp
   return std::atan2(e.cross(f).norm(), e.dot(f));
 }
 
-// Weights of the corners of `face` for the point where the segment from p to q goes through it.
+// Weights of the corners of `face` for the point where the segment from p to q goes through the
+// face; nullopt if it does not.
 std::optional<std::array<double, 3>> intersect_segment(const Vec3& p, const Vec3& q, const Triangle& face,
                                                        std::span<const Vec3> x) {
   const Vec3 &t0 = x[face[0]], &t1 = x[face[1]], &t2 = x[face[2]];
@@ -156,7 +157,8 @@ std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Tria
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t next = (c + 1) % 3;
     if (intersect_segment(x[a[c]], x[a[next]], b, x)) {
-      // The heights of the ends above the face determine where the edge passes through it.
+      // The distances of the two ends from the plane of the face give the fraction of the edge at
+      // which it passes through the face.
       const Vec3 n = face_normal(b, x);
       const double from = std::abs(n.dot(x[a[c]] - x[b[0]])), to = std::abs(n.dot(x[a[next]] - x[b[0]]));
       const double fraction = from + to > 0 ? from / (from + to) : 0.5;

@@ -21,23 +21,26 @@ struct SurfacePoint {
   double height = 0;                ///< signed distance of p [m], negative inside; infinite if there are no triangles
 };
 
-/// Nearest point of these triangles, which are counter-clockwise seen from outside. Inside and outside (of an open
-/// surface: back and front) are distinguished by the angle-weighted normal of all faces that meet at the nearest point
-/// (Bærentzen & Aanæs, "Signed Distance Computation Using the Angle Weighted Pseudonormal", 2005).
+/// Nearest point of these triangles, which are counter-clockwise seen from outside. Inside and
+/// outside (for an open surface: back and front) are distinguished by the angle-weighted normal of
+/// all faces that meet at the nearest point (Bærentzen & Aanæs, "Signed Distance Computation Using
+/// the Angle Weighted Pseudonormal", 2005).
 SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, std::span<const Vec3> x);
 
-/// Whether a face takes part in a search.
+/// Returns whether a face takes part in a search.
 using CountsFace = std::function<bool(const Triangle& face)>;
-/// Nearest point of a surface of the broad phase at positions x [m], which must be inside the bounds of its last refit.
-/// Gives the same bits as a search over all faces that take part, unless some thousand faces are equally near up to
-/// rounding. `counts`: if given, faces for which it is false do not take part. `towards`: unit or zero; if it is not
-/// zero, and if some of the faces have a normal within 60 degrees of it, only these faces take part.
+/// Nearest point of a surface of the broad phase at positions x [m], which must be inside the
+/// bounds of its last refit. Gives the same bits as a search over all faces that take part, unless
+/// some thousand faces are equally near up to rounding. `counts`: if given, faces for which it is
+/// false do not take part. `towards`: unit or zero. If the normals of some faces are within 60
+/// degrees of it, only these faces take part. If there are none, or if `towards` is zero, all do.
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
 
-/// Whether a point is inside a surface of the broad phase, which may cross itself; for an open surface: behind it.
-/// Casts a ray along the axis nearest to `towards`. The point is inside if the ray leaves through more faces than it
-/// enters through. x [m] must be inside the bounds of the last refit.
+/// Whether a point is inside a surface of the broad phase, which may cross itself. Casts a ray of
+/// 1000 m along the axis nearest to `towards`. The point counts as inside if the ray leaves through
+/// more faces than it enters through. So for an open surface, a point behind a face that the ray
+/// meets counts as inside. x [m] must be inside the bounds of the last refit.
 bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
                std::span<const Vec3> x);
 

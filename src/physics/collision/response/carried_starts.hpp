@@ -1,5 +1,5 @@
-// Start positions of a step in the frame of a moving obstacle: where the particles would be if the obstacle had carried
-// them along.
+// Start positions of a step, carried by a moving obstacle: where the particles would be at the end
+// of the step if they moved rigidly with the obstacle.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,13 @@ struct RigidMotion {
   bool moves() const { return turns() || shift != Vec3::Zero(); }
 };
 
-/// An obstacle that turns moves on arcs, but separating planes are found for straight trajectories (see `separates` in
-/// separating_plane.hpp). In the frame of the obstacle, the obstacle rests. This class therefore applies the motion of
-/// the obstacle to the start positions of all particles. From these "carried" starts, a plane fixed to the obstacle can
-/// separate trajectories for the whole step. A particle that ends at its carried start keeps its distance from the
-/// obstacle, so it does not meet this obstacle.
+/// The vertices of an obstacle that turns move on arcs, but separating planes are found for
+/// straight trajectories (see `separates` in separating_plane.hpp). In the frame of the obstacle,
+/// the obstacle rests. This class therefore applies the motion of the obstacle to the start
+/// positions of all particles. The results are the carried starts. For the straight trajectory from
+/// there to the end of the step, the obstacle is at its end all the time, so that a plane fixed to
+/// it can separate a pair for the whole step. A particle that ends at its carried start has moved
+/// rigidly with the obstacle, so it does not meet this obstacle.
 class CarriedStarts {
  public:
   CarriedStarts() = default;

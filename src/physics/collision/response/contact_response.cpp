@@ -8,7 +8,8 @@
 namespace weft::collision {
 namespace {
 
-// Index, in a contact with an obstacle, of the particle that has the whole weight of its side; −1 for other contacts.
+// If the contact is with an obstacle and one particle has the whole weight of its side: the index
+// of this particle in Contact::particles. Otherwise −1.
 int single_particle(const Contact& contact) {
   if (!contact.against_obstacle) return -1;
   const auto found = std::ranges::find_if(contact.weights, [](double w) { return std::abs(w) >= 1 - 1e-9; });

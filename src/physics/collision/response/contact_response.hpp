@@ -29,14 +29,15 @@ class ContactResponse {
   /// Call before adding the contacts of a step over h [s].
   void begin_step(double h);
   void add(const Contact& contact, std::span<const Vec3> x_t0);
-  /// Adds the contact as a wall if it has a single particle and this is in front of an obstacle; ignores it otherwise.
-  /// Call only with velocity constraints.
+  /// Adds the contact as a wall if it is between an obstacle and a single particle in front of it;
+  /// ignores the contact otherwise. Call only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
   /// As VelocityConstraints::predict_wall_contacts; false with springs.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const {
     return walls_ && walls_->predict_wall_contacts(x_t1, by, predicted);
   }
-  /// Call before the first solve, after the contacts have been added. Chooses the walls that hold in this solve.
+  /// Call before the first solve, after the contacts have been added. Chooses the walls that hold
+  /// particles in this solve.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Particles that the walls constrain in the next solve.

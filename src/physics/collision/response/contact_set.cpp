@@ -15,8 +15,9 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// Limits of depth_for_force(): number of iterations, and relative error of the force. An error of the depth changes the
-// tangent force only by its square, here less than rounding. (With 1e-3, the solver misses a newton_tolerance of 1e-6.)
+// Limits of depth_for_force(): number of iterations, and relative error of the force. A relative
+// error e of the depth changes the force that update() finds along the tangent only by the order of
+// e²: here, less than rounding. (With 1e-3, the solver misses a newton_tolerance of 1e-6.)
 constexpr int kDepthIterations = 30;
 constexpr double kDepthTolerance = 1e-8;
 
@@ -24,7 +25,8 @@ struct NormalForce {
   double force, slope;  // [N], [N/m]
 };
 
-// Normal force at this depth [m]; zero if the depth is negative.
+// Normal force at this depth [m], and its slope. If the depth is not positive, the force is zero,
+// and the slope is k.
 NormalForce normal_force_at(const Contact& contact, double depth) {
   if (depth <= 0) return {0, contact.stiffness};
   const double full = std::max(contact.full_range, contact.range);
@@ -39,8 +41,9 @@ double tangent_force(const NormalForce& at, double depth_at, double depth) {
   return std::max(0.0, at.force + at.slope * (depth - depth_at));
 }
 
-// Inverse of normal_force_at(): the depth with this force. `depth`: a first guess that is not smaller. The force is a
-// convex function of depth, so Newton's method converges monotonically from above.
+// Inverse of normal_force_at(): the depth with this force; 0 if the force is not positive. `depth`:
+// a first guess, not smaller than the result. The force is a convex function of depth, so Newton's
+// method converges monotonically from above.
 double depth_for_force(const Contact& contact, double force, double depth) {
   if (force <= 0) return 0;
   depth = std::min(depth, force / contact.stiffness);
@@ -80,7 +83,8 @@ Vec3 friction_over_normal_force(const Contact& contact, const Vec3& slip) {
   return friction_over_slip(contact, slip.norm()) * slip;
 }
 
-// Inverse of friction_over_normal_force(): the slip that belongs to w. w must not exceed static friction.
+// Inverse of friction_over_normal_force(): the slip that belongs to w. ‖w‖ must not exceed the
+// static friction coefficient.
 Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
   const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
   return w / friction_over_slip(contact, slip);
@@ -101,8 +105,8 @@ Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   return slip - contact.normal.dot(slip) * contact.normal;
 }
 
-// Degree to which a contact is an impact, 0 to 1; see add_impacts(). Estimated from the motion of its particles up to
-// the start of the step, and of the obstacle in the step.
+// Degree to which a contact is an impact, 0 to 1; see add_impacts(). Estimated from the motion of
+// its particles up to the start of the step, and from the motion of the obstacle in the step.
 double impact_fraction(const Contact& contact, const StepStart& start) {
   const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
   const double velocity = along_normal(start.v);
@@ -116,7 +120,9 @@ double impact_fraction(const Contact& contact, const StepStart& start) {
   return opening < 0 ? std::min(1.0, -opening / (start.h * numerics.contact.impact_velocity)) : 0;
 }
 
-// Tangential velocity jump of the points [m/s] in a step that ends at x_end, limited to what friction can cause.
+// Tangential velocity jump of point a relative to point b [m/s], without the motion of an obstacle:
+// mean velocity in a step that ends at x_end, minus velocity at its start. Limited to the jump that
+// friction can cause.
 Vec3 tangential_jump(const Contact& contact, std::span<const Vec3> x_end, const StepStart& start) {
   const Vec3 jump =
       (weighted_sum(contact, x_end) - weighted_sum(contact, start.x)) / start.h - weighted_sum(contact, start.v);

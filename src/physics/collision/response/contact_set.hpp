@@ -21,7 +21,7 @@ struct Contact {
   Vec3 obstacle_start = Vec3::Zero();  ///< the same at the start of the step [m]
   bool against_obstacle = false;       ///< one side belongs to an obstacle
   Vec3 relative_start = Vec3::Zero();  ///< point a minus point b at the start of the step [m]
-  Vec3 normal = Vec3::UnitZ();         ///< unit, from b to a where the pair was found
+  Vec3 normal = Vec3::UnitZ();         ///< unit, from b to a at the positions of the search
   double depth = 0;       ///< depth where the solve starts, for the first linearisation [m]; negative: no force
   double range = 0;       ///< activation distance: the spring acts below it [m]
   double full_range = 0;  ///< r ≥ `range`: full activation distance of the surfaces [m]; infinite: a linear spring
@@ -35,7 +35,7 @@ struct FrictionLag {
   Vec3 relative_friction = Vec3::Zero();  ///< w = −friction / normal force, an unknown besides the positions
   Vec3 slip = Vec3::Zero();               ///< at the last update, divided by the stick slip ε (see ContactSet)
   bool sticks = false;   ///< friction is linearised at the slip that belongs to w; false: at that of the iterate
-  int slide_starts = 0;  ///< how often the contact changed from sticking to sliding in this step
+  int slide_starts = 0;  ///< number of changes from sticking to sliding in this step
 };
 
 /// State of the contacts of a step between Newton iterations, with one entry per contact.
@@ -57,10 +57,11 @@ Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 /// Jacobian has rank one. A linear spring is too weak under sharp tips: on cotton its force reaches only 0.1 N before
 /// the gap is closed, but a sheet that hangs on the tip of a cone presses with its weight of 1 N.
 ///
-/// Friction opposes the slip u, the displacement of a relative to b in the tangent plane since the start of the step.
-/// It grows smoothly with u up to its maximum, static friction coefficient times normal force, at the stick slip ε =
-/// `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5). At larger slips, the coefficient
-/// falls to that of sliding.
+/// Friction opposes the slip u, the displacement of a relative to b in the tangent plane since the
+/// start of the step. It grows smoothly with u up to its maximum, static friction coefficient times
+/// normal force, at the stick slip ε = `stick_speed` · h (Li et al., "Incremental Potential
+/// Contact", 2020, section 5). At larger slips, the coefficient falls linearly to that of sliding,
+/// which it reaches at Numerics::Contact::slide_velocity stick slips.
 class ContactSet {
  public:
   void clear() { contacts_.clear(); }
@@ -70,23 +71,28 @@ class ContactSet {
   void set_step(double h, double stick_speed = numerics.contact.stick_velocity) { stick_slip_ = stick_speed * h; }
   std::span<const Contact> contacts() const { return contacts_; }
 
-  /// Call before each linearisation, with the particles at the last iterate. The normal force λ is an unknown besides
-  /// the depth d; the solution satisfies f⁻¹(λ) = d (a primal-dual method). λ starts as f(`depth`). The linear system
-  /// contains the tangent of f at the depth f⁻¹(λ). Along this tangent, update() moves λ, but never below zero. (With
-  /// the tangent at the depth of the iterate, sphere_drape takes 1.25 times the iterations.) The λ that limits friction
-  /// is constant within an iteration and, after Numerics::Newton::slow_after updates, until the end of the step, so
-  /// that friction has a potential, too.
+  /// Call before each linearisation, with the particles at the last iterate. The normal force λ is
+  /// an unknown besides the depth d; the solution satisfies f⁻¹(λ) = d (a primal-dual method). λ
+  /// starts as f(`depth`). The linear system contains the tangent of f at the depth f⁻¹(λ).
+  /// update() moves λ along this tangent, but never below zero. (With the tangent at the depth of
+  /// the iterate, sphere_drape takes 1.25 times the iterations.) The λ that limits friction is
+  /// constant within an iteration and, after Numerics::Newton::slow_after updates, until the end of
+  /// the step, so that friction has a potential, too.
   ///
-  /// Up to that number of updates, update() also moves w (FrictionLag::relative_friction) of a sticking contact with an
-  /// obstacle along the tangent of w. The contact starts to slide if w then exceeds static friction. It sticks again if
-  /// the slip is less than the stick slip, or if the slip has reversed (at most Numerics::Contact::max_resticks times).
-  /// After that number of updates, no contact sticks. For contacts without an obstacle, moving w brings no gain: their
-  /// w is constant, and they never count as sticking.
+  /// Up to that number of updates, update() also moves w (FrictionLag::relative_friction) of a
+  /// sticking contact with an obstacle along the tangent of w. The contact starts to slide if w
+  /// then exceeds static friction. It sticks again if the slip is less than the stick slip. It also
+  /// sticks again if the slip has reversed, unless it has already started to slide
+  /// Numerics::Contact::max_resticks times in this step. After that number of updates, no contact
+  /// sticks. For contacts without an obstacle, moving w saves no iterations: their w is constant,
+  /// and they never count as sticking.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
-  /// Adds contact forces to `force` [N], with the particles at x_end. During the first Numerics::Newton::slow_after
-  /// updates, friction uses the normal forces at x_end, so that the residual contains the error of the constant normal
-  /// forces of the linear system. (Otherwise a sheet that lands on an incline loses the friction of the impact.)
+  /// Adds contact forces to `force` [N], with the particles at x_end. Before the
+  /// Numerics::Newton::slow_after-th update(), friction uses the normal forces at x_end, so that
+  /// the residual contains the error of the constant normal forces of the linear system. From then
+  /// on, friction uses these constant normal forces. (Otherwise a sheet that lands on an incline
+  /// loses the friction of the impact.)
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   /// As add_forces, but with the tangents of normal force and friction that linearise() uses, instead of their exact
   /// values.
@@ -97,31 +103,36 @@ class ContactSet {
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
                                       std::span<Vec3> friction, std::span<double> limit) const;
 
-  /// Adds the contacts to the linear system whose unknowns are the velocity jumps due to impacts in a step that ends at
-  /// x_end: to the matrix in `system` and to `right_side` [N/s]. Returns false if there is no impact; adds nothing
-  /// then. A contact that closes at Numerics::Contact::impact_velocity or faster is a full impact; one that closes more
-  /// slowly counts proportionally. The closing velocity is the smallest of three estimates: from the velocity at the
-  /// start of the step; from this velocity and the last acceleration (for motion along curved obstacles); from the last
-  /// displacement (zero at rest). In the first step, only the first estimate exists.
+  /// Adds the contacts to the linear system whose unknowns are the velocity jumps due to impacts in
+  /// a step that ends at x_end: to the matrix in `system` and to `right_side` [N/s]. Returns false
+  /// if there is no impact; adds nothing then. A contact that closes at
+  /// Numerics::Contact::impact_velocity or faster is a full impact; one that closes more slowly
+  /// counts proportionally. The closing velocity includes the motion of the obstacle in the step.
+  /// For the particles, it is the smallest of three estimates: from the velocity at the start of
+  /// the step; from this velocity and the last acceleration (for motion along curved obstacles);
+  /// from the last displacement (zero at rest). In the first step, only the first estimate exists.
   ///
-  /// The normal force of an impact enters `right_side`. Friction does not enter as a force, because a slip of 1e-7 m
-  /// would change it completely; a stiff term keeps the tangential velocity jump of the step instead. Contacts without
-  /// an impact transmit the jumps by their stiffness. (Otherwise a ball that falls on cloth on a floor throws the cloth
-  /// up by 9 to 105 mm instead of 1.5 mm.)
+  /// The normal force of an impact enters `right_side`. Friction does not enter as a force, because
+  /// a slip of 1e-7 m would change it completely; instead, a stiff term keeps the tangential
+  /// velocity jump that the step has found. Contacts without an impact transmit the velocity jumps
+  /// by their stiffness. (Otherwise a ball that falls on cloth on a floor throws the cloth up by 9
+  /// to 105 mm instead of 1.5 mm.)
   bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
-  /// As add_linear_forces; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change of the unknown. The
-  /// matrix of friction is approximated so that it is positive semidefinite. Friction −λ w at a slip u = ψ(‖u‖) w is
-  /// linearised with w as an unknown besides u (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total
-  /// Variation-Based Image Restoration", 1999). If the contact sticks, the matrix is the tangent at the slip that
-  /// belongs to w. If it slides, w is that of unchanged velocity, or the one with which sliding began. While the
-  /// contact keeps sliding in one direction, the matrix is then the exact tangent; otherwise it is closer to the secant
-  /// (friction over slip), or stiffer. (On an incline: 1.05 iterations per step; with secants only, 2.3.)
+  /// As add_linear_forces; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change
+  /// of the unknown. The matrix of friction is approximated so that it is positive semidefinite.
+  /// Friction −λ w at a slip u = ψ(‖u‖) w is linearised with w as an unknown besides u (Chan, Golub
+  /// & Mulet, "A Nonlinear Primal-Dual Method for Total Variation-Based Image Restoration", 1999).
+  /// If the contact sticks, the matrix is the tangent at the slip that belongs to w. If it slides,
+  /// w is that of the first iterate, or the one with which sliding began. While the contact keeps
+  /// sliding in one direction, the matrix is then the exact tangent; otherwise it is closer to the
+  /// secant (friction over slip), or stiffer. (On an incline: 1.05 iterations per step; with
+  /// secants only, 2.3.)
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
-  /// Number of contacts with a normal force, with the particles at x_end.
+  /// Number of contacts with a positive depth, with the particles at x_end.
   int count_active(std::span<const Vec3> x_end) const;
 
  private:

@@ -9,14 +9,16 @@
 namespace weft::collision {
 namespace {
 
-// Normal of the face nearest to p at positions x. `faces`: those that reached the cloth.
+// Normal of that of `faces` which is nearest to p at positions x. `faces`: those that reached the
+// cloth.
 Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
   return face_normal(nearest_point(p, faces, x).face, x);
 }
 
 }  // namespace
 
-// Faces of the limb that are not separated from the cloth triangle by their bounding boxes.
+// Faces of the limb whose bounding boxes are closer than Numerics::Separation::least_gap to that of
+// the cloth triangle, along every axis.
 std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
                                                std::span<const Vec3> x) const {
   std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, numerics.separation.least_gap);
@@ -30,8 +32,8 @@ bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::spa
   });
 }
 
-// Whether no obstacle contains `place`, the exit. Example: if a hand is inside the hip, the hip blocks the exit from
-// the hand.
+// Whether no obstacle contains `place`, to which a push leads. Example: if a hand is inside the
+// hip, the hip blocks the exit from the hand.
 bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
                                  std::span<const Vec3> x) const {
   for (std::size_t surface = 0; surface < surfaces.size(); ++surface)
@@ -105,7 +107,7 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
     const Vec3& p = x[particle];
     SurfacePoint nearest = nearest_point(p, surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb));
     is_back[corner] = origin.side * nearest.height > 0;
-    // The nearest point of the limb may be on another side of it, where the cloth does not belong.
+    // The nearest point may be on a side of the limb from which the cloth did not come.
     if (!is_back[corner])
       nearest = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), belongs_to_limb(limb));
     const double height = origin.side * nearest.height;

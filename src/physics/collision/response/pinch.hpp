@@ -17,13 +17,14 @@
 
 namespace weft::collision {
 
-/// The exempted cloth triangles. Each is exempt from one limb of an obstacle (an obstacle without limbs counts as one):
-/// it may intersect the limb, and no separating plane is required. A triangle stays in the set until it is apart from
-/// the limb and back on its original side of the limb. Triangles that share a particle with one of the set are exempt,
-/// too, so that a limb that moves along the cloth does not drag the cloth with it. renew() adds such a neighbour to the
-/// set if it meets the limb or is on its wrong side. If two limbs overlap, the cloth is exempt from the limb that
-/// reached it, and rests on the other. When the limb that reached it retreats, the cloth returns to the side from which
-/// it came.
+/// The exempted cloth triangles, each with the limb of an obstacle from which it is exempt. (An
+/// obstacle without limbs counts as one limb.) The triangle may intersect this limb: no separating
+/// plane is required. renew() removes a triangle from the set if it is apart from the limb and back
+/// on its original side of the limb. Neighbours of a triangle of the set (triangles that share a
+/// particle with it) are exempt from its limb, too, so that a limb that moves along the cloth does
+/// not drag the cloth with it. renew() adds a neighbour to the set if it meets the limb or is on
+/// its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it, and
+/// rests on the other. If the first limb retreats, the cloth returns to its original side of it.
 class PinchedPairs {
  public:
   struct Key {
@@ -39,11 +40,12 @@ class PinchedPairs {
     std::vector<Triangle> faces;  ///< faces of the limb that reached the cloth
   };
 
-  /// Two points for a contact that pushes a particle, or a point of a triangle, back to its side. `exit_pair` has the
-  /// vertices of a particle and a face of the limb, or of a cloth triangle and one corner of the face that it crosses.
+  /// Two points for a contact that pushes a particle, or a point of a cloth triangle, back to its
+  /// side. The vertices of `exit_pair` are a particle and the corners of a face of the limb, or the
+  /// corners of a cloth triangle and one corner of the face that it crosses.
   struct Push {
     FeaturePair exit_pair;
-    bool is_exit_clear = false;  ///< no obstacle contains the exit, to which the push leads on the original side
+    bool is_exit_clear = false;  ///< no obstacle contains the point to which the push leads
   };
 
   PinchedPairs() = default;
@@ -60,9 +62,11 @@ class PinchedPairs {
       return particles_.contains({particle, body_of(pair.b[0]), limb_of_[pair.b[0]]});
     });
   }
-  /// Whether two features with these vertices belong to pinched cloth and the limb that pinches it.
+  /// Whether one of these vertices is a corner of an exempted triangle, and another one belongs to
+  /// the limb from which this triangle is exempt.
   bool are_pinched(const std::array<Index, 4>& vertices) const;
-  /// Exempts side a of the pair from the limb of side b. The origin is incomplete until note_origins().
+  /// Exempts side a of the pair from the limb of side b. The side in its origin is not recorded
+  /// until note_origins() is called.
   void add(const CornerPair& pair);
   void add(const Key& key, const Origin& origin) {
     origins_.emplace(key, origin);
@@ -72,20 +76,22 @@ class PinchedPairs {
   // In the functions below, `surfaces` contains all bodies, by number. Positions must be inside the bounds of the last
   // refit of `surfaces`.
 
-  /// Completes the origin of triangles that add(pair) has exempted: records their side at x_t0 [m].
+  /// Completes the origin of triangles that add(pair) has exempted: records their side at x_t0 [m],
+  /// that of their first corner.
   void note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0);
 
-  /// Removes triangles that at x [m] are apart from their limb and back on their side. Adds triangles that share a
-  /// particle with one of the set, unless they, too, are apart from that limb and on that side. `triangles`: of all
-  /// surfaces, cloth first.
+  /// Removes triangles that, at x [m], are apart from their limb and back on their side. Adds
+  /// triangles that share a particle with one of the set, unless they are apart from its limb and
+  /// on its side. `triangles`: of all surfaces, cloth first.
   void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
 
-  /// Finds how pinched cloth returns to its side at x [m]. Lists each corner of an exempted triangle with a height
-  /// below `max_height` [m], with the nearest point of the limb. (Height: signed distance from the limb, negative on
-  /// the wrong side.) For a corner on the wrong side, faces take precedence whose normal is within 60° of that of the
-  /// faces that reached the cloth. If all corners of a triangle are on the right side but it crosses a face, lists the
-  /// middle of that crossing, with the normal of the face. Side a of each pair is the cloth; the normal points to the
-  /// side where the cloth belongs.
+  /// Finds how pinched cloth returns to its side at x [m]. Pairs each corner of an exempted
+  /// triangle whose height is below `max_height` [m] with the nearest point of the limb. (Height:
+  /// signed distance from the limb, negative on the wrong side.) For a corner on the wrong side,
+  /// only faces count whose normal is within 60° of the normal of the nearest face that reached the
+  /// cloth, if there are any. If all corners of a triangle are on the right side but the triangle
+  /// crosses a face, pairs the middle of that crossing with the face. Side a of each pair is the
+  /// cloth; the normal points to the side where the cloth belongs.
   std::vector<Push> find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x, double max_height) const;
 
   bool empty() const { return origins_.empty(); }

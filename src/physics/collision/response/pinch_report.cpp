@@ -33,8 +33,9 @@ std::optional<std::size_t> find_pressing_obstacle(const PinchedPairs& pinched, c
     if (distance < nearest) nearest = distance, other = b;
   }
   if (bodies[key.body].rigid) return other;
-  // Two parts of one deforming body, such as arm and torso, can pinch cloth. In that case, the body has faces on both
-  // sides of the cloth, and even the farther ones are closer than any other obstacle.
+  // Two parts of one deforming body, such as arm and torso, can pinch cloth. In that case, the body
+  // has faces on both sides of the cloth, and on either side its nearest face is closer than any
+  // other obstacle.
   const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
   const double far =
       std::max(distance_facing(place, up, surfaces, key.body, x), distance_facing(place, -up, surfaces, key.body, x));

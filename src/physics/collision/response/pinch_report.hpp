@@ -1,4 +1,5 @@
-// Reports pinched cloth: which cloth, which obstacle it intersects, and which other obstacle presses it into that one.
+// Reports pinched cloth: the cloth, the obstacle that it intersects, and the obstacle that presses
+// it there.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,9 @@
 
 namespace weft::collision {
 
-/// A cloth that intersects an obstacle because there is no space for it. `pressing_obstacle`: the nearest other
-/// obstacle, or `obstacle` if two parts of it pinch the cloth; nullopt if there is no other obstacle.
+/// A cloth that intersects an obstacle because there is no space for it. `pressing_obstacle`: the
+/// nearest other obstacle, or `obstacle` itself if two parts of it pinch the cloth; nullopt if
+/// there is neither.
 struct Pinch {
   std::size_t cloth = 0, obstacle = 0;  ///< numbers of the bodies
   std::optional<std::size_t> pressing_obstacle;

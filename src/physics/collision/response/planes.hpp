@@ -16,12 +16,14 @@
 
 namespace weft::collision {
 
-/// Stores for each pair of a list of candidate pairs (the watched pairs) a direction, and the gap along it at the
-/// reference positions, those of the last watch(). The gap shrinks by at most the sum of the motions of both triangles
-/// since the last watch(). While that sum is less than the gap, the pair counts as separated without a test, so cloth
-/// that rests on cloth costs one comparison per pair and step. A pair also counts as separated without a test if no
-/// corner has moved since its last successful test. This saves time when pairs are pushed apart, because each round
-/// moves few vertices.
+/// Stores, for each pair of a list of candidate pairs (the watched pairs), a direction and the gap
+/// along this direction at the reference, the positions of the last watch(). The motion of a
+/// triangle is the largest distance of its corners from the reference. The gap shrinks by at most
+/// the sum of the motions of both triangles. If this sum is less than the gap, the pair counts as
+/// separated without a test, so cloth that rests on cloth costs one comparison per pair and step. A
+/// pair also counts as separated without a test if its trajectory has not changed since its last
+/// successful test. This saves time when pairs are pushed apart, because each round moves few
+/// vertices.
 class Planes {
  public:
   Planes() = default;
@@ -29,14 +31,16 @@ class Planes {
   explicit Planes(std::span<const Triangle> triangles, Index obstacles_from = 0)
       : triangles_(triangles), obstacles_from_(obstacles_from) {}
 
-  /// Kinds of planes to seek for a pair: `which`, but `all` instead of `turning` for pairs with an obstacle, because
-  /// obstacles move fast and turn. (Otherwise a ball that hits a cloth takes 1.13 times the iterations.)
+  /// Kinds of planes to seek for a pair: `which`, except that for a pair with an obstacle, `all`
+  /// replaces `turning`, because obstacles move fast and turn. (With `turning` for all pairs, a
+  /// ball that hits a cloth takes 1.13 times the iterations.)
   PlaneKinds kinds_of(const CornerPair& pair, PlaneKinds which) const {
     const bool with_obstacle = pair.a[0] >= obstacles_from_ || pair.b[0] >= obstacles_from_;
     return which == PlaneKinds::turning && with_obstacle ? PlaneKinds::all : which;
   }
 
-  /// Sets the watched pairs, and finds directions that separate them at x [m], the reference.
+  /// Sets the watched pairs, makes x [m] the reference, and seeks a direction that separates each
+  /// pair there.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
   /// As above, for the pairs received by exchange().
   void watch(std::span<const Vec3> x);
@@ -45,7 +49,8 @@ class Planes {
 
   /// Number of watched pairs.
   std::size_t size() const { return pairs_.size(); }
-  /// Sets how far the vertices have `moved` from the reference [m], for append_closer(). find_failing() overwrites it.
+  /// Sets how far the vertices have `moved` from the reference [m], for append_closer().
+  /// find_failing() overwrites these distances.
   void set_moved(std::span<const float> moved);
   /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m] after the motion of
   /// set_moved(): a gap along any direction is a lower bound of the distance.

@@ -20,8 +20,7 @@ Vec3 normal(const Corners& t) {
   return (t[1] - t[0]).cross(t[2] - t[0]);
 }
 
-/// Corners of both sides of a pair at one time, with directions for planes. Both halves of a trajectory share the
-/// middle.
+/// Corners of both sides of a pair at one time, with directions for planes.
 struct Sides {
   Corners a, b;
   Vec3 normal_a = normal(a), normal_b = normal(b);

@@ -42,7 +42,8 @@ void Separation::watch(std::span<const Vec3> x) {
   set_reference(x);
 }
 
-// Keeps the measures of the stars if x is unchanged, as mostly when pairs are collected for another end of the step.
+// Keeps the measures of the stars if x is unchanged. This is mostly so if pairs are collected again
+// for another end of the step.
 void Separation::set_reference(std::span<const Vec3> x) {
   if (std::ranges::equal(reference_, x)) return stars_.forget_tests();
   reference_.assign(x.begin(), x.end());
@@ -91,14 +92,16 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
   stars_.find_failing(x_t0, x_t1, moved_, changed_, failing_, which);
   if (pinched != nullptr && !pinched->empty())
     std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->exempts(pair); });
-  // The order in which pairs are pushed apart affects the result, and the order of the trees depends on the world axes.
+  // The order in which pairs are pushed apart affects the result. Without sorting, this order would
+  // depend on the trees, and so on the world axes.
   std::ranges::sort(failing_);
   return failing_;
 }
 
-// Finds the plane n·x = c for pushing a pair apart to the gap `target` [m]: free corners of a are moved up to c +
-// target / 2, those of b down to c − target / 2. This plane keeps their common centre of mass in place. (A plane midway
-// between the triangles loses 1e-4 of the momentum.)
+// Returns c of the plane n·x = c for pushing a pair apart to the gap `target` [m]. Corners of side
+// a that are not fixed and lie below c + target / 2 are moved up to there; those of side b above c
+// − target / 2, down to there. With this c, these pushes keep the common centre of mass of the
+// moved corners in place.
 double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const {
   struct Corner {
     double limit, mass;  // [m], [kg]; a corner of a is pushed if c > limit, a corner of b if c < limit
@@ -130,11 +133,12 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   return below;
 }
 
-// Returns the direction along which to push a pair apart. Candidates are `closest`, the direction between the closest
-// points at the start, and the normals of faces that do not move, if they separate the pair at the start. Returns the
-// candidate along which the ends overlap least. If cloth slides towards a facet ahead of it, a push along `closest`
-// would move it back by as much as it has slid. Normals of moving faces are not used: with them, the strain of cloth
-// that a cylinder strikes at 38 m/s grows from 0.29 to 0.69.
+// Returns the direction along which to push a pair apart. Candidates are `closest`, the direction
+// between the closest points at the start, and the normals of faces that do not move, if they
+// separate the pair at the start. Returns the candidate along which the ends overlap least. Reason:
+// if cloth slides towards a facet ahead of it, a push along `closest` would move the cloth back by
+// as much as it has slid. Normals of moving faces are not used: with them, the strain of cloth that
+// a cylinder strikes at 38 m/s grows from 0.29 to 0.69.
 Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, const Step& step) const {
   const std::span<const Vec3> start = step.start_of(pair), end = step.x_t1;
   Vec3 best = closest;
@@ -150,8 +154,9 @@ Vec3 Separation::push_direction(const CornerPair& pair, const Vec3& closest, con
   return best;
 }
 
-// Moves the ends of a pair apart. If fixed vertices or those of rigid bodies leave no space, translates the rigid
-// bodies instead. Returns false if the pair touches at the start or neither is possible.
+// Moves the ends of a pair apart. If fixed vertices or those of rigid bodies leave no space for the
+// gap, translates the rigid bodies instead. Returns false if the pair touches at the start, or if
+// neither is possible.
 bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
@@ -185,7 +190,8 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   return true;
 }
 
-// Moves the rigid bodies of a pair apart along n. Returns false if neither can move, or if they are far enough apart.
+// Moves the rigid bodies of a pair apart along n, to the gap `target` [m]. Returns false if neither
+// can move, or if the gap is already that large.
 bool Separation::translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const {
   const auto free_group = [&](Index v) { return step.movable[v] == kFree ? group_of(v) : nullptr; };
   const RigidGroup *a = free_group(pair.a[0]), *b = free_group(pair.b[0]);
@@ -226,10 +232,13 @@ const Vec3& Separation::backtrack_target(Index v, const Step& step) const {
   return carriers_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(carriers_[v]))[v] : step.x_t0[v];
 }
 
-// Chooses where the free vertices of a failing pair are backtracked to. If the pair has an obstacle that moves rigidly,
-// this obstacle carries them. In a pair without an obstacle, an obstacle that carries one of them carries all. If a
-// vertex would be carried to two places, it stays at its start from then on; in a pair without an obstacle, all free
-// vertices do. Returns true if something changed; each vertex changes at most twice.
+// Chooses the backtrack targets of the free vertices of a failing pair: their start, or their start
+// carried by an obstacle. If the pair has an obstacle that moves rigidly, this obstacle carries
+// them. If another obstacle already carries a vertex, the vertex gets kAlwaysAtStart. In a pair
+// without an obstacle, an obstacle that carries one vertex carries all free ones. But if two
+// obstacles carry vertices of the pair, or if one vertex is carried and another one cannot be, all
+// free vertices get kAlwaysAtStart. Returns true if a target has changed; each vertex changes its
+// target at most twice.
 bool Separation::choose_backtrack_targets(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
@@ -269,9 +278,9 @@ bool Separation::has_carried_vertex(const CornerPair& pair) const {
   return std::ranges::any_of(pair.a, is_carried) || std::ranges::any_of(pair.b, is_carried);
 }
 
-// Backtracks the vertices of a pair, entirely or half of the way, each at most once per round. If a vertex is carried,
-// backtracks entirely, because the pair may still meet halfway. Returns false if every free vertex is at its target and
-// no target has changed.
+// Backtracks the vertices of a pair, entirely or half of the way, each at most once per round. If
+// an obstacle carries a vertex, backtracks entirely, because the pair may still meet halfway.
+// Returns false if every free vertex is at its target and no target has changed.
 bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
   bool changed = choose_backtrack_targets(pair, step);
   const double fraction = all_the_way || has_carried_vertex(pair) ? 1 : 0.5;
@@ -317,7 +326,7 @@ bool Separation::is_backtracked(const CornerPair& pair, const Step& step) const 
   if (ends_at(step.x_t0)) return true;
   const int carrier = carriers_[pair.a[0]];
   if (carrier < 0) return false;
-  // The carrying obstacle does not move other obstacles along, so these may meet carried vertices.
+  // Carried vertices move with their obstacle but not with other obstacles, so they may meet these.
   const auto obstacle = static_cast<std::size_t>(carrier);
   return (!step.carried->has_obstacle(pair) || step.carried->obstacle_of(pair) == obstacle) &&
          ends_at(step.carried->by(obstacle));
@@ -336,8 +345,9 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
   test_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
-  // The first `rounds` rounds push, the next `rounds` / 2 backtrack by halves, the next `rounds` backtrack entirely.
-  // Later rounds backtrack all vertices.
+  // With r = `rounds`: rounds 1 to r push pairs apart. Later rounds backtrack failing pairs, up to
+  // round 1.5 r by halves, then entirely. From round 2.5 r on, all free vertices are backtracked
+  // entirely.
   const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
     bool changed = round_ >= by_halves + rounds && backtrack_all(step);

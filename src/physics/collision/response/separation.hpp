@@ -28,7 +28,7 @@ struct ObstructedPin {
 struct SeparationReport {
   bool separated = false;                      ///< each pair has a separating plane, is exempt, or is fully backtracked
   int corrected_pairs = 0;                     ///< number of pairs that failed before the correction
-  double largest_push = 0;                     ///< longest single push or backtrack [m]
+  double largest_push = 0;                     ///< longest single push or backtrack of a pair [m]
   std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that had to move
   CornerPair unseparated_pair{};               ///< if not `separated`: a pair that is not
 };
@@ -46,19 +46,21 @@ struct RigidGroup {
 /// exactly onto each other.
 ///
 /// If a pair has no separating plane, enforce() corrects the ends x_t1 of its vertices:
-///   1. It pushes them apart along a direction n until a gap remains. n is the direction between the closest points at
-///      the start, or the normal of a face that does not move if the push along this normal is shorter. It repeats this
-///      for the moved vertices until no pair fails. It never pushes fixed vertices, and pinned ones only if there is no
-///      other way.
-///   2. It backtracks particles that keep failing: moves them back towards their start, finally all the way. Particles
-///      that fail with an obstacle that moves rigidly go to their carried start instead (CarriedStarts). No pair meets
-///      at the start. So two triangles do not meet if all their vertices end at their start, or if one obstacle carries
-///      all of them. The set of backtracked particles grows until no pair fails.
+///   1. It pushes the two triangles apart along a direction n, so that a gap remains. n is the
+///      direction between the closest points at the start. If the push along the normal of a face
+///      that does not move is shorter, n is this normal. It then tests again and pushes the pairs
+///      that fail, in up to Numerics::Separation::rounds rounds. It never pushes fixed vertices,
+///      and pinned ones only if there is no other way.
+///   2. It backtracks the particles of pairs that still fail: moves them back towards their start,
+///      finally all the way. If the pair has an obstacle that moves rigidly, the particles go to
+///      their carried start instead (CarriedStarts). No pair meets at the start. So two triangles
+///      do not meet if all their vertices end at their start, or if one obstacle carries all of
+///      them. The set of backtracked particles grows until no pair fails.
 ///   3. A pair that still fails is forced together by fixed vertices that move differently. Cloth can then be exempted
 ///      from the obstacle.
 ///
-/// A rigid body pushes cloth as an obstacle does: it does not move itself. Rigid bodies are translated away from
-/// obstacles and from each other, the lighter one farther.
+/// A rigid body pushes cloth as an obstacle does: the push does not move the body. Rigid bodies are
+/// translated away from obstacles and from each other, the lighter one farther.
 class Separation {
  public:
   Separation() = default;
@@ -70,9 +72,10 @@ class Separation {
   /// Sets the rigid groups. `vertices`: number of all vertices. Call before the first watch().
   void set_rigid(std::vector<RigidGroup> groups, Index vertices);
 
-  /// Sets the pairs to watch (to test for a separating plane), which have no common vertex. x [m] becomes the reference
-  /// for motion, also of the vertex stars. The pairs must include all that can meet. If a vertex moves out of the
-  /// bounds for which the pairs were collected, collect and watch again.
+  /// Sets the pairs to watch (to test for a separating plane), which have no common vertex. x [m]
+  /// becomes the reference from which motion is measured, also for the vertex stars. The pairs must
+  /// include all that can meet. If a vertex moves out of the bounds for which the pairs were
+  /// collected, collect and watch again.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
   /// As above, for the pairs received by exchange().
   void watch(std::span<const Vec3> x);
@@ -81,7 +84,8 @@ class Separation {
 
   /// Number of watched pairs.
   std::size_t pair_count() const { return planes_.size(); }
-  /// Measures how far the vertices at x [m] are from the reference, for append_closer(). Testing pairs overwrites it.
+  /// Measures how far the vertices at x [m] are from the reference, for append_closer().
+  /// find_failing() and enforce() overwrite the result.
   void measure_motion(std::span<const Vec3> x);
   /// Appends those of the watched pairs [begin, end) that may be closer than `radius` [m] at the x of measure_motion().
   void append_closer(double radius, std::size_t begin, std::size_t end, PairList& out) const {
@@ -92,17 +96,21 @@ class Separation {
   /// that share a vertex with them. Pairs of features with a common vertex do not count. May miss clear triangles.
   std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
-  /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1. Changes no positions. x_t0 must
-  /// be free of intersections, except of pairs that `pinched` exempts; these are skipped. A pair with an obstacle that
-  /// turns is tested in the frame of that obstacle (`carried`). `which`: kinds of planes that are sought. Does not test
-  /// pairs again that the last call found separated and whose vertices have not moved since, whatever `which` was then.
+  /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1. Changes no
+  /// positions. x_t0 must be free of intersections, except of pairs that `pinched` exempts; these
+  /// are skipped. A pair with an obstacle that turns is tested in the frame of that obstacle
+  /// (`carried`). `which`: kinds of planes that are sought. If the last call found a pair
+  /// separated, and its vertices still have the same x_t0 and x_t1, the pair is not tested again,
+  /// whatever `which` was then.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
 
-  /// Changes x_t1 of movable vertices until no pair fails (see SeparationReport). If that is impossible, adds pairs of
-  /// cloth and obstacle to `pinched`, if given. `is_continued`: only the watched pairs have changed since the last
-  /// call, so each vertex keeps the obstacle to whose carried start it is backtracked.
+  /// Changes x_t1 of movable vertices until each pair is separated (see
+  /// SeparationReport::separated). Pairs of cloth and obstacle for which this is impossible are
+  /// added to `pinched`, if given. `is_continued`: true if only the watched pairs have changed
+  /// since the last call; each vertex is then backtracked to the same start or carried start as in
+  /// that call.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
                            bool is_continued = false, PlaneKinds which = PlaneKinds::all);
@@ -158,7 +166,8 @@ class Separation {
   std::vector<RigidGroup> groups_;
   std::vector<int> group_of_;  // per vertex: index in groups_, −1: none; empty if there are no groups
   std::vector<int> carriers_;  // per vertex: obstacle whose carried start is its backtrack target, or a constant below
-  static constexpr int kAtStart = -1, kAlwaysAtStart = -2;  // the target is x_t0; kAlwaysAtStart: until the step ends
+  // With these constants, the target is x_t0. kAlwaysAtStart stays until carriers_ is reset.
+  static constexpr int kAtStart = -1, kAlwaysAtStart = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;
 };

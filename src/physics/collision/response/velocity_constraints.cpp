@@ -9,8 +9,8 @@
 namespace weft::collision {
 namespace {
 
-// A wall that pushes a particle still holds it if the particle, moved by this distance [m] against the push, passes the
-// wall.
+// A wall that pushes a particle continues to hold it if the particle, moved by this distance [m]
+// against the push, passes the wall.
 double probe_distance() {
   return 0.5 * numerics.separation.restored_gap;
 }
@@ -69,10 +69,11 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
   touched.first_wall = static_cast<int>(walls_.size()) - 1;
 }
 
-// The displacement closest to u that passes no wall of the particle. `held`: the walls that limit it, with multipliers.
-// Tries the Karush-Kuhn-Tucker conditions for every set of up to three of the Numerics::Walls::max_walls walls that u
-// passes farthest. `of_force`: uses only the walls that hold now, moved to the origin; −u is then the direction of a
-// force, and the multipliers are its components along the normals.
+// The displacement closest to u that passes no wall of the particle. `held`: the walls that limit
+// it, with multipliers. Tries the Karush-Kuhn-Tucker conditions for every set of up to three of the
+// Numerics::Walls::max_walls walls that u passes farthest. If `of_force` is true, uses only the
+// walls that hold now, with bound 0. −u is then the direction of a force, and the multipliers are
+// its components along the normals.
 Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& u, bool of_force,
                                   ActiveWalls& held) const {
   held = {};
@@ -122,7 +123,8 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
         held = {{all[i].wall, all[j].wall, all[k].wall}, {multipliers[0], multipliers[1], multipliers[2]}, 3};
         return moved;
       }
-  // The walls leave no space: use only the most violated one. Separation ensures that nothing intersects.
+  // The walls leave no space: use only the one that u passes farthest. Separation still ensures
+  // that nothing intersects.
   const auto worst =
       std::max_element(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) < missing(b); });
   held = {{worst->wall, -1, -1}, {missing(*worst), 0, 0}, 1};
@@ -202,8 +204,9 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
   return changed;
 }
 
-// Decides which walls hold the particle. `force`: that of its walls in the last solve [N]. Returns whether the solve
-// must be repeated; changes that are too small for this take effect in the next step.
+// Decides which walls hold the particle. `force`: that of its walls in the last solve [N]. Returns
+// whether the solve must be repeated: false if the change is negligible, or if the constraint has
+// already changed Numerics::Walls::flips times in this step.
 bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
@@ -295,7 +298,8 @@ PrescribedParticle VelocityConstraints::prescription(const TouchingParticle& par
     result.v_end = walls_[main_wall(particle)].motion / step_;
     return result;
   }
-  // Make v_end equal v_r along each normal, without changing it along the earlier ones.
+  // Make v_end equal the velocity of the obstacle along each normal, without changing v_end along
+  // the earlier normals.
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
     const Wall& wall = walls_[particle.held.walls[k]];
@@ -315,7 +319,7 @@ void VelocityConstraints::prescribe() {
     if (particle.memory.state != State::away) prescribed_.push_back(prescription(particle));
 }
 
-// Displacement of a particle along its walls, relative to the obstacle [m].
+// Displacement of a particle along its walls, relative to the obstacle of its main wall [m].
 Vec3 VelocityConstraints::slip(const TouchingParticle& particle, const Vec3& x_end) const {
   const Wall& wall = walls_[main_wall(particle)];
   return free_directions(particle) * (x_end - particle.x_t0 - wall.motion);

@@ -15,7 +15,8 @@
 
 namespace weft::collision {
 
-/// A particle constrained in some directions. In these, it ends the step at `x_end` [m] with velocity `v_end` [m/s].
+/// A particle constrained in some directions. In these directions, it ends the step at `x_end` [m]
+/// with velocity `v_end` [m/s].
 struct PrescribedParticle {
   solver::ParticleConstraint constraint;
   Vec3 x_end, v_end;
@@ -31,15 +32,17 @@ struct PrescribedParticle {
 /// particles stop at d_min and resting ones stay. If d < d_min, a step restores the fraction c =
 /// Numerics::Walls::correction of the missing distance: γ d_min = d + c (d_min − d).
 ///
-/// A wall holds its particle as long as it has to push. The inequality is then an equality, which removes one direction
-/// from the conjugate gradients. The wall releases the particle if the residual shows that it would pull. At most three
-/// walls hold a particle at once.
+/// A wall holds its particle as long as the wall has to push. The inequality is then an equality,
+/// which removes one direction from the conjugate gradients. The wall releases the particle if the
+/// residual shows that it would pull. At most three walls hold a particle at once.
 ///
-/// A held particle sticks (moves with the obstacle in the tangent plane, too) while the force that this takes lies in
-/// the friction cone. Otherwise it slides: friction acts against the slip, with μ times the normal force, reduced below
-/// the stick velocity as in ContactSet. A particle that ends a step slower than the stick velocity, with the same walls
-/// and nearly the same normal force as before, sticks from the next step on (exception: see accept() in the .cpp).
-/// Friction is implicit: explicit forces would reverse the motion of neighbours that begin to slide together.
+/// A held particle sticks (moves with the obstacle in the tangent plane, too) while the force that
+/// this takes lies in the friction cone. Otherwise the particle slides: friction acts against the
+/// slip, with μ times the normal force, reduced below the stick velocity as in ContactSet. A
+/// particle that ends a step slower than the stick velocity, with the same walls and nearly the
+/// same normal force as before, sticks from the next step on (exception: see accept() in the .cpp).
+/// Friction is implicit: explicit forces would reverse the motion of neighbours that begin to slide
+/// together.
 ///
 /// revise() updates the state between the solves of a step; accept() keeps it for the next step.
 class VelocityConstraints {
@@ -53,18 +56,21 @@ class VelocityConstraints {
   /// Call before adding the walls of a step over h [s].
   void begin_step(double h);
 
-  /// Adds a wall for a particle at `distance` [m] from a point of an obstacle. `normal` points from there to the
-  /// particle. The point moves by `motion` [m] in the step. `d_min`: activation distance [m]. `friction`: Coulomb
-  /// coefficient while sliding. `static_friction`: that while sticking, at least `friction` (a smaller value is
-  /// raised).
+  /// Adds a wall for a particle at `distance` [m] from a point of an obstacle. `normal` points from
+  /// there to the particle. The point moves by `motion` [m] in the step. `d_min`: activation
+  /// distance [m]. `friction`: Coulomb coefficient while sliding. `static_friction`: coefficient
+  /// while sticking; a value below `friction` is raised to `friction`. If the particle already has
+  /// a wall with nearly the same normal, the stricter bound of both applies, and nothing else
+  /// changes.
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
-  /// Finds the particles that walls held at the end of the last step and that have no wall yet in this step. So far,
-  /// walls were found for near pairs at the start of the step, and for corners of triangles that would meet an obstacle
-  /// on the way to x_t1, the expected end of the step. Without a wall, the first solve would release the particles. If
-  /// there are such particles, returns true and sets `predicted` to x_t1, with these particles moved by `by` [m]
-  /// towards their former walls, so that a second search finds walls for them.
+  /// Finds the particles that walls held at the end of the last step and that have no wall yet in
+  /// this step. So far, walls were found for near pairs at the start of the step, and for corners
+  /// of triangles that would meet an obstacle on the way to x_t1, the expected end of the step.
+  /// Without a wall, the first solve would release these particles. If there are such particles,
+  /// returns true and sets `predicted` to x_t1, with these particles moved by `by` [m] towards
+  /// their former walls, so that a second search finds walls for them.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that a particle would pass on the way from x_t0, the start
@@ -72,12 +78,15 @@ class VelocityConstraints {
   /// end of the last step.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// After a solve that led to x_end: walls that a particle has passed hold it from now on, walls that would pull
-  /// release it, and sticking particles start to slide if static friction is exceeded. Returns how many particles need
-  /// another solve; 0: the solve is final.
+  /// Updates the walls after a solve that led to x_end. Walls that a particle has passed hold it
+  /// from now on, walls that would pull release it, and sticking particles start to slide if static
+  /// friction is exceeded. A particle whose constraint has changed Numerics::Walls::flips times in
+  /// this step needs no further solve. Returns how many particles need another solve; 0: the solve
+  /// is final.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on);
 
-  /// Call when the step is accepted. Keeps which particles are held, and which of these stick or slide.
+  /// Call when the step is accepted. Keeps for the next step which particles are held, and which of
+  /// these stick or slide.
   void accept();
 
   std::span<const PrescribedParticle> prescribed() const { return prescribed_; }
@@ -86,8 +95,8 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds, for the sliding particles, the normal forces to `push`, friction to `friction`, and the maximum friction to
-  /// `limit` [N].
+  /// Adds, for the sliding particles, the normal forces that limit friction to `push`, friction to
+  /// `friction`, and the maximum static friction to `limit` [N].
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
                                       std::span<double> limit) const;
   /// As add_forces; also adds −∂f/∂x to the matrix, positive semidefinite as in ContactSet::linearise(). `end_rate`:
@@ -134,7 +143,7 @@ class VelocityConstraints {
     Vec3 u_held = Vec3::Zero();        // displacement prescribed in the constrained directions [m]
     double friction_normal_force = 0;  // normal force that limits friction in this solve [N]
     Vec3 drag = Vec3::Zero();          // −friction / maximum friction at the expected end x_t1
-    int constraint_changes = 0;        // how often its constraint changed in this step
+    int constraint_changes = 0;        // number of changes of its constraint in this step
     bool may_stick = false;            // slides so slowly that it may stick
     bool overloaded = false;           // began to slide: sticking would have taken noticeably more than static friction
   };

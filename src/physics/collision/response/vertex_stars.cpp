@@ -10,8 +10,8 @@
 namespace weft::collision {
 namespace {
 
-/// The triangle with its corners rotated so that `first` comes first. For a piece of rope, `first` appears only once in
-/// the result.
+/// The triangle with its corners rotated so that `first` comes first. For a piece of rope, `first`
+/// appears only once in the result, and the other end twice.
 Triangle rotate_to_front(const Triangle& t, Index first) {
   if (t[1] == t[2]) return t[0] == first ? t : Triangle{first, t[0], t[0]};
   return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
@@ -166,7 +166,8 @@ bool VertexStars::keeps_orientation(std::size_t star, std::span<const Vec3> x_t0
   }
   for (std::size_t k = 1; k < vertices.size(); ++k) {
     const Vec3 f_t0 = arm(k, x_t0), f_t1 = arm(k, x_t1);
-    // The limit is far above the rounding of these products, and far below that of any relevant angle.
+    // The limit is far above the rounding of these products, and far below their values for any
+    // relevant angle.
     const double least = 1e-9 * axis.norm() * (e_t0.norm() + e_t1.norm()) * (f_t0.norm() + f_t1.norm());
     if (axis.dot(e_t0.cross(f_t0)) <= least || axis.dot(e_t1.cross(f_t1)) <= least ||
         axis.dot(e_t0.cross(f_t1) + e_t1.cross(f_t0)) <= least)

@@ -17,34 +17,38 @@ namespace weft::collision {
 /// other triangle, or rs does. In each of these two cases, edge and triangle have no common vertex. So two separating
 /// planes, one for each case, keep the triangles apart.
 ///
-/// In a star of six triangles, nine pairs of triangles have only the centre in common. VertexStars therefore tests a
-/// closed star (triangles all around the centre) as a whole if possible: all its triangles, projected along one axis n,
-/// must keep their orientation during the step and go around the centre once. They then cover disjoint sectors, so no
-/// two meet outside their common edges. The oriented area n·(e × f) of a moving triangle with edges e and f from the
-/// centre is quadratic in time, and positive if its Bernstein coefficients are (the cone test of Volino &
-/// Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface Animations using Geometrical
-/// Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD: Interactive Continuous Collision Detection
-/// between Deformable Models using Connectivity-Based Culling", 2009). A star that goes around once at the start does
-/// so throughout, because its total angle is continuous in time. Open stars, at borders, have few pairs and are tested
-/// pair by pair.
+/// In a star of six triangles, nine pairs of triangles have only the centre in common. VertexStars
+/// therefore tests a closed star (triangles all around the centre) as a whole if possible: all its
+/// triangles, projected along one axis n, must keep their orientation during the step and go around
+/// the centre once. They then cover disjoint sectors, so no two meet outside their common edges.
+/// The oriented area n·(e × f) of a moving triangle with edges e and f from the centre is quadratic
+/// in time, and positive if its Bernstein coefficients are (the cone test of Volino &
+/// Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface
+/// Animations using Geometrical Shape Regularity", 1994, over a time interval as in Tang et al.,
+/// "ICCD: Interactive Continuous Collision Detection between Deformable Models using
+/// Connectivity-Based Culling", 2009). A star that goes around once at the start goes around once
+/// throughout, because its total angle is continuous in time. Open stars, at borders, have few
+/// pairs and are tested pair by pair; so are closed stars that this test does not prove apart.
 class VertexStars {
  public:
   VertexStars() = default;
   /// `surfaces`: the deformable ones, with triangles counter-clockwise seen from the front.
   explicit VertexStars(std::span<const Surface> surfaces);
 
-  /// Makes x [m] the reference. Measures how far the vertices of each star may move from there, in any direction,
-  /// before the star must be tested again.
+  /// Makes x [m] the reference. Measures how far the vertices of each closed star may move from
+  /// there, in any direction, before the star must be tested again.
   void set_reference(std::span<const Vec3> x);
   /// Makes the next find_failing() test all stars.
   void forget_tests();
 
-  /// Sets the flag in `vertices` to 1 for centres of clear stars: in such a star, features without a common vertex are
-  /// farther apart than `distance` [m] at x [m] (at the reference if x is empty). A star is clear if all altitudes of
-  /// its triangles, projected along its axis, exceed `distance`. Proof: in the projection, the closest points of two
-  /// such features of two triangles are a vertex and a point of the other triangle. If this vertex is the centre, the
-  /// segment between them leads from the centre to an opposite edge. If it is another vertex, the segment crosses a
-  /// neighbouring edge of the star or passes the end of that edge. In each case, it is at least as long as an altitude.
+  /// Sets the flag in `vertices` to 1 for centres of clear stars. In a clear star, features without
+  /// a common vertex are farther apart than `distance` [m] at x [m] (at the reference if x is
+  /// empty). A closed star is clear if all altitudes of its triangles, projected along its axis,
+  /// exceed `distance`. Open stars are never marked. Proof: in the projection, the closest points
+  /// of two such features of two triangles are a vertex and a point of the other triangle. If this
+  /// vertex is the centre, the segment between them leads from the centre to an opposite edge. If
+  /// it is another vertex, the segment crosses a neighbouring edge of the star or passes the end of
+  /// that edge. In each case, it is at least as long as an altitude.
   void mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
   /// Appends the pairs of an edge and a triangle without a separating plane on the trajectory from x_t0 to x_t1.

@@ -11,10 +11,11 @@ namespace weft::collision {
 
 namespace {
 
-/// Maximum number of triangles per group. Cones of smaller groups bound the motion more tightly, but the cost grows
-/// with the square of the number of groups.
+/// Maximum number of triangles per group. Cones of smaller groups bound the motion more tightly,
+/// but the time of an update grows with the square of the number of groups.
 constexpr std::size_t kGroupSize = 128;
-/// After this many updates, the reference step is set anew and all results are dropped, so that the cones stay small.
+/// Every this many updates, the present step becomes the reference step and all results are
+/// dropped, so that the cones stay small.
 constexpr int kReferenceUpdates = 64;
 
 void append(const PairList& from, PairList& to) {
@@ -95,8 +96,8 @@ void CoherentDetection::update_cones(std::span<const Vec3> x_t0, std::span<const
   }
   for (std::vector<Group>& groups : groups_) {
     for (Group& group : groups) {
-      // Compare the start of the step with the start of the reference step, and the end with its end. Thus the motion
-      // within a step does not count.
+      // Compare the start of the step with the start of the reference step, and the end of the step
+      // with the end of the reference step. Thus the motion within a step does not count.
       Vec3 mean = Vec3::Zero();
       group.low.setConstant(INFINITY);
       group.high.setConstant(-INFINITY);
@@ -131,8 +132,8 @@ bool CoherentDetection::is_still_valid(const SurfacePair& pair, KeptResult& kept
   return kept.valid;
 }
 
-// Searches the outdated pairs of surfaces together, because each search costs time for the whole scene. Then assigns
-// each near pair to its surfaces.
+// Searches the outdated pairs of surfaces together, because each call of gather() takes time for
+// all vertices. Then assigns each near pair of features to its pair of surfaces.
 void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase,
                                      ProximityFinder& finder, std::span<const Vec3> x_t0) {
   CandidatePairs all;

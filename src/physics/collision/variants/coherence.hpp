@@ -5,17 +5,19 @@
 //   each step:  if (detection.update(broad_phase, finder, x_t0, x_t1) > 0) … detection.candidates() have changed
 //               detection.proximities()
 //
-// Each surface is divided into groups of triangles. A velocity cone bounds the motion of each group since a common
-// reference step. For two groups, their cones give a bound R of the motion of a point of one group relative to a point
-// of the other since the last search of their surfaces. So since then, the distance between any two points of the
-// groups, and the gap between their bounding volumes along any direction, have changed by at most R. Let D be the
-// detection distance. The result of that search is valid while every two groups have R ≤ budget, or had boxes more than
-// D + R apart at the search. While a result is valid:
+// Each surface is divided into groups of triangles. A velocity cone bounds the motion of each group
+// since a common reference step. For two groups, their cones give a bound R of the motion of a
+// point of one group relative to a point of the other since the last search of their surfaces. So
+// since that search, the distance between any two points of the groups, and the gap between their
+// bounding volumes along any direction, have changed by at most R. Let D be the detection distance.
+// The result of that search is valid while every two groups have R ≤ budget, or had boxes that were
+// more than D + R apart along an axis at the search. While a result is valid:
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at least as far apart as the features, and
 //     at most 2 R farther;
-//   - for every two features within D of each other, some listed pair is at most 2 R farther apart. (At the search,
-//     they were within D + R, and the listed pair that represented them was no farther apart; see ProximityFinder.)
+//   - for every two features within D of each other, some listed pair is at most 2 R farther apart.
+//     (At the search, these features were within D + R, and the listed pair that represented them
+//     was no farther apart; see ProximityFinder.)
 //
 // A pair of surfaces is searched as a whole, because a near pair may represent pairs in neighbouring groups.
 #pragma once
@@ -55,13 +57,15 @@ class CoherentDetection {
 
   /// Candidate pairs of all listed pairs of surfaces.
   const CandidatePairs& candidates() const { return candidates_; }
-  /// Near pairs, with distances and normals that follow from the kept weights at x_t0. Pairs of an earlier search are
-  /// listed up to a distance of D + 2 R.
+  /// Near pairs, with distances and normals that follow from the kept weights at x_t0. A pair of
+  /// features is listed if its distance is below D + 2 R, where R is the largest bound of its pair
+  /// of surfaces.
   std::span<const Proximity> proximities() const { return proximities_; }
   /// Largest R of all pairs of groups that are not far apart (D + R, see above) [m]; at most the budget.
   double largest_motion() const { return largest_motion_; }
 
-  /// Makes the next update search everything, so that nothing depends on earlier steps.
+  /// Makes the next update search all pairs of surfaces, so that its results do not depend on
+  /// earlier steps.
   void forget() { updates_ = 0; }
 
  private:

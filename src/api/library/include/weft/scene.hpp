@@ -18,11 +18,12 @@ class WEFT_API Scene {
   /// Reads a file. Each of `changes` is "path.to.key=value", as for `--set` on the command line, such as
   /// "cloth.band.material.fabric=silk". Throws SceneError with all mistakes.
   static Scene load(const std::filesystem::path& file, const std::vector<std::string>& changes = {});
-  /// The same for the text of a file. `name`: path of that file, which need not exist; relative paths in the text start
-  /// at its folder.
+  /// As load(), for TOML text in memory. `name`: path that stands for the file and need not exist;
+  /// relative paths in the text start at its folder.
   static Scene parse(std::string_view toml, const std::vector<std::string>& changes = {},
                      const std::filesystem::path& name = "scene.toml");
-  /// Returns this scene with further changes, checked again. Throws SceneError with all mistakes.
+  /// Returns this scene with further changes, applied after its own and checked again. Throws
+  /// SceneError with all mistakes.
   Scene with(const std::vector<std::string>& changes) const;
 
   const std::string& name() const;             ///< file name without its ending
@@ -30,7 +31,8 @@ class WEFT_API Scene {
   int frames() const;                          ///< number of frames; frame k shows time k / fps, frame 0 the start
   std::vector<std::string> cloths() const;     ///< names, in the order of the scene
   std::vector<std::string> obstacles() const;  ///< names, in the order of the scene
-  /// The scene as TOML, including its changes and the default values of all keys that neither file nor changes set.
+  /// The scene as TOML, with its changes and with the defaults of keys that are not given, except
+  /// keys whose default means "none".
   std::string text() const;
 
   struct Data;
@@ -42,7 +44,8 @@ class WEFT_API Scene {
   std::shared_ptr<const Data> data_;
 };
 
-/// A measured fabric, such as "silk", for cloths of a Model. If there is none of this name, throws
+/// The material of a fabric, such as "silk", for cloths of a Model. Its values are measured or,
+/// where no measurement is known, estimated. If there is no fabric of this name, throws
 /// std::invalid_argument with all names.
 WEFT_API Material fabric(std::string_view name);
 

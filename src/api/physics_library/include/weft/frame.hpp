@@ -23,15 +23,17 @@ struct Object {
   std::string_view name;
   Kind kind = Kind::cloth;
   std::span<const Vector> positions;   ///< per vertex [m]; the vertices of a cloth are its particles
-  std::span<const Vector> velocities;  ///< per particle [m/s]; empty for bodies and for cloth that is not put on yet
-  /// Total contact force on each particle, friction included, at the end of the last time step [N]; empty if
-  /// `velocities` is empty. Zero at the start of a simulation, and in the frame at which a simulation was restored.
-  /// Contacts are stiff springs, so sums over several particles are more accurate than values of single ones.
+  std::span<const Vector> velocities;  ///< per particle [m/s]; empty for bodies
+  /// Total contact force on each particle, friction included, at the end of the last time step [N];
+  /// empty for bodies. Zero before the first time step, and in the frame at which a simulation was
+  /// restored. Contacts are stiff springs, so sums over several particles are more accurate than
+  /// values of single ones.
   std::span<const Vector> contact_forces;
-  /// Per particle, the largest |length / rest length - 1| of the threads at it; empty if `velocities` is empty.
+  /// Per particle, the largest |length / rest length - 1| of the threads at it; empty for bodies.
   std::span<const float> strains;
-  std::span<const RestPoint> rest;      ///< per particle: rest coordinates [m]; empty if there are none
-  std::span<const Triangle> triangles;  ///< the same in all frames
+  std::span<const RestPoint> rest;      ///< per particle: rest coordinates [m]; empty for bodies
+  std::span<const Triangle> triangles;  ///< the same in all frames; of a rope: (a, b, b) for each
+                                        ///< piece, from particle a to particle b
 };
 
 /// Air that a cloth encloses.
@@ -41,29 +43,40 @@ struct EnclosedAir {
   double pressure = 0;  ///< gauge pressure, relative to the outside air [Pa]
 };
 
-/// Cost of computing a frame, and quantities measured in the frame. In frame 0, the energies are those of the start.
+/// Cost of computing a frame, and quantities measured in it. The report of frame 0 is that of the
+/// last frame of the preroll. Without a preroll, it has the energies, distances and strains at the
+/// start, and no time steps.
 struct Report {
-  double wall_s = 0, cpu_s = 0;  ///< wall time and CPU time of simulating this frame [s]
+  double wall_s = 0, cpu_s = 0;  ///< time of simulating this frame: wall time, and CPU time of the
+                                 ///< calling thread alone [s]
   int steps = 0;                 ///< number of accepted time steps
-  int rejected_steps = 0;        ///< number of time steps that were repeated as shorter ones
+  int rejected_steps = 0;        ///< number of time steps that were rejected and repeated as
+                                 ///< shorter ones
   int newton_iterations = 0;
   int linear_iterations = 0;    ///< iterations of conjugate gradients
   int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, in the last step
-  int constraints = 0;          ///< number of contacts that push, and of held particles, in the last step
+  int constraints = 0;          ///< number of contacts that push plus number of held particles, in
+                                ///< the last step
   double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
-  double max_strain = 0;        ///< largest |length / rest length - 1|, in all steps
-  double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch`, in all steps
+  double max_strain = 0;        ///< largest |length / rest length - 1| of threads at the end of any
+                                ///< step
+  double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch` at the
+                                ///< end of any step
   double kinetic_energy = 0;    ///< [J]
   double potential_energy = 0;  ///< of gravity, 0 at the origin [J]
-  double elastic_energy = 0;    ///< of stretch, shear, bending and attachments [J]
+  double elastic_energy = 0;    ///< of stretch, shear, bending, seams, attachments and bodies with
+                                ///< a mass [J]
   double air_energy = 0;        ///< of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
-  double error_estimate = 0;    ///< estimated local errors of positions, summed over the steps [m]
-  double solver_error = 0;      ///< estimated errors of positions due to the solver, summed over the steps [m]
-  /// Maximum number of pinched triangles of cloth at one time. A triangle that several limbs pinch counts once per
-  /// limb.
+  double error_estimate = 0;    ///< sum, over the steps, of the estimated local errors of positions
+                                ///< [m]
+  double solver_error = 0;      ///< sum, over the steps, of the estimated errors of positions that
+                                ///< the solver leaves [m]
+  /// Largest number, in any step, of pinched triangles of cloth: obstacles leave them no space. A
+  /// triangle that several limbs of a character pinch counts once per limb.
   int pinched_pairs = 0;
-  int lagging_particles = 0;  ///< maximum number, at one time, of pinned particles that are not at their targets
+  int lagging_particles = 0;  ///< largest number, in any step, of pinned particles that an obstacle
+                              ///< or cloth keeps from their targets
   std::vector<EnclosedAir> enclosed_air;  ///< one per cloth with pressure
   std::vector<std::string> warnings;
 };
@@ -73,7 +86,8 @@ class WEFT_API Frame {
  public:
   int number() const;            ///< counted from 0
   double time() const;           ///< [s]
-  const Report& report() const;  ///< all zero in the frame at which a simulation was restored
+  const Report& report() const;  ///< all zero and empty in the frame at which a simulation was
+                                 ///< restored
   /// Cloths and ropes, then obstacles, then characters; each kind in the order of the model or scene.
   std::span<const Object> objects() const;
   /// The object with this name. If there is none, throws std::out_of_range with the names of all objects.

@@ -10,35 +10,41 @@
 namespace weft {
 
 struct Mesh {
-  std::vector<Vector> positions{};    ///< per vertex [m]
+  std::vector<Vector> positions{};    ///< of the vertices [m]
   std::vector<Triangle> triangles{};  ///< in a cloth, each edge must belong to one or two triangles
 };
 
-/// A fabric as a continuum: stiffnesses do not depend on the mesh. The defaults are those of cotton.
+/// A fabric as a continuum: its values do not depend on the mesh. The defaults are those of cotton.
 struct Material {
   double density = 0.15;       ///< [kg/m²]
   double stretch_weft = 800;   ///< stiffness along weft [N/m]
   double stretch_warp = 2100;  ///< stiffness along warp [N/m]
-  double shear = 130;          ///< [N/m]
+  double shear = 130;          ///< twice the shear modulus of linear elasticity [N/m]
   double bend = 1e-5;          ///< bending stiffness [N·m]
   double max_stretch = 0.1;    ///< relative extension at which threads lock (stiffen); 0: never
-  double max_shear = 0;        ///< change of the angle between weft and warp at which threads lock [degrees]; 0: never
-  double stretch_viscosity = 0;  ///< [N·s/m]
-  double shear_viscosity = 0;    ///< [N·s/m]
-  double bend_viscosity = 1e-6;  ///< [N·m·s]
-  double bend_friction = 5e-4;   ///< minimum moment per width that changes the curvature [N]
-  double thickness = 0.002;      ///< distance at which two layers of this fabric begin to push each other [m]
+  double max_shear = 0;        ///< deviation of the angle between weft and warp from 90° at which
+                               ///< threads lock [degrees]; 0: never
+  double stretch_viscosity = 0;  ///< force per width and strain rate, along weft and along warp
+                                 ///< [N·s/m]
+  double shear_viscosity = 0;    ///< force per width and rate of shear [N·s/m]
+  double bend_viscosity = 1e-6;  ///< moment per width and rate of curvature [N·m·s]
+  double bend_friction = 5e-4;   ///< moment per width against a change of curvature [N]
+  double thickness = 0.002;      ///< distance at which two layers of this fabric begin to push each
+                                 ///< other [m]; at most a quarter of the particle spacing has an
+                                 ///< effect
   double friction = 0.3;         ///< Coulomb coefficient; a contact uses the geometric mean of both coefficients
-  double drag = 1;               ///< air resistance coefficient, for motion normal to the cloth; 0: none
+  double drag = 1;               ///< drag coefficient, for motion normal to the cloth; 0: no air
+                                 ///< resistance
 };
 
 /// A sheet of triangles. Its particles are the vertices of the mesh.
 struct Cloth {
   std::string name{};
   Mesh mesh{};  ///< shape at the start
-  /// Rest coordinates of each particle: its place in the flat fabric, along weft and warp [m]. If `rest` is empty, the
-  /// mesh is the rest shape, and the weft of each triangle runs along the projection of the x axis onto the triangle
-  /// (but if the triangle is nearly perpendicular to this axis, the warp runs along the projection of the y axis).
+  /// Rest coordinates of each particle: its place in the flat fabric, along weft and warp [m]. If
+  /// `rest` is empty, the mesh is the rest shape, and the weft of each triangle runs along the
+  /// projection of the x axis onto the triangle. If the triangle is nearly perpendicular to the x
+  /// axis, the warp runs along the projection of the y axis instead.
   std::vector<RestPoint> rest{};
   Material material{};
   Vector velocity{0, 0, 0};  ///< of all particles at the start [m/s]
@@ -51,7 +57,7 @@ struct Pose {
 };
 
 struct PoseKey {
-  double time = 0;  ///< [s]; later than the time of the key before
+  double time = 0;  ///< [s]; at least 1e-7 s after the key before
   Pose pose{};
 };
 
@@ -59,9 +65,11 @@ struct PoseKey {
 struct Body {
   std::string name{};
   Mesh mesh{};                  ///< in the coordinates of the body; must be closed if the body has a mass
-  Pose pose{};                  ///< pose at the start; a body without mass and keys keeps it
-  std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; unless empty, `pose` is ignored
-  double mass = 0;              ///< [kg]; if it is above 0, forces move the body
+  Pose pose{};                  ///< pose at the start, if there are no keys
+  std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; must be empty if
+                                ///< it has a mass
+  double mass = 0;              ///< [kg]; if above 0, forces move the body; if 0, keys or
+                                ///< Simulation::move() do
   Vector velocity{0, 0, 0};     ///< velocity at the start, of a body with a mass [m/s]
   double friction = 0.3;        ///< Coulomb coefficient
   bool collide = true;          ///< false: nothing touches the body, but pins can follow it
@@ -71,18 +79,23 @@ struct Body {
 struct Pin {
   std::string cloth{};
   std::vector<int> particles{};                              ///< indices
-  std::string body{};                                        ///< body without mass to follow; empty: stay in place
+  std::string body{};                                        ///< body without mass that they
+                                                             ///< follow; empty: they stay in place
   double release = std::numeric_limits<double>::infinity();  ///< time from which the particles are free [s]
 };
 
 enum class Method { implicit_euler, implicit_midpoint, bdf2 };
 
-/// A model to simulate. All names of cloths and bodies must be different. A Simulation copies the model.
+/// A model to simulate. No two cloths or bodies may have the same name. A Simulation copies the
+/// model.
 struct Model {
   double fps = 25;     ///< frames per second
-  double step = 0.01;  ///< maximum time step [s]; a frame is divided into equal steps that are not longer
+  /// Maximum time step [s]: a frame is divided into the fewest equal steps that are not longer.
+  /// Exception: with implicit Euler, a frame in which everything rests may be one step.
+  double step = 0.01;
   Method method = Method::implicit_euler;
-  double newton_tolerance = 0.4;  ///< maximum error of the solver, relative to the local truncation error
+  double newton_tolerance = 0.4;  ///< error that the solver may leave in a step, relative to the
+                                  ///< local truncation error, with a visibility threshold as floor
   Vector gravity{0, 0, -9.81};    ///< [m/s²]
   Vector wind{0, 0, 0};           ///< velocity of the air [m/s]
   double air_density = 1.2;       ///< [kg/m³]; 0: no air

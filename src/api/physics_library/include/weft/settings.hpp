@@ -14,14 +14,14 @@ WEFT_API const char* version();
 /// Throws std::invalid_argument if the number is below 0.
 WEFT_API void set_threads(int threads);
 
-/// Passes each message about a model or scene to `handle`, instead of printing it to standard error. The thread that
-/// loads or simulates calls `handle`; if several threads load or simulate, these calls may be concurrent. An empty
-/// function restores standard error.
+/// Passes each message about a model or scene to `handle`, instead of printing it to standard
+/// error. The thread that loads or simulates calls `handle`; if several threads load or simulate,
+/// these calls may be concurrent. If `handle` is empty, messages go to standard error again.
 WEFT_API void set_warning_handler(std::function<void(std::string_view warning)> handle);
 
-/// Sets a function that simulations call many times a second while they compute, in the thread that uses the
-/// simulation. If `check` throws, the frame is interrupted: Simulation::advance() throws the same exception, and
-/// Simulation::frame() stays as it was. An empty function removes the check.
+/// Sets a function that each simulation calls before each Newton iteration, in the thread that uses
+/// the simulation. If `check` throws, the frame is interrupted: Simulation::advance() throws the
+/// same exception, and Simulation::frame() stays as it was. An empty function removes the check.
 WEFT_API void set_interrupt_check(std::function<void()> check);
 
 }  // namespace weft
