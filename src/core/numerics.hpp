@@ -48,9 +48,10 @@ struct Numerics {
     /// on the new trajectory are found early.
     int check_after = 4;
     /// Number of Newton iterations after which a solve counts as slow. In a slow solve, the normal
-    /// forces that limit friction stay fixed. The allowed velocity error is then at least
-    /// `solver.newton_tolerance` times the larger of unseen_velocity() and, with implicit Euler,
-    /// `velocity_ratio` times the local velocity error. From half of this number on, each linear
+    /// forces that limit friction stay fixed, and the bound of the velocity error that the solver
+    /// may leave is at least `solver.newton_tolerance` times unseen_velocity(). With implicit Euler,
+    /// it is also at least `solver.newton_tolerance` times `velocity_ratio` times the truncation
+    /// error of the velocity in this step. From half of this number on, each linear
     /// solve includes all diagonal blocks. Larger: friction and normal forces, or cloths that press
     /// on each other, oscillate. `slow_after` is also the maximum number of times that the solve of
     /// a step continues after cloth was pushed apart. 0: tests/bench/scenes/ring.toml takes four
@@ -64,7 +65,8 @@ struct Numerics {
     /// solver errors, both are multiplied by `solver.newton_tolerance`.
     double unseen_acceleration = 0.01;
     double unseen_velocity() const { return unseen_acceleration * lasting_time; }
-    /// Ratio of friction to its limit above which a diagonal block counts as about to slide.
+    /// A cloth or rigid body counts as about to slide if its friction, summed over its contacts,
+    /// exceeds this fraction of the maximum.
     double about_to_slide = 0.9;
     /// Newton's method reuses the matrix rows of a cloth until one of its particles has moved
     /// farther than this since the rows were assembled; in units of the smallest particle spacing
@@ -81,9 +83,9 @@ struct Numerics {
     /// rejection, the maximum is 1. Larger `largest_factor`: BDF2 amplifies earlier errors.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Shortest step that the step control chooses because of the local error [s]. A step that is
-    /// not solved is halved, if necessary to less than this length. If a step shorter than this is
-    /// not solved, the run ends. Without `time.tolerance`, this value has no effect.
+    /// Length of a step [s] below which the step control does not go to reduce the local error. If a
+    /// step is not solved, it is halved even below this length; but if a step that is already
+    /// shorter is not solved, the run ends. Without `time.tolerance`, this value has no effect.
     double min_step = 1e-5;
     /// Cloth counts as at rest only if no particle is faster than this [m/s]; see
     /// StepLoop::may_rest().
@@ -98,20 +100,20 @@ struct Numerics {
     /// Verlet margin m of near pairs, in detection distances: the search reuses its list of near
     /// pairs until a vertex has moved farther than this. Larger: longer lists. Smaller: more
     /// searches. Other bounds follow from m, also in detection distances:
-    /// - 2 m: Verlet margin of candidate pairs; if a vertex moves this far along an axis in a step,
-    ///   the margin is 0,
+    /// - 2 m: Verlet margin of candidate pairs. If a vertex moves this far along an axis in a step,
+    ///   candidate pairs have no margin and are listed for this step alone,
     /// - m / 2: `search.coherence` keeps closest points until a vertex has moved farther than this,
     /// - m: if, in a step, the arc of a vertex of a turning obstacle deviates from its chord by more than this, the
     ///   step is halved,
-    /// - m: if no obstacle moves farther than this in a step, shorter steps are assumed to find no
-    ///   more space for cloth.
+    /// - m: if no obstacle moves farther than this in a step, the step loop assumes that cloth
+    ///   between obstacles would have no more space in shorter steps.
     double margin = 0.25;
     /// Maximum contact thickness of a cloth other than a rope, in units of its smallest particle
     /// spacing. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
-    /// Minimum contact stiffness, in m/h². h: `time.step`. m: weighted mean mass of the contact's
-    /// particles; if a rigid body that forces move touches cloth or another such body, only of the
-    /// particles on the lighter side. Thus, in a step of implicit Euler of length h, a contact
+    /// Minimum contact stiffness, relative to M/h². h: `time.step`. M: weighted mean mass of the
+    /// contact's particles. If cloth or a rigid body touches a rigid body that forces move, only the
+    /// particles of the lighter side count. Thus, in a step of implicit Euler of length h, a contact
     /// leaves at most a hundredth of the penetration that the motion without contact would cause.
     double inertial_stiffness = 100;
     /// Factor `stiffening` of the normal force k d (1 + stiffening (d/r)⁴) at a depth d up to the
@@ -120,8 +122,10 @@ struct Numerics {
     double stiffening = 100;
     /// Width w of the ramps along which the stiffness of a near pair falls to zero (stiffness_fraction()). 0: contacts
     /// switch on and off. Larger: only separating planes keep crossing creases apart. The stiffness falls
-    /// - while the sine of the angle outside of an edge's or vertex's wedge (`Proximity::outside_wedge`) grows to w,
-    /// - for edge pairs with cloth, while the fold (sum of the sines inside of both wedges) falls from 2 w to w / 2,
+    /// - while the contact direction leaves the wedge of normals of an edge or vertex: while the sine of its angle to
+    ///   the wedge (`Proximity::outside_wedge`, negative inside) grows from 0 to w,
+    /// - for edge pairs with cloth, while the sum of the sines by which the direction lies inside of both wedges falls
+    ///   from 2 w to w / 2, because the surfaces become flat at the edges,
     /// - for edge pairs with cloth, while the closest point moves from the fraction w of an edge to its end.
     double ramp_width = 0.1;
     double flat_fold() const { return 0.5 * ramp_width; }
@@ -175,8 +179,8 @@ struct Numerics {
     /// Minimum sine of the angle between the normal of a wall and the span of the normals of the walls before it. If
     /// the sine is smaller, the wall adds no constraint.
     double min_independent_sine = 0.05;
-    /// `flips`: maximum number of changes of a particle's constraints in a step after which the
-    /// step is solved again. `solves`: maximum number of solves in a step. `max_walls`: maximum
+    /// `flips`: number of changes of a particle's constraints in a step; further changes do not cause
+    /// another solve. `solves`: maximum number of solves in a step. `max_walls`: maximum
     /// number of walls per particle.
     int flips = 3;
     int solves = 6;
@@ -195,8 +199,8 @@ struct Numerics {
     ///   and pushing apart may add much energy,
     /// - after this many halvings of a trajectory, the search for its separating planes ends (0: a
     ///   tenth more iterations of the solver),
-    /// - after this many tries of a step in which obstructed pins are released, pushing apart may move pinned
-    ///   particles.
+    /// - after a step has been tried this many times, each time with more obstructed pins released, pushing apart may
+    ///   move pinned particles.
     int max_retries = 3;
     /// If pushing apart adds more strain than this, or more energy than Energy::doubtful_gain, the
     /// solve continues from the pushed positions. After the last such continuation, only added
@@ -214,8 +218,8 @@ struct Numerics {
     /// Maximum speed, relative to its target, with which a lagging particle is pulled back [m/s].
     double return_velocity = 1;
     /// Maximum force on a lagging particle of mass m: max(`acceleration` m, W / n, min(W / k,
-    /// `most_acceleration` m)). W: `cloth_weight_factor` times the weight of the cloth, with the
-    /// largest gravity. The pin has n particles, k of which lag.
+    /// `most_acceleration` m)). W: `cloth_weight_factor` times the weight of the cloth under the
+    /// largest gravity of the run. The pin has n particles, k of which lag.
     double acceleration = 2000;  // [m/s²]
     double cloth_weight_factor = 3;
     double most_acceleration = 20000;  // [m/s²]

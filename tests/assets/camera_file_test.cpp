@@ -57,6 +57,11 @@ TEST_F(CameraFile, GoesAroundWithTheRigThatItIsOn) {
   EXPECT_NEAR(load().field_of_view, 28.6478898, 1e-5);
 }
 
+TEST_F(CameraFile, MayHaveItsEndingInCapitals) {
+  std::ofstream(folder_ / "shot.GLTF") << document_;
+  EXPECT_EQ(load_camera(folder_ / "shot.GLTF", "", "").positions.size(), load().positions.size());
+}
+
 TEST_F(CameraFile, MayHaveIntegersAsKeys) {
   document_ = nlohmann::json::parse(gltf_camera(true));
   const LoadedCamera camera = load();

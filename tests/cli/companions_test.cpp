@@ -125,6 +125,17 @@ TEST(Companions, SayWherePathsPart) {
   EXPECT_FALSE(cli::error_json(estimate).at("comparable"));
 }
 
+TEST(Companions, WhoseErrorIsNotKnownLeaveALowerBound) {
+  ErrorEstimate estimate;
+  estimate.parts = {{ErrorSource::steps, {}}, {ErrorSource::mesh, {}, "the coarser mesh touches a body"}};
+  EXPECT_TRUE(estimate.is_lower_bound());
+  const std::string text = cli::error_sentence(estimate, 0.3);
+  EXPECT_NE(text.find("positions are off by at least"), std::string::npos) << text;
+  EXPECT_NE(text.find("the error due to the mesh is not known"), std::string::npos) << text;
+  estimate.parts[1].missing.clear();
+  EXPECT_FALSE(estimate.is_lower_bound());
+}
+
 // Without contact BDF2 shows its second order: the changes from half and twice the step are in the expected ratio.
 // Cases: steps that divide a frame evenly (5 ms; at 10 ms the change from twice the step is just inconclusive), twice
 // the step is two and a half steps a frame (8 ms), and steps chosen by the error.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "film/environment/made_cloth.hpp"
 #include "film/image/png.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -188,6 +189,22 @@ TEST_F(ChosenParticles, AreRefusedForWhatTheClothHasNot) {
           "cloth.c.pin.0.vertex_color: expected a mesh whose vertices have colours, got none");
   refused(bare + "pin = [{ mask = '" + black + "' }]\n",
           "cloth.c.pin.0.mask: expected a mesh with texture coordinates (UVs) to lay it on, got none");
+}
+
+// The jacket lies bent around its wearer, whose feet point down the axis that is up in the scene.
+TEST_F(ChosenParticles, OfABentPatternAreThoseAcrossAndUpItsWearer) {
+  std::vector<Vec2> with_z_up;
+  for (const scene::UpAxis up : {scene::UpAxis::z, scene::UpAxis::y}) {
+    scene::Scene scene = support::scene_of_text(
+        "[[character]]\nname = 'she'\nsource = 'mannequin'\nedge_length = 0.05\n[[cloth]]\nname = 'jacket'\n"
+        "shape = 'pattern'\nedge_length = 0.06\nfile = '" WEFT_SOURCE_DIR "/scenes/patterns/jacket.toml'\n");
+    scene.up = up;
+    Wearers wearers(scene);
+    const std::vector<Vec2> fractions = make_cloth(scene, scene.cloths[0], wearers).details.fractions;
+    if (up == scene::UpAxis::z) with_z_up = fractions;
+    ASSERT_EQ(fractions.size(), with_z_up.size());
+    for (std::size_t i = 0; i < fractions.size(); ++i) EXPECT_LT((fractions[i] - with_z_up[i]).norm(), 1e-6) << i;
+  }
 }
 
 }  // namespace

@@ -200,7 +200,33 @@ TEST_F(Exported, MaterialFilesNameThePicture) {
   const std::string text = support::read_bytes(file("cloth.mtl"));
   for (const char* line : {"map_Kd -s 4 8 1 -o 0.5 0.25 0 cloth.png\n", "map_d -s 4 8 1 -o 0.5 0.25 0 cloth.png\n"})
     EXPECT_NE(text.find(line), std::string::npos) << text;
+  EXPECT_EQ(text.find("cannot be said"), std::string::npos) << text;
   EXPECT_EQ(image::read_picture(file("cloth.png")).rgba[3], 128);
+}
+
+// Readers of MTL repeat a picture along both axes or clamp it along both.
+TEST_F(Exported, MaterialFilesSayThatAPictureIsMirrored) {
+  frame::Surface mirrored = *surfaces_[0];
+  mirrored.appearance.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
+  mirrored.appearance.paint.wrap_v = frame::Paint::Wrap::mirror;
+  surfaces_[0] = std::make_shared<frame::Surface>(mirrored);
+  write(Format::obj, {3});
+  const std::string text = support::read_bytes(file("cloth.mtl"));
+  EXPECT_NE(text.find("# cloth.png is mirrored"), std::string::npos) << text;
+}
+
+// Without texture coordinates, a picture has no place on the surface.
+TEST_F(Exported, SurfacesWithoutTextureCoordinatesHaveTheirColorAlone) {
+  frame::Surface bare = *surfaces_[0];
+  bare.uv.clear();
+  bare.appearance.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
+  surfaces_[0] = std::make_shared<frame::Surface>(bare);
+  write(Format::obj, {3});
+  const std::string text = support::read_bytes(file("cloth.mtl"));
+  EXPECT_EQ(text.find("cloth.png"), std::string::npos) << text;
+  request_.folder = folder_ / "usd";
+  write(Format::usd, {3});
+  EXPECT_EQ(support::read_bytes(file("flutter.usda")).find("UsdUVTexture"), std::string::npos);
 }
 
 // The second picture of an object does not take the name of that of an object called cloth_2.

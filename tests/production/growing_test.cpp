@@ -52,6 +52,17 @@ TEST(Growing, ArmsThatCrossASkirtAreHeldOffIt) {
   EXPECT_EQ(crossing_pairs(*production::view_start(*posed).snapshot), 0U);
 }
 
+// Both are crossed by the arms, and only the sleeves decide where arms can be.
+TEST(Growing, ArmsThatCrossAShirtAndASkirtAreInTheSleeves) {
+  const std::string shirt = pattern("tshirt.toml"), skirt = "[[cloth]]\nname = \"skirt\"\n" + pattern("skirt.toml");
+  for (const std::string& cloths : {shirt + skirt, pattern("skirt.toml") + "[[cloth]]\nname = \"shirt\"\n" + shirt}) {
+    const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", cloths);
+    const auto posed = environment::with_arms_in_sleeves(scene, environment::Environment(scene));
+    ASSERT_TRUE(posed);
+    EXPECT_NEAR(scene::acting_of(posed->characters[0])->stance_arms.value_or(0), 57, 10) << cloths;
+  }
+}
+
 TEST(Growing, ABodyThatAGarmentCannotBeMovedOutOfGrowsIntoIt) {
   const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\ngirth = 1.2\nstance_arms = 57\n",
                                                pattern("tshirt.toml") + "scale = 0.75\nposition = [0, 0, 0.4]\n");

@@ -189,6 +189,31 @@ TEST_F(Layers, PinchedAndHeldUpGoOnSoWhenTheNextComes) {
   for (std::size_t i = 0; i < alone.end.size(); ++i) EXPECT_LT((alone.end[i] - below.end[i]).norm(), 0.02);
 }
 
+// A sheet that lies across a tube can be moved neither outside of it nor inside.
+TEST_F(Layers, ThatCannotBePutOnLeaveWhatIsWornAsItWas) {
+  production::SceneSimulation simulation(
+      support::scene_of_text("[time]\npreroll = 0.36\n[physics]\ngravity = [0, 0, 0]\n"
+                             "[[cloth]]\nname = 'vest'\nshape = 'mesh'\nfile = '" +
+                             (folder_ / "vest.obj").string() +
+                             "'\n[[cloth]]\nname = 'lid'\nover = 'vest'\nsize = [0.6, 0.6]\nparticles = [25, 25]\n"));
+  const std::size_t vest = simulation.particles();
+  int frames = 0;
+  const auto failure = [&]() -> std::string {
+    try {
+      for (; frames < 9; ++frames) simulation.advance();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no failure";
+  };
+  const std::string first = failure();
+  const int good = frames;
+  EXPECT_NE(first.find("lid"), std::string::npos) << first;
+  EXPECT_EQ(failure(), first);
+  EXPECT_EQ(frames, good);
+  EXPECT_EQ(simulation.particles(), vest);
+}
+
 TEST_F(Layers, SavedInThePrerollGoOnAsIfNothingHadBeen) {
   const testing::Continued run = testing::continue_runs(dressed("preroll = 0.36\n"), {10, {2, 3, 6}});
   EXPECT_EQ(run.difference, "");

@@ -1,4 +1,4 @@
-// The whole step loop: pins, contact, failures, and the same bits with any number of threads.
+// The whole step loop: pins, contact, and the same bits with any number of threads.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -335,21 +335,6 @@ TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
   for (const auto& run : runs) EXPECT_EQ(run, runs[0]);
 }
 
-// A steel sheet; in its fourth frame its edge moves away too fast.
-scene::Scene sheet_with_fast_edge() {
-  scene::Scene scene = sheet_alone(0.4, 9, 1);
-  scene.solver.newton_iterations = 1;
-  scene.solver.halvings = 0;
-  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1e7;
-  scene::Pin pin;
-  pin.low = {0, 1};
-  pin.motion.interpolation = scene::Interpolation::linear;
-  pin.motion.keys = {{0, {}}, {0.12, {}}, {0.16, {{5, 30, 20}, Quat::Identity()}}};
-  scene.cloths[0].pins.push_back(pin);
-  scene.physics.gravity = Vec3::Zero();
-  return scene;
-}
-
 /// Report on a strip of 1 m by 1 mm, ten cells long and held at one end, this number of frames after its release.
 FrameReport swinging_strip(scene::Integrator integrator, int particles_across, int frames) {
   scene::Scene scene = testing::sheet_alone(1, 11, 1);
@@ -388,57 +373,6 @@ TEST(Simulation, BodiesAloneMove) {
   while (report.time < 0.2 - 1e-9) report = simulation.advance();
   EXPECT_NEAR(simulation.snapshot()->states[0].positions[0].x(), before + 1, 1e-12);
   EXPECT_EQ(report.newton_iterations, 0);
-}
-
-TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) {
-  production::SceneSimulation simulation(sheet_with_fast_edge());
-  for (int k = 1; k <= 3; ++k) simulation.advance();
-  const auto good = simulation.snapshot();
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    support::expect_error(ExitCode::simulation_failed, "frame 4: the step at 0.12 s failed",
-                          [&] { simulation.advance(); });
-    EXPECT_EQ(simulation.snapshot(), good);
-    EXPECT_EQ(simulation.snapshot()->frame, 3);
-  }
-}
-
-TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
-  scene::Scene scene = sheet_with_fast_edge();
-  scene.physics.gravity = {0, 0, -9.81};
-  scene.solver.newton_iterations = 3;
-  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
-  scene.cloths[0].pins[0].motion.keys[1].time = 0.14;  // after the first of the two steps of the frame
-  scene.cloths[0].pins[0].motion.keys[2].pose.position = {500, 3000, 2000};
-  production::SceneSimulation simulation(scene);
-  for (int k = 1; k <= 3; ++k) simulation.advance();
-  // The message contains the residual of the failed step. If the program kept the first step of the frame, a second
-  // attempt would fail with another value.
-  const auto failure = [&]() -> std::string {
-    try {
-      simulation.advance();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no failure";
-  };
-  const std::string first = failure();
-  EXPECT_NE(first.find("frame 4: the step at 0.14 s failed"), std::string::npos) << first;
-  EXPECT_EQ(failure(), first);
-}
-
-TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
-  scene::Scene scene = sheet_with_fast_edge();
-  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
-  scene.cloths[0].pins[0].motion.keys[2].pose.position = {0, 0.5, 0.5};
-  scene.solver.newton_iterations = 2;
-  scene.solver.halvings = 10;
-  production::SceneSimulation simulation(scene);
-  for (int k = 1; k <= 3; ++k) simulation.advance();
-  const FrameReport report = simulation.advance();
-  EXPECT_GT(report.rejected_steps, 0);
-  // Each rejection replaces one step by two.
-  EXPECT_EQ(report.steps, 2 + report.rejected_steps);
-  EXPECT_EQ(simulation.snapshot()->frame, 4);
 }
 
 TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {

@@ -170,7 +170,7 @@ void serialize(Archive& archive, LoadedCamera& camera) {
 
 LoadedCamera load_camera(const std::filesystem::path& file, const std::string& object, const std::string& where) {
   const Source source{file, where, "camera"};
-  const std::string ending = file.extension().string();
+  const std::string ending = ending_of(file);
   if (ending != ".glb" && ending != ".gltf") source.fail("expected a glTF file (.glb, .gltf)");
   const std::string bytes = source.read([&] {
     LoadedCamera camera = read_camera(file, object);

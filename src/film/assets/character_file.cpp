@@ -69,9 +69,7 @@ void change(character::Curve<Value>& curve, const Change& change) {
 }  // namespace
 
 bool is_bvh(const std::filesystem::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return ending == ".bvh";
+  return ending_of(file) == ".bvh";
 }
 
 Mat3 rotation_to_scene_axes(int up, scene::UpAxis scene_up) {

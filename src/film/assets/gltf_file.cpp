@@ -52,10 +52,8 @@ std::uint32_t length_at(std::string_view bytes, std::size_t at) {
 
 Gltf split(const std::filesystem::path& file) {
   Gltf gltf;
-  std::string ending = file.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
   gltf.is_binary = read_start(file, kStart.size()) == kStart;
-  if (!gltf.is_binary && ending != ".gltf") return gltf;
+  if (!gltf.is_binary && ending_of(file) != ".gltf") return gltf;
   const std::string bytes = read_bytes(file);
   if (!gltf.is_binary) {
     gltf.text = bytes;

@@ -22,12 +22,13 @@ constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 /// assimp makes a separate vertex for each corner.
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
-  if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;
+  if (ending_of(file) != ".obj") return numbers;
   std::istringstream in(weft::read_file(file, kMaxMeshFileBytes));
   for (std::string line; std::getline(in, line);) {
-    if (!line.starts_with("f ")) continue;
-    std::istringstream corners(line.substr(2));
-    for (std::string corner; corners >> corner;) numbers += corner.substr(0, corner.find('/')) + ' ';
+    std::istringstream words(line);
+    std::string word;
+    if (!(words >> word) || word != "f") continue;
+    for (std::string corner; words >> corner;) numbers += corner.substr(0, corner.find('/')) + ' ';
     numbers += '\n';
   }
   return numbers;

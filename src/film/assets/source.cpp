@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <exception>
 #include <string>
 #include <system_error>
@@ -39,6 +40,12 @@ unsigned time_limit(std::uintmax_t bytes) {
 constexpr unsigned kWallFactor = 20;
 
 }  // namespace
+
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
+}
 
 void Source::fail(const std::string& why) const {
   throw Error(ExitCode::asset_unreadable, describe(why));

@@ -17,6 +17,9 @@ inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 /// Limit of coordinates [m]. A file with a larger coordinate counts as damaged: no scene is a thousand kilometres wide.
 inline constexpr double kMaxCoordinate = 1e6;
 
+/// The ending of a file name in lower case, with its dot; empty if there is none.
+std::string ending_of(const std::filesystem::path& file);
+
 /// A file, and the texts that name it in messages.
 struct Source {
   std::filesystem::path file;

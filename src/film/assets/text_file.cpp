@@ -106,7 +106,7 @@ std::string usual_bvh(std::string_view text) {
 }  // namespace
 
 std::optional<std::string> readable_text(const std::filesystem::path& file) {
-  const std::string ending = lower_case(file.extension().string());
+  const std::string ending = ending_of(file);
   const bool has_byte_order_mark = read_start(file, kByteOrderMark.size()) == kByteOrderMark;
   if (!has_byte_order_mark && ending != ".obj" && ending != ".bvh") return std::nullopt;
   const std::string bytes = read_bytes(file);

@@ -32,7 +32,7 @@ struct Manifest {
 
 std::string manifest_text(const Manifest& manifest);
 
-/// Throws std::runtime_error with the defect. If another version of Weft has made the manifest, throws
+/// Throws std::runtime_error with the defect. If the cache has another format version, throws
 /// Error(asset_unreadable) that names `file`.
 Manifest parse_manifest(std::string_view text, const std::string& file = "manifest.json");
 

@@ -59,7 +59,7 @@ class Reader {
   std::filesystem::path folder_;
   Looks looks_;
   Manifest manifest_;
-  std::optional<Surfaces> surfaces_;  // absent if frame 0 did not exist when the reader was created
+  std::optional<Surfaces> surfaces_;  // absent if their file, written with frame 0, was not there yet
 };
 
 /// Whether the folder contains a manifest, readable or not.

@@ -191,12 +191,13 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
     const Vec2 arc = turn_displacement(body);
     // The first step of the turn covers the rest of the distance.
     const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;
-    pace.step_length -= ahead / (steps - shorter);
+    // If the walk is shorter than the turn, the character turns where it stands instead of stepping backward.
+    pace.step_length = std::max(0.0, pace.step_length - ahead / (steps - shorter));
     const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();
     side = add_straight_steps(planner, body, pace, steps, side, aside, std::max(0, steps - 4));
     side = add_turn_steps(planner, body, side);
     Pace back = pace;
-    back.step_length += arc.x() / (steps - shorter);
+    back.step_length = std::max(0.0, pace.step_length + arc.x() / (steps - shorter));
     side = add_straight_steps(planner, body, back, steps, side, -aside, 0);
   } else {
     side = add_straight_steps(planner, body, pace, steps, side, 0, 0);

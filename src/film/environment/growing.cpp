@@ -137,8 +137,11 @@ std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, cons
     if (scene::acting_of(character)->stance_arms || !(character.blend > 0)) return;
     const garment::Wearer& body = measure();
     if (!is_pierced_by_arm(cloth, body)) return;
+    const std::optional<double> of_sleeves = angle_of_sleeves(cloth, body);
+    // If another garment has set the arms, only sleeves may change them: they leave arms no choice.
+    if (posed && scene::acting_of(posed->characters[number])->stance_arms && !of_sleeves) return;
     if (!posed) posed = scene;
-    const double angle = std::round(angle_of_sleeves(cloth, body).value_or(kAngleBesideSkirt));
+    const double angle = std::round(of_sleeves.value_or(kAngleBesideSkirt));
     scene::acting_of(posed->characters[number])->stance_arms = angle;
     log::note(
         fmt::format("{}: the arms of '{}' would go through it at the start; while it is put on, they are {:g} "

@@ -101,8 +101,12 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   }
   pattern.scale_by(factors);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
-  const Box3 box = mesh::bounding_box(garment.sheet.rest);
-  for (const Vec3& x : garment.sheet.rest) {
+  // Bent panels lie around the wearer in the scene; others are drawn with z up.
+  std::vector<Vec3> upright = garment.sheet.rest;
+  if (wearer != nullptr)
+    for (Vec3& x : upright) x = wearer->to_world.inverse() * x;
+  const Box3 box = mesh::bounding_box(upright);
+  for (const Vec3& x : upright) {
     const Vec3 fraction = (x - box.min()).cwiseQuotient(box.sizes());
     made.details.fractions.emplace_back(fraction.x(), fraction.z());
   }

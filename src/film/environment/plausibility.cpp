@@ -71,8 +71,9 @@ std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double b
   return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMaxSpeed);
 }
 
-// A body that jumps is above the floor only at times, so its minimum height counts. A body that rolls is in the floor
-// only at times, so its median height counts.
+// Warns of a body above the floor by the least height of its lowest point, since a body that jumps is above the floor
+// only at times. Warns of a body below the floor by the median height, since a body that rolls may dip into the floor
+// at times.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);

@@ -131,8 +131,8 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
 
   // `turn`: angle by which the strands wind around the rope from its start to its end [rad]. On a
   // closed rope, the strands must continue from the last ring to the first. `turn` is then a number
-  // of whole turns plus `off`, the angle from the normal that is transported around the whole rope
-  // to the first normal.
+  // of whole turns plus `off`. This is the angle between two normals at the start of the rope: from
+  // the one that has been transported around the whole rope to normals[0].
   const double lay = look.thread_spacing, length = tube.chain->uv[1].x() * pieces;
   const bool has_strands = tube.sides == kSidesOfStrands && lay > 0;
   double turn = has_strands ? kTurn * length / lay : 0;

@@ -23,7 +23,7 @@ namespace {
 constexpr double kClearanceRatio = 0.6;
 // Panel edges shorter than this fraction of the spacing become points: narrow triangles there would be very stiff.
 constexpr double kPointEdgeRatio = 0.25;
-// Minimum area of a triangle after an edge flip / area of a lattice square.
+// Minimum area of a triangle after an edge flip, relative to that of a lattice square.
 constexpr double kMinFlippedArea = 0.02;
 // Maximum number of particles of one garment, estimated as area of the panels / spacing².
 constexpr double kMaxParticles = 1e6;
@@ -122,8 +122,8 @@ class Sewing {
   }
 
   // Joins the points of both edges of each seam, except closures. The points of the second edge are
-  // taken in one of two directions. For flat panels, this is the direction in which the ends of
-  // both edges start closer together. For bent panels, and for closed edges such as a whole
+  // taken in one of two directions. For flat panels, this is the direction in which the first and
+  // last points of both edges are closer together at the start. For bent panels, and for closed edges such as a whole
   // outline, it is the direction in which the fronts of both panels face outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
@@ -188,7 +188,8 @@ class Sewing {
       const auto opposite = [&](const mesh::Triangle& t) {
         return *std::ranges::find_if(t, [&](Index v) { return v != a && v != b; });
       };
-      // The edge runs from `from` to `to`; the corners of both triangles are counter-clockwise from, right, to, left.
+      // The edge runs from `from` to `to`. Both triangles together have the corners `from`, `right`, `to`, `left`,
+      // counter-clockwise.
       const mesh::Triangle& one = triangles[first];
       const std::size_t k = at(static_cast<Index>(std::ranges::find(one, opposite(one)) - one.begin()));
       const Index left = one[k], from = one[(k + 1) % 3], to = one[(k + 2) % 3], right = opposite(triangles[second]);
@@ -353,8 +354,8 @@ class Sewing {
   }
 
   // Adds the ties of closures. Of the two directions of the second edge, uses the one in which the
-  // ends of both edges start closer together; if an edge is closed, the one in which the fronts of
-  // both panels face outward.
+  // first and last points of both edges are closer together at the start; if an edge is a loop, the
+  // one in which the fronts of both panels face outward.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {

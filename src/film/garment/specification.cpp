@@ -22,19 +22,18 @@ namespace {
 using nlohmann::json;
 using scene::Findings;
 
-// Numbers in lists of a file must be smaller than this in absolute value, such as coordinates in
-// units of the file.
+// Upper bound of the absolute value of each number in a list, such as coordinates in units of the file.
 constexpr double kMaxSpecCoordinate = 1e5;
 constexpr double kDefaultUnitsPerMetre = 100;  // if the file states no unit: centimetres
-// Height above the floor of the origin in files of the Garment-Pattern-Generator, the predecessor of GarmentCode [m].
-// It lies between pelvis and chest.
+// In files of the Garment-Pattern-Generator, the predecessor of GarmentCode, the origin lies between pelvis and chest,
+// at this height above the floor [m].
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the bodies for which patterns of GarmentCode and of its predecessor are drawn [m].
 constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .height = 1.72};
 constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .height = 1.66};
-// Heights in files of GarmentCode count from the floor, those in files of the predecessor from kPredecessorOrigin. A
-// file counts as one of the predecessor if it has the predecessor's format of curves, or if its lowest point is below
-// this height [m]. The limit is negative, since flat trousers may end below the floor.
+// A file counts as one of the predecessor if it has the predecessor's format of curves, or if its lowest point, in
+// heights of the file, is below kMinLowestPanel [m]. The limit is negative, since flat trousers of GarmentCode may end
+// below the floor.
 constexpr double kMinLowestPanel = -0.2;
 // Minimum height above the floor at which the lowest point of a GarmentCode pattern starts [m].
 constexpr double kMinStartHeight = 0.02;
@@ -330,10 +329,11 @@ class Reader {
     const Vec2 mirror(panel.mirrored ? -1 : 1, 1);
     const bool arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
     Vec2 up(0, 1);
+    // Legs may be drawn spread, at an angle; the panel then starts upright.
     if (arm)
       up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
-      up = panel.is_limb() ? nearest_axis(height) : height.normalized();  // legs may be drawn apart
+      up = panel.is_limb() ? nearest_axis(height) : height.normalized();
     Eigen::Matrix2d turn;
     turn << up.y(), -up.x(), up.x(), up.y();
     Eigen::Affine2d map = Eigen::Affine2d::Identity();

@@ -17,7 +17,7 @@ namespace weft::garment {
 /// - Seams determine the positions of panels around arms and neck.
 /// - Panels of limbs start at the front or the back unless they face sideways. Their lower ends are
 ///   centred on the axis of the limb, and their rotations are multiples of 90 degrees.
-/// - Turned panels start on top of the panels to which they are sewn.
+/// - Panels that are folded over, such as lapels, start on top of the panels to which they are sewn.
 /// - A GarmentCode pattern that would start lower than kMinStartHeight (specification.cpp) above
 ///   the floor is raised.
 /// Edges are named by their numbers in the specification, from 0. If there are mistakes, reports

@@ -47,8 +47,8 @@ void derive_geometry(SpecPanel& panel) {
   }
   panel.mirrored = polygon_area(around) < 0;
   panel.area = std::abs(polygon_area(around));
-  // Adding zero turns −0 into 0. With −0, atan2() would give a panel at the back the angle −180°
-  // instead of 180°.
+  // Adding zero turns −0 into 0. Otherwise the angle of a panel at the back (specification.cpp) would be −180° instead
+  // of 180°.
   panel.outward = panel.rotation.col(2) * (panel.mirrored ? -1 : 1) + Vec3::Zero();
   Vec2 low = around[0], high = around[0];
   for (const Vec2& p : around) low = low.cwiseMin(p), high = high.cwiseMax(p);

@@ -12,8 +12,8 @@ namespace weft::garment {
 namespace {
 
 // Weight of the term that holds each vertex at the start position of its panel, relative to the
-// weight of an edge. It is small: it determines where each connected set of panels starts, and
-// hardly changes lengths.
+// weight of an edge. The weight is so small that this term hardly changes lengths, but it determines
+// where each connected set of panels starts.
 constexpr double kAnchorWeight = 1e-4;
 // Number of smoothing rounds of inflate().
 constexpr int kSmoothingRounds = 10;

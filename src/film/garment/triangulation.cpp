@@ -13,9 +13,9 @@ namespace {
 // outline is then about 0.6 to 1.6 spacings wide, so that its triangles have no very small or very
 // large angles.
 constexpr double kMinOutlineDistance = 0.62;
-// Shift of each lattice row relative to the row below, during triangulation only [spacings]. It
-// makes the Delaunay diagonal of each square unique. It is large compared with rounding errors; its
-// sum over all rows is small compared with the spacing.
+// A length that is large compared with rounding errors, but whose sum over all rows is small compared with the spacing
+// [spacings]. During triangulation, each lattice row is shifted by it relative to the row below, so that the Delaunay
+// diagonal of each square is unique.
 constexpr double kRowShift = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) {

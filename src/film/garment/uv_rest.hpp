@@ -25,8 +25,9 @@ struct UvRest {
   /// has no UVs or no area in the UVs, if it is a hundred or more times longer or shorter there
   /// than in the mesh in some direction, or if it is too flat there (`flattest` of rest_from_uv()).
   std::size_t unusable = 0;
-  /// Area of `unusable` triangles in the mesh, as a fraction of the area of the mesh. A triangle that is too flat in
-  /// the UVs counts only with the area that it lacks there, since small triangles can be too flat even in UVs that fit.
+  /// Area of `unusable` triangles in the mesh, as a fraction of the area of the mesh. Of a triangle that
+  /// is too flat in the UVs, only the area in the mesh minus that in the UVs counts, since small triangles can be too
+  /// flat even in UVs that fit.
   double unusable_area = 0;
   /// The stretch of a triangle is the largest relative difference in length between mesh and panel, over all
   /// directions. These are its median and its 95 % quantile over all triangles, weighted by area. Unusable triangles
@@ -45,10 +46,10 @@ struct UvRest {
 };
 
 /// Derives the rest shape from UVs. `uv`: one entry per mesh triangle, or empty, for an empty
-/// result. If `scale` is not given, it is the unit (metres, centimetres, millimetres or inches) at
-/// which most edges are as long as in the mesh within 2 %. If no unit fits more than a fifth of the
-/// edges, scales along u and v are fitted separately. If these two differ by at most 5 % or are
-/// undetermined, the median scale of all edges replaces both. `flattest`: minimum height of a
+/// result. If `scale` is not given, it is the unit (metres, centimetres, millimetres or inches) that
+/// fits more edges than the others. A unit fits an edge if its length is that in the mesh within
+/// 2 %. If no unit fits more than a fifth of the edges, scales along u and v are fitted separately. If these two differ
+/// by at most 5 % or are undetermined, the median scale of all edges replaces both. `flattest`: minimum height of a
 /// triangle in the UVs, relative to the longest edge of all triangles there. A flatter triangle is
 /// unusable if it is higher in the mesh.
 UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,

@@ -129,7 +129,7 @@ void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pict
   for (frame::SurfacePart& part : surface.parts) {
     const frame::Paint figure = part.appearance.paint;
     part.appearance = surface.appearance;
-    // Keep the texture of a character's part: the mannequin's hair, face and shoes are painted over any colour.
+    // Keep the texture of a character's part, such as the mannequin's hair, face and shoes, whatever its colour.
     if (surface.kind == frame::ObjectKind::character) part.appearance.paint = figure;
     for (const scene::PanelPaint& panel : look.panels)
       if (panel.name == part.name) apply_paint(part.appearance, panel, pictures);

@@ -215,6 +215,11 @@ std::string_view name_of(ErrorSource source) {
   return kNames[static_cast<std::size_t>(source)];
 }
 
+bool ErrorEstimate::is_lower_bound() const {
+  return is_chaotic || steps_irregular ||
+         std::ranges::any_of(parts, [](const ErrorPart& part) { return !part.missing.empty(); });
+}
+
 const ErrorPart& ErrorEstimate::largest() const {
   return *std::max_element(parts.begin(), parts.end(), [](const ErrorPart& a, const ErrorPart& b) {
     return at(a.errors, Quantity::position) < at(b.errors, Quantity::position);

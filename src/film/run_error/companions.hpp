@@ -36,8 +36,9 @@ struct ErrorEstimate {
   /// CPU time of all companions that have not failed [s].
   double cpu_s = 0;
 
-  /// Whether the known errors are only lower bounds. Does not consider parts whose errors are not known.
-  bool is_lower_bound() const { return is_chaotic || steps_irregular; }
+  /// Whether the known errors are only lower bounds: is_chaotic, steps_irregular, or the errors of a
+  /// part are not known.
+  bool is_lower_bound() const;
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
 };

@@ -58,7 +58,7 @@ const Table& solver_rules() {
                   "error that the solver may leave in a step, relative to the time integration error of that step, "
                   "with a visibility threshold as floor; smaller: more accurate and slower")
           .whole_number("newton_iterations", &Solver::newton_iterations, within(1, 1000),
-                        "maximum number of Newton iterations in a step; a step that needs more is halved")
+                        "maximum number of Newton iterations in one solve of a step; a step that needs more is halved")
           .number("linear_tolerance", &Solver::linear_tolerance, above(0, 1), "",
                   "allowed error of one linear solve, relative to its solution")
           .whole_number("linear_iterations", &Solver::linear_iterations, within(1, 1e6),

@@ -7,6 +7,7 @@
 
 #include "core/timer.hpp"
 #include "lab/bench/plot.hpp"
+#include "lab/bench/report.hpp"
 
 namespace weft::bench {
 namespace {
@@ -186,7 +187,7 @@ std::string fabrics_markdown(const std::vector<FabricRun>& runs, const std::stri
       "and a strip that hangs with a load of 490 N/m; {:.0f} CPU s. What is marked with ~ is estimated; \"off\" is to "
       "the nearest published figure. \"Ours\" is solved so exactly that the rest does not decide, \"in scenes\" with "
       "their newton_tolerance.\n\n![tests]({})\n\n{}",
-      conclusion(runs), cpu_s, plot, markdown(summary(runs)));
+      conclusion(runs), cpu_s, link_to(plot), markdown(summary(runs)));
 }
 
 }  // namespace weft::bench

@@ -74,7 +74,7 @@ std::string grouped(std::int64_t number) {
 
 // Milliseconds with three significant digits below 1 s, whole milliseconds above.
 std::string milliseconds(double ms) {
-  return ms < 1000 ? fmt::format("{:.3g}", ms) : grouped(std::lround(ms));
+  return ms < 999.5 ? fmt::format("{:.3g}", ms) : grouped(std::lround(ms));
 }
 
 std::string how_cost_grows(const std::vector<const SpeedRun*>& sizes) {

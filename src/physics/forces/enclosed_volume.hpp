@@ -10,9 +10,9 @@
 
 namespace weft::forces {
 
-/// The volume inside a triangle surface. If the surface has openings, triangles from the edges of each border to the
-/// mean of the border's particles close them; otherwise the volume would depend on the origin. The
-/// volumes of separate surfaces are added, each with its sign.
+/// The volume inside a triangle surface. Each opening is closed by triangles from the edges of its border to the mean
+/// of the border's particles, because the volume of an open surface would depend on the origin. The volumes of separate
+/// surfaces are added, each with its sign.
 ///
 /// V = 1/3 Σ x_i · ∂V/∂x_i. The derivative ∂V/∂x_i = 1/6 Σ x_j × x_k, over the triangles (i, j, k) of the vertex star
 /// of i, is a third of the sum of their area vectors. The derivative with respect to a border's mean is divided equally

@@ -7,18 +7,18 @@
 namespace weft::model {
 namespace {
 
-// The spectrum is divided into kShells shells of wave numbers k. The wave number of each shell is
-// kRatio times that of the shell before; kShellsBelow shells are below k_e. 1 / k ranges from four
-// integral lengths to a thirtieth of one. Waves with larger k, a tenth of the spectrum's energy,
-// are left out.
+// k_e is the wave number that scales Von Kármán's spectrum; spectrum() has its maximum near it. The spectrum is divided
+// into kShells shells of wave numbers k. The wave number of each shell is kRatio times that of the shell before;
+// kShellsBelow shells are below k_e. 1 / k ranges from four integral lengths to a thirtieth of one. Waves with larger
+// k, a tenth of the spectrum's energy, are left out.
 constexpr int kShells = 13;
 constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
 // k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), summed over these shells with energies E
 // and wave numbers k (relative to k_e). For the whole spectrum, this product is 0.747.
 constexpr double kLengthFactor = 0.837;
-// Rate at which the phase of a wave changes in moving air, relative to the turnover rate of eddies
-// of its size (Fung et al., 1992, Section 2).
+// Rate at which the phase of a wave changes for an observer that moves with the wind, relative to the turnover rate of
+// eddies of its size (Fung et al., 1992, Section 2).
 constexpr double kUnsteadiness = 0.5;
 
 // Von Kármán's spectrum up to a factor; `k`: wave number relative to k_e.

@@ -48,7 +48,7 @@ class EnergyBound {
   bool is_exempt_ = false;
   bool warned_ = false, warned_of_solver_ = false;
   integrator::Method integrator_;
-  double negligible_energy_;               // added to each bound, Numerics::Energy::negligible [J]
+  double negligible_energy_;               // added to each bound: mass times Numerics::Energy::negligible [J]
   double start_energy_;                    // mechanical energy at the start [J]
   double start_kinetic_, start_elastic_;   // at the start [J]
   double potential_low_, potential_high_;  // lowest and highest so far [J]

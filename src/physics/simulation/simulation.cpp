@@ -134,18 +134,27 @@ void Simulation::Impl::begin_layer(std::size_t number) {
   steps = std::make_unique<StepLoop>(put_on_model(), time());
 }
 
-// Puts on each layer whose first frame is not later than the current one, outside of the cloths that are already on.
+// Puts on each layer whose first frame is not later than the current one, outside of the cloths that are already on. If
+// a layer cannot be put on, throws, and leaves the cloths that are already on as they were.
 void Simulation::Impl::put_on_next() {
   while (!all_put_on() && model.layers[layer + 1].first_frame <= frame) {
-    const std::unique_ptr<model::Model> inner_part = std::move(put_on_part);  // `inner` refers to it
-    const std::unique_ptr<StepLoop> inner = std::move(steps);
-    begin_layer(layer + 1);
-    const std::vector<std::size_t>&now = model.layers[layer].put_on, &before = model.layers[layer - 1].put_on;
-    std::vector<std::size_t> numbers;  // position of each cloth of `before` in `now`
-    for (const std::size_t c : before)
-      numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
-    steps->copy_state_from(*inner, numbers);
-    make_start();
+    std::unique_ptr<model::Model> inner_part = std::move(put_on_part);  // `inner` refers to it
+    std::unique_ptr<StepLoop> inner = std::move(steps);
+    const std::size_t inner_layer = layer;
+    try {
+      begin_layer(inner_layer + 1);
+      const std::vector<std::size_t>&now = model.layers[layer].put_on, &before = model.layers[inner_layer].put_on;
+      std::vector<std::size_t> numbers;  // position of each cloth of `before` in `now`
+      for (const std::size_t c : before)
+        numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
+      steps->copy_state_from(*inner, numbers);
+      make_start();
+    } catch (...) {
+      layer = inner_layer;
+      steps = std::move(inner);
+      put_on_part = std::move(inner_part);
+      throw;
+    }
   }
 }
 
@@ -167,6 +176,7 @@ FrameReport Simulation::Impl::advance() {
   {
     const Stopwatch watch(report.simulate);
     StepLoop::Checkpoint start = steps->checkpoint();
+    const EnergyBound bound = *energy_bound;
     try {
       steps->advance(time(), report.time, report);
       measure_energies(report);
@@ -174,6 +184,7 @@ FrameReport Simulation::Impl::advance() {
       std::ranges::move(energy_bound->check(report), std::back_inserter(report.warnings));
     } catch (...) {
       steps->return_to(std::move(start));
+      *energy_bound = bound;
       throw;
     }
   }

@@ -36,8 +36,8 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(model_, cloth_, t + h, held_);
-  // An earlier attempt, which was rejected, released a pin or body. Undo the release: this step may
-  // be shorter and end before it.
+  // If a rejected attempt contained the time at which the model releases a pin or body, undo this
+  // release: the present step may be shorter and end before that time.
   if (before_release_) {
     progress_.now.v = std::move(before_release_->v);
     stepper_.return_to(std::move(before_release_->history));
@@ -117,9 +117,9 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
   }
 }
 
-// Solves the step with velocity constraints (Etzmuß et al. 2001), if contact.response selects them. After each solve,
-// the response sets and releases constraints; pairs without a separating plane get contacts. After
-// `numerics.walls.solves` solves, only pushes particles apart.
+// Solves the step with velocity constraints (Etzmuß et al. 2001). After each solve, the response sets and releases
+// constraints; pairs without a separating plane get contacts. After `numerics.walls.solves` solves, only pushes
+// particles apart.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
   const SystemState& now = progress_.now;
@@ -145,7 +145,7 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
 }
 
 // Solves the step with the current contacts and constraints; writes the result into `next_`. Sets
-// `solved` to whether the solve ended, instead of pausing for an early check.
+// `solved` to true if the solve has reached its tolerance, to false if it pauses for an early check.
 StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
@@ -196,12 +196,12 @@ integrator::Method StepLoop::method() const {
 }
 
 // Pushes particles of `next_` apart without solving again. Rejects the step if some pair cannot be pushed apart. Also
-// rejects it if the push adds much energy, unless this is the last attempt or `max_retries` longer attempts were
-// rejected.
+// rejects it if the push adds much energy, unless this is the last attempt, or `max_retries` attempts at longer steps
+// were rejected.
 StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
   const double energy_before = energy(next_);
-  const bool may_pinch = is_short_enough(attempt);
-  if (Rejection stuck = collisions_->push_apart(attempt.h, may_pinch, attempt.may_move_pins, progress_.now, next_))
+  if (Rejection stuck =
+          collisions_->push_apart(attempt.h, may_pinch(attempt), attempt.may_move_pins, progress_.now, next_))
     return stuck;
   if (attempt.is_last || attempt.rejections >= numerics.repair.max_retries) return std::nullopt;
   const double ratio = added_energy_ratio(energy_before, attempt.h);
@@ -219,9 +219,9 @@ bool StepLoop::may_release_pins(const Attempt& attempt) const {
   return !attempt.may_move_pins && (attempt.is_last || collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Whether cloth without space may become pinched: in the last attempt, or after `max_retries` rejections if obstacles
-// move so little that a shorter step would not find more space.
-bool StepLoop::is_short_enough(const Attempt& attempt) const {
+// Whether cloth that finds no space may pass into an obstacle (PinchedPairs): in the last attempt, or after
+// `max_retries` rejections if obstacles move so little that a shorter step would not find more space.
+bool StepLoop::may_pinch(const Attempt& attempt) const {
   return attempt.is_last || (attempt.rejections >= numerics.repair.max_retries &&
                              collisions_->obstacles_move_little(progress_.now, next_));
 }

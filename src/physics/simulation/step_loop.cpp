@@ -276,6 +276,12 @@ void StepLoop::serialize(Archive& archive) {
   if (progress_.control) progress_.control->serialize(archive);
   archive.value(progress_.longest);
   if constexpr (Archive::kReads) require(progress_.longest > 0, "a step length");
+  serialize_parts(archive);
+}
+
+// Saves or restores what changes only at events: seams and attachments that break, pins that yield, reported warnings.
+template <class Archive>
+void StepLoop::serialize_parts(Archive& archive) {
   cloth_.serialize(archive);
   pins_.serialize(archive);
   attachments_.serialize(archive);
@@ -283,6 +289,20 @@ void StepLoop::serialize(Archive& archive) {
     archive.value(reported);
     if constexpr (Archive::kReads) require(reported >= 0, "a ratio of stretch");
   }
+}
+
+StepLoop::Checkpoint StepLoop::checkpoint() {
+  ByteWriter parts;
+  serialize_parts(parts);
+  return {progress_, stepper_.history(), std::move(parts.bytes)};
+}
+
+void StepLoop::return_to(Checkpoint checkpoint) {
+  before_release_.reset();
+  progress_ = std::move(checkpoint.progress);
+  stepper_.return_to(std::move(checkpoint.history));
+  ByteReader parts{checkpoint.parts};
+  serialize_parts(parts);
 }
 
 template void StepLoop::serialize(ByteWriter&);

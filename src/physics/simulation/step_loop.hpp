@@ -60,13 +60,10 @@ class StepLoop {
   struct Checkpoint {
     Progress progress;
     integrator::Stepper::History history;
+    std::string parts;  // serialize_parts()
   };
-  Checkpoint checkpoint() const { return {progress_, stepper_.history()}; }
-  void return_to(Checkpoint checkpoint) {
-    before_release_.reset();
-    progress_ = std::move(checkpoint.progress);
-    stepper_.return_to(std::move(checkpoint.history));
-  }
+  Checkpoint checkpoint();
+  void return_to(Checkpoint checkpoint);
 
   const ClothSystem& cloth() const { return cloth_; }
   const model::Weather& weather() const { return weather_; }
@@ -99,6 +96,8 @@ class StepLoop {
   }
 
  private:
+  template <class Archive>
+  void serialize_parts(Archive& archive);
   using Start = integrator::Stepper::Start;
   /// Why a step was rejected; empty if it was accepted.
   using Rejection = std::optional<std::string>;
@@ -141,7 +140,7 @@ class StepLoop {
   integrator::Method method() const;
   Rejection push_apart(const Attempt& attempt);
   bool may_release_pins(const Attempt& attempt) const;
-  bool is_short_enough(const Attempt& attempt) const;
+  bool may_pinch(const Attempt& attempt) const;
   double energy(const SystemState& moment) const;
   double added_energy_ratio(double before, double h) const;
   static Rejection rejection_of(const integrator::StepReport& step);

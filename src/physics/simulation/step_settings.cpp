@@ -126,7 +126,7 @@ void release_frames(const model::Model& model, const ClothSystem& cloth, double 
 
 bool frames_are_constant(const model::Model& model, double t0, double t1) {
   return std::ranges::none_of(model.bodies, [&](const model::Body& body) {
-    return body.dynamics && t0 < body.dynamics->release && (body.moving || t1 > body.dynamics->release);
+    return body.dynamics && is_held_until(*body.dynamics, t0) && (body.moving || !is_held_until(*body.dynamics, t1));
   });
 }
 

@@ -86,15 +86,17 @@ std::string relative_length(double length, double cloth_size) {
 std::string error_sentence(const ErrorEstimate& estimate, double cloth_size) {
   const ErrorPart& largest = estimate.largest();
   const std::string length = relative_length(at(estimate.all, Quantity::position), cloth_size);
-  const std::string remark =
+  std::string remark =
       estimate.steps_irregular ? "; steps twice as long fail or change it hardly more than steps half as long" : "";
+  for (const ErrorPart& part : estimate.parts)
+    if (!part.missing.empty()) remark += fmt::format("; the error due to the {} is not known", name_of(part.source));
   if (estimate.is_chaotic)
     return fmt::format(
         "the motion is chaotic: a start moved by 1 µm alone moves positions by {} mm; in all they are off by {} or "
         "more, and no setting reduces that{}",
         start_text(estimate), length, remark);
   return fmt::format("positions {} {}, most of it due to the {}; {} reduces it{}",
-                     estimate.steps_irregular ? "are off by at least" : "may be off by", length,
+                     estimate.is_lower_bound() ? "are off by at least" : "may be off by", length,
                      name_of(largest.source), remedy(largest.source), remark);
 }
 

@@ -55,7 +55,11 @@ void Store::find_start() {
                   "results; omit --resume to start again",
                   folder().string(), found.weft_version, found.cpu_target);
     std::optional<cache::SolverState> state = reader->state();
-    if (!state) return;
+    if (!state)
+      return log::info(
+          fmt::format("note: {}: has no state from which the simulation could continue; starting at the "
+                      "beginning",
+                      folder().string()));
     for (int frame = 0; frame <= state->frame; ++frame)
       if (reader->verify(frame) == manifest_.scene_hash && current_frames_ == frame) ++current_frames_;
     start_ = std::move(*state);

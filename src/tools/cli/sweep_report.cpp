@@ -92,9 +92,9 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   }
 }
 
-/// Number of columns of the sheet. If the first n runs (2 <= n <= kMaxSheetColumns) have the same values of the first
-/// keys, a row has n pictures, along which the other keys vary. Otherwise the sheet is about square, with at most
-/// kMaxSheetColumns columns.
+/// Number of columns of the sheet. Seeks the smallest k for which the first n runs, 2 <= n <= kMaxSheetColumns, have
+/// the same values of the first k keys, and run n + 1 has not. A row then has n pictures, along which the other keys
+/// vary. Otherwise the sheet is about square, with at most kMaxSheetColumns columns.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {

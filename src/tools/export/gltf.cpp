@@ -225,7 +225,7 @@ json GltfFile::primitives(const CutSurface& cut, const Object& object, const fra
   std::vector<int> images;
   for (const MaterialGroup& group : group_by_look(surface, materials)) {
     const Material& look = materials.all[group.material];
-    const bool painted = look.has_picture() && !cut.uv.empty();
+    const bool painted = look.has_picture();
     const Vec3 color = painted ? Vec3(1, 1, 1) : look.color;
     json material{{"name", look.name},
                   {"doubleSided", surface.kind == frame::ObjectKind::cloth},

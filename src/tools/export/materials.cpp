@@ -77,7 +77,8 @@ Material material_of(const frame::Surface& surface, const frame::Appearance& loo
                 .roughness = surface.appearance.roughness,
                 .metal = surface.appearance.metal};
   const frame::Paint& paint = look.paint;
-  if (!paint.texture) return made;
+  const bool has_places = !surface.uv.empty() || !surface.paint_uv.empty();
+  if (!paint.texture || !has_places) return made;
   PictureFile picture{.name = {}, .texture = paint.texture, .color = made.color, .alpha = paint.alpha};
   const bool once = paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once;
   if (once && picture.alpha == Alpha::ignored) picture.alpha = Alpha::over_color;

@@ -78,6 +78,15 @@ void append_faces(const std::vector<Face>& faces, const Materials& materials, co
   }
 }
 
+using Wrap = frame::Paint::Wrap;
+
+// Whether a picture repeats along both axes (true) or along neither (false). MTL cannot express other pictures: those
+// that are mirrored, or that repeat along one axis only (nullopt).
+std::optional<bool> repeats_in_mtl(const Material& material) {
+  if (material.wrap_u != material.wrap_v || material.wrap_u == Wrap::mirror) return std::nullopt;
+  return material.wrap_u == Wrap::repeat;
+}
+
 // MTL options for scale, offset and clamping of a picture; nullopt if the picture is rotated or
 // skewed, which MTL cannot express.
 std::optional<std::string> map_options(const Material& material) {
@@ -86,8 +95,7 @@ std::optional<std::string> map_options(const Material& material) {
   std::string text;
   if (map != Eigen::Matrix<double, 2, 3>::Identity())
     text = fmt::format("-s {} {} 1 -o {} {} 0 ", map(0, 0), map(1, 1), map(0, 2), map(1, 2));
-  if (material.wrap_u == frame::Paint::Wrap::clamp && material.wrap_v == frame::Paint::Wrap::clamp)
-    text += "-clamp on ";
+  if (repeats_in_mtl(material) == false) text += "-clamp on ";
   return text;
 }
 
@@ -126,6 +134,8 @@ std::string mtl_text(const frame::Surface& surface) {
       fmt::format_to(out, "# {} is laid turned, which cannot be said here\n", file);
       continue;
     }
+    if (!repeats_in_mtl(material))
+      fmt::format_to(out, "# {} is mirrored, or repeats along one axis only, which cannot be said here\n", file);
     fmt::format_to(out, "map_Kd {}{}\n", *options, file);
     if (material.cutout) fmt::format_to(out, "map_d {}{}\n", *options, file);
   }

@@ -1,6 +1,7 @@
 #include "physics/collision/response/pinch.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 
 #include "core/archive.hpp"
@@ -146,14 +147,16 @@ void PinchedPairs::serialize(Archive& archive) {
     serialize_values(archive, key.cloth, key.body, key.limb, origin.side);
     serialize_plain(archive, origin.faces);
     if constexpr (Archive::kReads) {
-      const auto is_of_body = [&, body = key.body](const Triangle& face) {
+      const auto is_of_limb = [&, body = key.body, limb = key.limb](const Triangle& face) {
         return std::ranges::all_of(face, [&](Index v) {
-          return v >= first_obstacle_ && v < static_cast<Index>(body_of_.size()) && body_of_[v] == body;
+          return v >= first_obstacle_ && v < static_cast<Index>(body_of_.size()) && body_of_[v] == body &&
+                 limb_of_[v] == limb;
         });
       };
       const auto is_particle = [&](Index v) { return v >= 0 && v < first_obstacle_; };
       require(std::ranges::all_of(key.cloth, is_particle) && key.body > body_of_[first_obstacle_ - 1] &&
-                  key.body <= body_of_.back() && !origin.faces.empty() && std::ranges::all_of(origin.faces, is_of_body),
+                  key.body <= body_of_.back() && std::abs(origin.side) == 1 && !origin.faces.empty() &&
+                  std::ranges::all_of(origin.faces, is_of_limb),
               "pinched triangles of a cloth and an obstacle");
     }
   });
