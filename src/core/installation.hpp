@@ -8,10 +8,8 @@ namespace weft {
 
 struct Installation {
   std::filesystem::path program;    ///< executable that starts the program
-  std::filesystem::path code;       ///< executable with the running code; differs from `program` in
-                                    ///< an archive alone
-  std::filesystem::path libraries;  ///< folder of the archive's libraries; empty outside of an
-                                    ///< archive
+  std::filesystem::path code;       ///< executable with the running code; differs from `program` in an archive alone
+  std::filesystem::path libraries;  ///< folder of the archive's libraries; empty outside of an archive
 };
 
 /// Location of this process. All paths are empty if /proc is not mounted.

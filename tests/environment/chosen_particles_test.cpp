@@ -191,6 +191,14 @@ TEST_F(ChosenParticles, AreRefusedForWhatTheClothHasNot) {
           "cloth.c.pin.0.mask: expected a mesh with texture coordinates (UVs) to lay it on, got none");
 }
 
+// Crossed triangles have a particle in the middle of each cell, between the rows.
+TEST_F(ChosenParticles, OfCrossedTrianglesMayBeTheMiddleOfACell) {
+  const model::Cloth cloth =
+      cloth_of("shape = 'crossed_triangles'\nparticles = [4, 4]\npin = [{ low = [0.5, 0.5], high = [0.5, 0.5] }]\n");
+  ASSERT_EQ(cloth.pins.size(), 1U);
+  EXPECT_EQ(cloth.pins[0].particles.size(), 1U);
+}
+
 // The jacket lies bent around its wearer, whose feet point down the axis that is up in the scene.
 TEST_F(ChosenParticles, OfABentPatternAreThoseAcrossAndUpItsWearer) {
   std::vector<Vec2> with_z_up;

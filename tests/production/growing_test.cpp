@@ -78,16 +78,31 @@ TEST(Growing, ABodyThatAGarmentCannotBeMovedOutOfGrowsIntoIt) {
 // Its sleeves point down by 33 degrees.
 TEST(Growing, AWearerGrowsWithItsArmsInTheSleeves) {
   const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", pattern("tshirt.toml"));
-  const auto growing = environment::with_growing_wearers(scene, environment::Environment(scene));
+  std::vector<std::string> notes;
+  const auto growing = environment::with_growing_wearers(scene, environment::Environment(scene), notes);
   ASSERT_TRUE(growing);
   EXPECT_EQ(growing->characters[0].grow, 0.1);
   EXPECT_NEAR(scene::acting_of(growing->characters[0])->stance_arms.value_or(0), 57, 10);
 }
 
+// The wearer and its garment are well; a second cloth touches a ball.
+TEST(Growing, IsNotSaidIfOtherClothIsRefused) {
+  const scene::Scene scene = dressed_mannequin(
+      "dressing = 0.2\nblend = 0.1\nwalk = 1\nstance_arms = 57\n",
+      pattern("skirt.toml") + "[[cloth]]\nname = \"sheet\"\nsize = 0.2\nparticles = 5\nposition = [3, 0, 1]\n" +
+          "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.1\nposition = [3, 0, 1]\n");
+  std::vector<std::string> notes;
+  log::set_handler([&](std::string_view text) { notes.emplace_back(text); });
+  EXPECT_THROW(SceneSimulation{scene}, Error);
+  log::set_handler({});
+  for (const std::string& note : notes) EXPECT_EQ(note.find("the body grows into it"), std::string::npos) << note;
+}
+
 // Without `dressing`, the body would grow in sight.
 TEST(Growing, NoWearerGrowsWithoutTimeForIt) {
   const scene::Scene scene = dressed_mannequin("walk = 1\n", pattern("tshirt.toml"));
-  EXPECT_FALSE(environment::with_growing_wearers(scene, environment::Environment(scene)));
+  std::vector<std::string> notes;
+  EXPECT_FALSE(environment::with_growing_wearers(scene, environment::Environment(scene), notes));
 }
 
 TEST(Growing, AGarmentThatIsFittedStartsWhereItsWearerStands) {

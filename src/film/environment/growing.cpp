@@ -151,7 +151,8 @@ std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, cons
   return posed;
 }
 
-std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment) {
+std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment,
+                                                 std::vector<std::string>& notes) {
   std::optional<scene::Scene> growing;
   for_each_worn(scene, environment, [&](const model::Cloth& cloth, std::size_t number, const Measure& measure) {
     if (scene.characters[number].grow > 0) return;
@@ -160,7 +161,7 @@ std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, cons
     grown.grow = kGrowingFraction * grown.dressing;
     std::optional<double>& arms = scene::acting_of(grown)->stance_arms;
     if (!arms && grown.blend > 0) arms = angle_of_sleeves(cloth, measure());
-    log::note(fmt::format(
+    notes.push_back(fmt::format(
         "{}: it cannot be moved out of '{}' at full size; so the body grows into it in the first {:g} "
         "s of dressing, as with grow = {:g}{}",
         cloth.source, grown.name, grown.grow, grown.grow, arms ? fmt::format(" and stance_arms = {:.0f}", *arms) : ""));

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "film/environment/environment.hpp"
 #include "film/scene/scene.hpp"
@@ -21,7 +23,8 @@ std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, cons
 /// `stance_arms` in the scene, the arms also point into the sleeves. Changes a wearer only if the
 /// garment is from a pattern and the start untangles it, and the wearer has bones, a positive
 /// `dressing`, at least half of which lies before frame 0, and no `grow` in the scene. Returns
-/// nullopt if no wearer changes. Logs a note for each garment whose wearer changes.
-std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment);
+/// nullopt if no wearer changes. Adds a note to `notes` for each garment whose wearer changes.
+std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment,
+                                                 std::vector<std::string>& notes);
 
 }  // namespace weft::environment

@@ -26,9 +26,8 @@ struct ObjectInfo {
 
 /// A picture for surfaces.
 struct Texture {
-  int width = 0, height = 0;  ///< [pixels], at least 1
-  std::vector<std::uint8_t> rgba;  ///< R, G, B, A of each pixel, top row first; sRGB, alpha not
-                                   ///< premultiplied
+  int width = 0, height = 0;       ///< [pixels], at least 1
+  std::vector<std::uint8_t> rgba;  ///< R, G, B, A of each pixel, top row first; sRGB, alpha not premultiplied
 };
 
 /// A picture on a surface, and how it is mapped and blended.
@@ -59,16 +58,13 @@ struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
   Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: colour of the side opposite to weft × warp
   double roughness = 0.6;          ///< from 0 (mirror-like) to 1 (matte)
-  double thread_spacing = 0;       ///< distance between drawn threads, or lay length of a rope [m];
-                                   ///< 0: no threads or strands
-  Finish finish;                   ///< cloth only
-  double metal = 0;                ///< not for cloth: from 0 (no metal) to 1 (metal, which reflects
-                                   ///< in `color`)
-  double coat = 0;                 ///< not for cloth: strength of a clear coat, from 0 to 1 (as
-                                   ///< glass)
-  double thickness = 0;            ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
-  double hem = 0;                  ///< width of the folded and sewn borders of cloth [m]; 0: cut borders without hem
-  bool checker = false;            ///< faint checkerboard of 0.5 m tiles on the floor, which shows the scale
+  double thread_spacing = 0;  ///< distance between drawn threads, or lay length of a rope [m]; 0: no threads or strands
+  Finish finish;              ///< cloth only
+  double metal = 0;           ///< not for cloth: from 0 (no metal) to 1 (metal, which reflects in `color`)
+  double coat = 0;            ///< not for cloth: strength of a clear coat, from 0 to 1 (as glass)
+  double thickness = 0;       ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
+  double hem = 0;             ///< width of the folded and sewn borders of cloth [m]; 0: cut borders without hem
+  bool checker = false;       ///< faint checkerboard of 0.5 m tiles on the floor, which shows the scale
   /// If the picture's alpha is over_color, or if its alpha is ignored and its wrap is `once`, the
   /// picture covers `color`. Otherwise, the picture is multiplied by `color`.
   Paint paint;
@@ -81,8 +77,7 @@ struct Appearance {
 /// A group of triangles of a surface with its own appearance: a panel of a garment, a material of a character's file.
 struct SurfacePart {
   std::string name;
-  Appearance appearance;  ///< its colours and picture are drawn; all other properties are those of
-                          ///< the surface
+  Appearance appearance;  ///< its colours and picture are drawn; all other properties are those of the surface
 };
 
 /// The data of an object that do not change in a run. All snapshots share them.
@@ -91,13 +86,10 @@ struct Surface {
   ObjectKind kind = ObjectKind::cloth;
   bool visible = true;
   bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon; computed cameras ignore it
-  std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise seen from the front; of a
-                                                ///< rope: see is_chain()
-  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if nothing collides with it;
-                                                ///< empty: all 0
+  std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise seen from the front; of a rope: see is_chain()
+  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if nothing collides with it; empty: all 0
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if they are quads; else empty
-  std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp)
-                                                ///< [m]; may be empty
+  std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; may be empty
   /// Bounding box in world space [m]: of a body over its prescribed motion from time 0 to the end
   /// of the scene, or of a cloth at its start. Absent: unknown.
   std::optional<Box3> run_bounds;
@@ -106,8 +98,7 @@ struct Surface {
   double crease_angle = 30;
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles have `appearance`
-  std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into `parts`; empty if there
-                                               ///< are no parts
+  std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into `parts`; empty if there are no parts
   /// Per triangle: (u, v) of its corners for Paint::texture_from_uv, such as metres along the grain
   /// of a panel. Empty: pictures are mapped by `uv`.
   std::vector<std::array<Vec2, 3>> paint_uv;
@@ -137,8 +128,7 @@ struct Camera {
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
   double field_of_view = 35;  ///< vertical [degrees]; 0: computed (only if `kind` is track)
   double aperture = 0;        ///< f-number for a film 24 mm high; 0: everything is sharp
-  double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0:
-                              ///< distance of the target
+  double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: distance of the target
 
   /// placed: the camera has the values above. Cameras of the other kinds are computed from all
   /// frames of a run, so that the subjects are in view. whole: stands still or, if `azimuth`
@@ -153,8 +143,7 @@ struct Camera {
   /// Horizontal direction from the subjects to the camera [degrees]: 0 is the direction −y if z is
   /// up, or +z if y is up; 90 is +x.
   double azimuth = 33;
-  double elevation = 17;   ///< angle of the direction from the subjects to the camera above the
-                           ///< horizontal [degrees]
+  double elevation = 17;   ///< angle of the direction from the subjects to the camera above the horizontal [degrees]
   double margin = 0.14;    ///< free space around the subjects, as a fraction of half the picture's width or height
   double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
 };
@@ -174,8 +163,7 @@ struct Light {
   double cone_angle = 45;          ///< full opening [degrees] (spot)
   Vec3 color{1, 1, 1};             ///< sRGB
   double intensity = 1;  ///< at 1, a white matte surface that faces the light (spot: at its target) appears white
-  double softness = 2;   ///< angular width of the source, seen from the scene [degrees]; a larger
-                         ///< one blurs shadows more
+  double softness = 2;  ///< angular width of the source, seen from the scene [degrees]; a larger one blurs shadows more
 };
 
 /// Settings of all pictures of a run: environment, exposure and display of heat.
@@ -186,18 +174,15 @@ struct Stage {
   Vec3 up{0, 0, 1};
   Look look = Look::studio;
   // If one of the next three values is absent, `look` determines it.
-  std::optional<Vec3>
-      sky_color;  ///< colour of the light from above, sRGB; without a floor, also tints the
-                  ///< backdrop if that of the look is grey
+  std::optional<Vec3> sky_color;     ///< colour of the light from above, sRGB; without a floor, also tints the
+                                     ///< backdrop if that of the look is grey
   std::optional<Vec3> ground_color;  ///< sRGB; light reflected from below
   /// Fraction of the light that comes from the surroundings, 0 to 1; the rest comes from the lights.
   std::optional<double> sky_intensity;
   double exposure = 0;     ///< exposure compensation; positive: brighter [stops]
-  double motion_blur = 0;  ///< shutter angle [degrees]; 360 is the time of a frame; 0: everything
-                           ///< is sharp
+  double motion_blur = 0;  ///< shutter angle [degrees]; 360 is the time of a frame; 0: everything is sharp
   Heat heat = Heat::none;
-  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each
-                        ///< frame
+  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each frame
 };
 
 /// One frame, never changed after it is made.

@@ -26,10 +26,12 @@ struct SceneSimulation::Start {
       return {scene, std::move(environment), std::move(simulation)};
     } catch (const Error& error) {
       if (error.code() != ExitCode::scene_invalid) throw;
-      const auto growing = environment::with_growing_wearers(posed ? *posed : scene, environment);
+      std::vector<std::string> notes;
+      const auto growing = environment::with_growing_wearers(posed ? *posed : scene, environment, notes);
       if (!growing) throw;
       environment::Environment grown(*growing);
-      Simulation simulation(grown.model);
+      Simulation simulation(grown.model);  // throws if other cloth than that of the wearers is refused
+      for (const std::string& note : notes) log::note(note);
       return {scene, std::move(grown), std::move(simulation)};
     }
   }

@@ -14,8 +14,7 @@ namespace weft::scene {
 struct CameraKey {
   double time = 0;                          ///< [s]
   Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
-  double field_of_view = 35;                ///< vertical [degrees]; 0 (kind `track` only): as wide
-                                            ///< as the subject needs
+  double field_of_view = 35;                ///< vertical [degrees]; 0 (kind `track` only): as wide as the subject needs
   double focal_length = 0;                  ///< [mm]; replaces the field of view; 0: none
 };
 
@@ -43,16 +42,13 @@ struct Camera {
   /// infinite planes; for the other kinds, all characters; without characters, all cloths; without
   /// both, as for `whole`.
   std::vector<std::string> subjects = {};
-  double azimuth = 33;     ///< of the direction from the subject to the camera [degrees]; with z
-                           ///< up, 0: −y, 90: +x
+  double azimuth = 33;     ///< of the direction from the subject to the camera [degrees]; with z up, 0: −y, 90: +x
   double elevation = 17;   ///< of the direction from the subject to the camera [degrees]
   double orbit = 0;        ///< rate at which the azimuth grows [degrees/s]
   double margin = 0.14;    ///< fraction of each half of the picture that stays free around the subject
-  double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the motion of the
-                           ///< camera [s]
+  double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the motion of the camera [s]
   double aperture = 0;     ///< f-number, for the height of the sensor (24 mm without focal length); 0: all is sharp
-  double focus = 0;        ///< focus distance [m]; 0: distance of the target; required by kind
-                           ///< `file` with an aperture
+  double focus = 0;        ///< focus distance [m]; 0: distance of the target; required by kind `file` with an aperture
   std::filesystem::path file = {};  ///< kind `file`: file with position and lens over time
   std::string object = {};          ///< node of the camera in the file; empty: the only camera
   double start = 0;                 ///< time of the scene at time 0 of the file [s]

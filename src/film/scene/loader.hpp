@@ -18,8 +18,7 @@ struct Mistake {
   /// Counted from 1. If the key is not in the file: of the innermost table around it that is, else
   /// 1:1. 0:0 if the mistake has no place in the file.
   int line = 0, column = 0;
-  std::string key;            ///< such as cloth.band.material.thickness; empty: the scene as a
-                              ///< whole
+  std::string key;            ///< such as cloth.band.material.thickness; empty: the scene as a whole
   std::string text;           ///< such as "expected > 0 m, got -0.001"
   std::string override_text;  ///< "--set key=value" if an override caused it; else empty
 };

@@ -57,8 +57,7 @@ struct Rule {
   std::string documentation;
 
   std::string unit;                     ///< unit of its numbers; empty: none
-  Range range;                          ///< bounds of its numbers; list, keys: `high` bounds the
-                                        ///< number of entries
+  Range range;                          ///< bounds of its numbers; list, keys: `high` bounds the number of entries
   bool whole = false;                   ///< integers only
   std::vector<std::string> components;  ///< names of the numbers of an array; empty: a single number
   bool single_fills_all = false;        ///< one number may replace the whole array

@@ -73,13 +73,11 @@ struct Time {
 /// Colours and picture of an object or of a panel of a cloth. On cloth, the picture is aligned with weft and warp.
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
-  std::optional<Vec3> back_color;              ///< back of cloth, sRGB; absent: that of the front,
-                                               ///< paler
+  std::optional<Vec3> back_color;              ///< back of cloth, sRGB; absent: that of the front, paler
   std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute path
   double image_width = 0.2;                    ///< width of one tile along weft [m]; the height keeps the proportions
   Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
-  double image_rotation = 0;                   ///< rotation about that corner, counter-clockwise
-                                               ///< [degrees]
+  double image_rotation = 0;                   ///< rotation about that corner, counter-clockwise [degrees]
   bool image_repeat = true;                    ///< false: one tile, with `color` around it
   bool cutout = false;                         ///< true: transparent parts are holes; false: they show `color`
 };
@@ -99,22 +97,18 @@ struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< colours of panels that differ from those of the cloth
   bool as_file = true;             ///< characters: use the colours and pictures of their file, if any
   double roughness = 0.6;
-  std::optional<double> gloss;  ///< cloth: gloss of the threads (absent: that of the fabric);
-                                ///< obstacles: strength of a clear coat (absent: 0)
+  std::optional<double> gloss;        ///< cloth: gloss of the threads (absent: that of the fabric);
+                                      ///< obstacles: strength of a clear coat (absent: 0)
   std::optional<double> fuzz, sheer;  ///< cloth only, see Finish; absent: those of the fabric
   double metal = 0;                   ///< obstacles only: 0 no metal, 1 metal, which reflects in its own colour
-  std::optional<double> tile_width;   ///< obstacles only: width of one tile [m]; absent: one tile
-                                      ///< covers the shape
+  std::optional<double> tile_width;   ///< obstacles only: width of one tile [m]; absent: one tile covers the shape
   double warp_fraction = 0.5;         ///< of the fabric: fraction of warp among the threads on top
   Threads threads = Threads::plain;   ///< of the fabric: pattern of the drawn threads
-  double cloth_thickness = 0;         ///< thickness of the fabric, not its contact thickness;
-                                      ///< ropes: diameter [m]
-  double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: no
-                                      ///< threads are drawn
-  std::optional<double> hem;          ///< cloth only: width of drawn hems [m]; 0: none; absent:
-                                      ///< depends on fabric and shape
-  bool checker = false;               ///< infinite planes only: faint grid of 0.5 m tiles
-  bool strands = true;                ///< ropes only: drawn with twisted strands
+  double cloth_thickness = 0;         ///< thickness of the fabric, not its contact thickness; ropes: diameter [m]
+  double thread_spacing = 0.0006;     ///< cloth only: spacing of the drawn threads [m]; 0: no threads are drawn
+  std::optional<double> hem;  ///< cloth only: width of drawn hems [m]; 0: none; absent: depends on fabric and shape
+  bool checker = false;       ///< infinite planes only: faint grid of 0.5 m tiles
+  bool strands = true;        ///< ropes only: drawn with twisted strands
   bool visible = true;
 };
 
@@ -122,8 +116,7 @@ struct Look : Paint {
 /// rotate about their centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
-  Pose pose;        ///< its position: the displacement of the centroid or, if `in_world`, the
-                    ///< centroid
+  Pose pose;        ///< its position: the displacement of the centroid or, if `in_world`, the centroid
   bool in_world = false;
 };
 
@@ -140,13 +133,10 @@ enum class VertexColor { none, red, green, blue, brightness };
 /// the strength of the effect on the particle. If several of them are given, the fractions are
 /// multiplied.
 struct ClothPart {
-  std::string panel;  ///< pattern: only this panel, to which low, high and mask then refer; empty:
-                      ///< all panels
+  std::string panel;  ///< pattern: only this panel, to which low, high and mask then refer; empty: all panels
   Vec2 low{0, 0}, high{1, 1};
-  std::optional<Vec2> at = {};                   ///< rope: both ends of the part, in fractions of
-                                                 ///< its length; replaces low and high
-  std::string edge;                              ///< pattern: only this edge, as "panel.edge";
-                                                 ///< empty: no such limit
+  std::optional<Vec2> at = {};  ///< rope: both ends of the part, in fractions of its length; replaces low and high
+  std::string edge;             ///< pattern: only this edge, as "panel.edge"; empty: no such limit
   std::optional<std::filesystem::path> mask;     ///< picture whose grey values are fractions; absolute path
   VertexColor vertex_color = VertexColor::none;  ///< mesh: colour channel that gives fractions
   std::string vertex_group;  ///< mesh: vertex group or bone whose weights are fractions; empty: none
@@ -191,14 +181,11 @@ struct Weight : ClothPart {
 /// Springs from particles of a cloth to points of another cloth or body, such as buttons, pegs and
 /// tacks.
 struct Attachment : ClothPart {
-  std::string name, cloth, to;          ///< `to`: the other cloth, rope or body
-  double stiffness = 10000;             ///< of the spring of a particle with fraction 1 [N/m]
-  std::optional<double> length;         ///< rest length of the springs [m]; absent: the distance of
-                                        ///< their ends at `begin`
-  double begin = -1e5, release = -1;    ///< times between which the springs act [s]; negative
-                                        ///< release: until the end
-  std::optional<double> breaking_load;  ///< sum of the spring forces above which all springs break
-                                        ///< [N]; absent: never
+  std::string name, cloth, to;        ///< `to`: the other cloth, rope or body
+  double stiffness = 10000;           ///< of the spring of a particle with fraction 1 [N/m]
+  std::optional<double> length;       ///< rest length of the springs [m]; absent: the distance of their ends at `begin`
+  double begin = -1e5, release = -1;  ///< times between which the springs act [s]; negative release: until the end
+  std::optional<double> breaking_load;  ///< sum of the spring forces above which all springs break [N]; absent: never
 };
 
 /// What the start does if the cloth touches or crosses surfaces: it refuses the scene (as_given),
@@ -216,32 +203,27 @@ struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< rectangles: size along weft and warp [m]
-  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed_triangles have one more
-                                                 ///< per cell
+  int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed_triangles have one more per cell
   Vec2 grading{1, 1};                            ///< rectangles: last spacing of particles / first spacing
   std::filesystem::path file;                    ///< mesh or sewing pattern; absolute path
   double scale = 1;                              ///< mesh, pattern: factor on all lengths of the file
   FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
   std::string object;                            ///< mesh: name of the object in the file; empty: all objects
   ClothRest rest = ClothRest::automatic;         ///< mesh: source of the rest shape
-  std::optional<Vec2> uv_scale;                  ///< mesh: metres per unit of the UVs; absent:
-                                                 ///< fitted to the mesh
+  std::optional<Vec2> uv_scale;                  ///< mesh: metres per unit of the UVs; absent: fitted to the mesh
   double edge_length = 0.02;                     ///< pattern: edge length of its mesh [m]
-  std::string wearer;                            ///< pattern: character that wears it; empty: the
-                                                 ///< only character
+  std::string wearer;                            ///< pattern: character that wears it; empty: the only character
   bool fit = false;                              ///< pattern: scale it to the wearer's measures
-  double sewing = 1;         ///< mesh, pattern: time in which the rest shape changes from the start
-                             ///< shape to the flat panels [s]
-  int line = 0, column = 0;  ///< place in the scene file, for error messages
-  Pose pose;                 ///< of the middle of a rectangle (weft along x, warp along y), or of
-                             ///< the origin of a file
-  Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
-  Vec3 spin{0, 0, 0};        ///< angular velocity at the start, about the centre of mass [degrees/s]
-  Vec2 start_scale{1, 1};    ///< lengths at the start / lengths at rest, along weft and warp
+  double sewing = 1;                             ///< mesh, pattern: time in which the rest shape changes from the start
+                                                 ///< shape to the flat panels [s]
+  int line = 0, column = 0;                      ///< place in the scene file, for error messages
+  Pose pose;               ///< of the middle of a rectangle (weft along x, warp along y), or of the origin of a file
+  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
+  Vec3 spin{0, 0, 0};      ///< angular velocity at the start, about the centre of mass [degrees/s]
+  Vec2 start_scale{1, 1};  ///< lengths at the start / lengths at rest, along weft and warp
   std::optional<ClothStart> start;  ///< absent: see starts_untangled()
   std::vector<std::string> over;    ///< names of cloths directly below this one
-  double start_noise = 0;           ///< maximum random displacement of a particle at the start,
-                                    ///< along each axis [m]
+  double start_noise = 0;           ///< maximum random displacement of a particle at the start, along each axis [m]
   Material material;
   Pressure pressure;
   Look look;
@@ -269,23 +251,18 @@ struct Rope {
   std::string name;
   std::vector<Vec3> points;      ///< points through which the rope passes at the start [m]
   std::optional<Vec3> from, to;  ///< ends of a rope without points [m]
-  bool smooth = false;           ///< true: a smooth curve through the points; false: straight
-                                 ///< between them
+  bool smooth = false;           ///< true: a smooth curve through the points; false: straight between them
   bool closed = false;           ///< true: the last point is joined to the first
-  std::optional<double> length;  ///< rest length [m]; absent: that of the first key or, without
-                                 ///< keys, of the start path
+  std::optional<double> length;  ///< rest length [m]; absent: that of the first key or, without keys, of the start path
   Interpolation interpolation = Interpolation::cubic;  ///< between `keys`
-  std::vector<RopeKey> keys;                           ///< key frames of the rest length; empty: it
-                                                       ///< is constant
-  std::optional<int> segments;                         ///< number of pieces; absent: depends on
-                                                       ///< length and diameter
+  std::vector<RopeKey> keys;                           ///< key frames of the rest length; empty: it is constant
+  std::optional<int> segments;                         ///< number of pieces; absent: depends on length and diameter
   double diameter = 0.008;                             ///< contact diameter [m]
   int material = 0;                                    ///< index into rope_materials()
-  std::optional<double> mass, stretch, bend;  ///< mass per length [kg/m], EA [N], EI [N·m²];
-                                              ///< absent: those of the material
-  double damping = 0.01;                      ///< viscosity of stretch and bending / their stiffness [s]
-  double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both
-                           ///< coefficients
+  std::optional<double> mass, stretch, bend;           ///< mass per length [kg/m], EA [N], EI [N·m²];
+                                                       ///< absent: those of the material
+  double damping = 0.01;                               ///< viscosity of stretch and bending / their stiffness [s]
+  double friction = 0.3;   ///< Coulomb coefficient; a contact uses the geometric mean of both coefficients
   double drag = 1.1;       ///< drag coefficient of a cylinder, for motion across the rope
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
   Look look;
@@ -298,13 +275,10 @@ struct Obstacle {
   Shape shape;
   int segments = 48;  ///< round shapes: number of faces around the axis
   Pose pose;
-  PoseTrack motion;        ///< key frames of the pose, in place of `pose`; empty: the obstacle
-                           ///< rests at `pose`
+  PoseTrack motion;        ///< key frames of the pose, in place of `pose`; empty: the obstacle rests at `pose`
   double mass = 0;         ///< [kg]; 0: follows from `density`
-  double density = 0;      ///< [kg/m³]; 0: follows from `mass`; if both are 0, forces do not move
-                           ///< the obstacle
-  Vec3 velocity{0, 0, 0};  ///< at the start or at `release`, if forces move it and it has at most
-                           ///< one key frame [m/s]
+  double density = 0;      ///< [kg/m³]; 0: follows from `mass`; if both are 0, forces do not move the obstacle
+  Vec3 velocity{0, 0, 0};  ///< at the start or at `release`, if forces move it and it has at most one key frame [m/s]
   Vec3 spin{0, 0, 0};      ///< likewise: angular velocity about the centre of mass [degrees/s]
   /// If forces move the obstacle: time from which they do [s]; until then, it rests or follows its
   /// key frames. Absent: forces always do.
@@ -328,8 +302,7 @@ enum class Stance { first, rest };
 /// Names of one joint in two files. Needed only if the program does not find the joint in a file.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
-  std::optional<std::string> body;    ///< its name in the file of the character; absent: found by
-                                      ///< the program
+  std::optional<std::string> body;    ///< its name in the file of the character; absent: found by the program
   std::optional<std::string> motion;  ///< its name in the file of the motion; absent: likewise
 };
 
@@ -351,10 +324,8 @@ struct SkeletonMotion {
   Stance stance = Stance::first;
   /// Angle between the straight arms and the downward direction, in `stance` [degrees]; absent: as in the pose.
   std::optional<double> stance_arms;
-  bool loop = false;     ///< whether the clip is repeated; each round starts where the one before
-                         ///< ended
-  double crossfade = 0;  ///< clip time at the end of a round in which it is blended into the next
-                         ///< one [s]; 0: none
+  bool loop = false;     ///< whether the clip is repeated; each round starts where the one before ended
+  double crossfade = 0;  ///< clip time at the end of a round in which it is blended into the next one [s]; 0: none
 };
 
 /// A character from a file, with skeleton and animations.
@@ -374,8 +345,7 @@ struct Mannequin : SkeletonMotion {
   double walk = 0;            ///< walked distance [m]; 0: it stands
   double pace = 1.2;          ///< steady walking speed [m/s]
   bool turn_back = false;     ///< true: turns around at the end of the walk and walks back
-  double arms_out = 13;       ///< angle of the upper arms from the vertical while it walks
-                              ///< [degrees]
+  double arms_out = 13;       ///< angle of the upper arms from the vertical while it walks [degrees]
 };
 
 /// A body whose key frames are a sequence of mesh files.
@@ -394,8 +364,7 @@ struct BodyPart {
   std::optional<std::string> material;  ///< of the character's file
   bool collide = true;
   std::optional<double> friction;  ///< absent: that of the character
-  double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact
-                                   ///< distance
+  double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact distance
 };
 
 /// A body with prescribed motion. The program converts this motion to key frames of the body's
@@ -406,8 +375,7 @@ struct Character {
   std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, else 1
   FileUp up = FileUp::as_file;
   Pose pose;            ///< of the file's origin, or of the floor below the mannequin
-  double dressing = 0;  ///< time for which it stands still to be dressed, from the start of the
-                        ///< preroll on [s]
+  double dressing = 0;  ///< time for which it stands still to be dressed, from the start of the preroll on [s]
   /// Time after `dressing` [s] in which the clip accelerates to `speed` and the pose changes from `stance` to the clip.
   double blend = 0;
   double grow = 0;             ///< time at the start of `dressing` in which it grows from its bones to its size [s]
@@ -446,8 +414,7 @@ struct Light {
   double cone_angle = 45;  ///< full opening angle [degrees]
   Vec3 color{1, 1, 1};
   double softness = 2;         ///< angular width of the source as seen from the scene [degrees]
-  std::vector<LightKey> keys;  ///< key frames, at least one; with only one, the light does not
-                               ///< change
+  std::vector<LightKey> keys;  ///< key frames, at least one; with only one, the light does not change
   Interpolation interpolation = Interpolation::cubic;
 };
 
@@ -455,16 +422,14 @@ enum class StageLook { studio, stage, daylight, clay, wire, strain };
 
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;  ///< name; empty: the first camera or, if there is none, one that the program
-                       ///< places
+  std::string camera;  ///< name; empty: the first camera or, if there is none, one that the program places
   StageLook look = StageLook::studio;
   std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
   std::optional<double> sky_intensity;
   double exposure = 0;                     ///< exposure compensation [stops]
   double motion_blur = 0;                  ///< shutter angle [degrees]
   HeatQuantity heat = HeatQuantity::none;  ///< quantity that the colours of cloth show
-  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each
-                        ///< frame
+  double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each frame
 };
 
 struct Scene {

@@ -29,7 +29,7 @@ struct Physics {
   Vec3 wind{0, 0, 0};         ///< mean velocity of the air [m/s]
   Gusts gusts;
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
-  std::vector<PhysicsKey> keys;  ///< if any, they replace `gravity` and `wind`
+  std::vector<PhysicsKey> keys;                                        ///< if any, they replace `gravity` and `wind`
 
   /// Largest magnitude of gravity of all keys; without keys, the magnitude of `gravity` [m/s²].
   double largest_gravity() const {
@@ -41,8 +41,7 @@ struct Physics {
 
 struct FanKey {
   double time = 0;                             ///< [s], strictly increasing
-  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; axis of the cone,
-                                               ///< of any length but 0
+  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; axis of the cone, of any length but 0
   double speed = 5;                            ///< speed of the air at the centre of the disc [m/s]
 };
 
@@ -53,8 +52,7 @@ struct Fan {
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
   double radius = 0.25;                                                ///< of the outlet disc [m]
   double angle = 24;                                                   ///< full opening angle of the cone [degrees]
-  double falloff = 1;  ///< n: the speed on the axis is proportional to 1 / (distance from the
-                       ///< apex)ⁿ
+  double falloff = 1;  ///< n: the speed on the axis is proportional to 1 / (distance from the apex)ⁿ
 };
 
 }  // namespace weft::model

@@ -38,14 +38,11 @@ struct WeightedParticle {
 
 /// Particles that are held in place, moved by keys, or moved with a body.
 struct Pin {
-  std::vector<WeightedParticle> particles;  ///< first those in the pin's region, then those in its
-                                            ///< fade
-  Vec3 middle{0, 0, 0};                     ///< mean start position of the particles in the region
-                                            ///< [m]
+  std::vector<WeightedParticle> particles;  ///< first those in the pin's region, then those in its fade
+  Vec3 middle{0, 0, 0};                     ///< mean start position of the particles in the region [m]
   motion::PoseTrack motion;                 ///< without `body`: motion of `middle` in the world;
                                             ///< without keys, the particles stay in place
-  std::optional<std::size_t> body;          ///< number of the body that the pin follows; absent:
-                                            ///< none
+  std::optional<std::size_t> body;          ///< number of the body that the pin follows; absent: none
   /// If the key frames of `body` include a point for each particle of the pin: number of the first
   /// particle's point, for Model::vertex(); the points of the other particles follow in order.
   /// Absent: if `body` deforms, each particle follows the nearest triangle of `body`; if `body` is
@@ -78,18 +75,15 @@ struct Cloth {
   double spacing = 0;
   Material material;
   std::optional<Rope> rope;
-  std::vector<Vec3> start;  ///< start positions of its particles [m]
-  Vec3 velocity{0, 0, 0};   ///< of all particles at the start [m/s]
-  Vec3 spin{0, 0, 0};       ///< angular velocity at the start, about the centre of mass; its
-                            ///< velocities are added to `velocity` [rad/s]
-  double put_on = 0;        ///< time at which the cloth is put on, counted from Model::start_time()
-                            ///< [s]
-  double sewing = 0;        ///< if `sheet.sewn`: time, from `put_on` on, in which the rest shape
-                            ///< changes from the start shape to the flat panels [s]
-  std::vector<std::string> over;  ///< names of all cloths over which this one is worn, directly or
-                                  ///< through others
-  bool untangle = false;          ///< whether to move the cloth off surfaces that it touches or
-                                  ///< crosses at the start
+  std::vector<Vec3> start;        ///< start positions of its particles [m]
+  Vec3 velocity{0, 0, 0};         ///< of all particles at the start [m/s]
+  Vec3 spin{0, 0, 0};             ///< angular velocity at the start, about the centre of mass; its
+                                  ///< velocities are added to `velocity` [rad/s]
+  double put_on = 0;              ///< time at which the cloth is put on, counted from Model::start_time() [s]
+  double sewing = 0;              ///< if `sheet.sewn`: time, from `put_on` on, in which the rest shape
+                                  ///< changes from the start shape to the flat panels [s]
+  std::vector<std::string> over;  ///< names of all cloths over which this one is worn, directly or through others
+  bool untangle = false;          ///< whether to move the cloth off surfaces that it touches or crosses at the start
   Pressure pressure;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
@@ -105,8 +99,8 @@ struct Dynamics {
   double mass = 0;                 ///< [kg]
   Vec3 velocity{0, 0, 0};          ///< added at `release` to the velocity that its keys give [m/s]
   Vec3 angular_velocity{0, 0, 0};  ///< likewise, about the centre of mass [rad/s]
-  double release = 0;  ///< time from which forces move the body, until then `mover` does [s];
-                       ///< minus infinity: forces always do
+  double release = 0;              ///< time from which forces move the body, until then `mover` does [s];
+                                   ///< minus infinity: forces always do
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
@@ -143,13 +137,11 @@ struct Body {
   double friction = 0.3;
   std::vector<Patch> patches;
   std::shared_ptr<const Dynamics> dynamics;  ///< if forces move the body; else null
-  std::vector<Index> limbs;  ///< deforming bodies: number of the limb of each vertex; limbs may
-                             ///< intersect
+  std::vector<Index> limbs;  ///< deforming bodies: number of the limb of each vertex; limbs may intersect
   /// If only some parts of the mesh collide: their triangles, and triangles that close the cuts
   /// between them and the other parts. Empty: all triangles collide.
   std::vector<mesh::Triangle> colliding;
-  std::string advice;  ///< appended to the error message if the body touches a surface at the
-                       ///< start; may be empty
+  std::string advice;  ///< appended to the error message if the body touches a surface at the start; may be empty
 
   bool deforms() const { return std::holds_alternative<motion::KeyFrames>(*mover); }
   std::span<const mesh::Triangle> colliding_triangles() const {
@@ -163,22 +155,18 @@ struct Attachment {
   std::string name;
   std::size_t cloth = 0;  ///< number of the cloth whose particles are attached
   std::vector<WeightedParticle> particles;
-  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; exactly one of both is
-                                                 ///< given
+  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; exactly one of both is given
   double stiffness = 10000;                      ///< stiffness of the spring of a particle with the fraction 1 [N/m]
   std::optional<double> length;                  ///< rest length of the springs [m]; absent: of
                                                  ///< each spring, the distance of its ends at
                                                  ///< `begin`
-  double begin = -1e5, release = -1;             ///< times between which the springs act [s];
-                                                 ///< negative release: until the end
-  std::optional<double> breaking_load;           ///< sum of the spring forces above which all
-                                                 ///< springs break [N]; absent: never
+  double begin = -1e5, release = -1;    ///< times between which the springs act [s]; negative release: until the end
+  std::optional<double> breaking_load;  ///< sum of the spring forces above which all springs break [N]; absent: never
 };
 
 /// Cloths that are put on at the same time, over the cloths of the layers before.
 struct Layer {
-  int first_frame = 0;              ///< frame at which the cloths are put on; negative: in the
-                                    ///< preroll
+  int first_frame = 0;              ///< frame at which the cloths are put on; negative: in the preroll
   std::vector<std::size_t> cloths;  ///< numbers of the cloths of this layer
   std::vector<std::size_t> put_on;  ///< numbers of the cloths of this and all earlier layers, ascending
 };
@@ -195,12 +183,9 @@ struct Model {
   std::vector<Cloth> cloths;
   std::vector<Body> bodies;
   std::vector<Attachment> attachments;
-  std::vector<Layer> layers;                      ///< all cloths, from the skin outward; empty: one
-                                                  ///< layer
-  std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start;
-                                                  ///< for the error message
-  std::string untangle_advice;  ///< appended to `start_advice` if one of the surfaces is cloth; may
-                                ///< be empty
+  std::vector<Layer> layers;                      ///< all cloths, from the skin outward; empty: one layer
+  std::string start_advice = "move one of them";  ///< what to do if surfaces touch at the start; for the error message
+  std::string untangle_advice;  ///< appended to `start_advice` if one of the surfaces is cloth; may be empty
 
   /// Time at which the run starts: that of frame 0, or the start of the preroll [s].
   double start_time() const { return -time.preroll_frames / time.fps; }

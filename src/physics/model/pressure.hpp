@@ -11,14 +11,13 @@ namespace weft::model {
 /// the volume, the pressure follows at constant temperature.
 enum class PressureControl {
   gauge,  ///< pressure above that of the outside air [Pa]
-  air,    ///< air pumped in after the cloth was closed: its volume at outside pressure [m³];
-          ///< negative: pumped out
+  air,    ///< air pumped in after the cloth was closed: its volume at outside pressure [m³]; negative: pumped out
   fill,   ///< all air inside: its volume at outside pressure, relative to the volume that the cloth
           ///< enclosed when it was closed [1]
 };
 
 struct PressureKey {
-  double time = 0;  ///< [s], strictly increasing
+  double time = 0;   ///< [s], strictly increasing
   double value = 0;  ///< in the unit of Pressure::control
 };
 

@@ -12,9 +12,8 @@ namespace weft::model {
 inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
 
 struct Time {
-  double fps = 25;                    ///< frames per second; frame k is at the time k / fps
-  int preroll_frames = 0;             ///< number of frames before frame 0, with which the run
-                                      ///< begins
+  double fps = 25;         ///< frames per second; frame k is at the time k / fps
+  int preroll_frames = 0;  ///< number of frames before frame 0, with which the run begins
   /// Maximum time step [s]: a frame is divided into the fewest equal steps that are not longer.
   /// Exception: with implicit Euler, a frame in which everything rests may be one step.
   double step = 0.01;

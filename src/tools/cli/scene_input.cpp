@@ -39,6 +39,11 @@ scene::Scene load_scene(const SceneOptions& options) {
   scene::LoadResult loaded = scene::load(options.scene, overrides);
   if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
   if (!options.camera.empty()) check_camera(camera_names(loaded.scene), options.camera);
+  // The field of view of a lens depends on the sides of the picture. The hash of the scene does not contain --size.
+  if (options.size) {
+    loaded.scene.render.width = options.size->width;
+    loaded.scene.render.height = options.size->height;
+  }
   return std::move(loaded.scene);
 }
 

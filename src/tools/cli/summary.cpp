@@ -42,8 +42,9 @@ Row stage_row(const char* name, const StageTime& time, int frames) {
 
 std::string times_table(const RunReport& report) {
   const StageTotals totals = total_times(report.frames);
-  // Frame 0 is the given start, which is not simulated.
-  const int simulated = std::max(0, static_cast<int>(report.frames.size()) - 1);
+  // Frame 0 is the given start, which is not simulated. Frames read from a cache may begin later.
+  const auto simulated = static_cast<int>(
+      std::ranges::count_if(report.frames, [](const FrameRecord& record) { return record.report.frame > 0; }));
   std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
                         stage_row("set up", report.setup, 0),
                         stage_row(report.replayed ? "simulated before" : "simulate", totals.simulate, simulated),

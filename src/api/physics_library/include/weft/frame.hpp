@@ -50,33 +50,26 @@ struct Report {
   double wall_s = 0, cpu_s = 0;  ///< time of simulating this frame: wall time, and CPU time of the
                                  ///< calling thread alone [s]
   int steps = 0;                 ///< number of accepted time steps
-  int rejected_steps = 0;        ///< number of time steps that were rejected and repeated as
-                                 ///< shorter ones
+  int rejected_steps = 0;        ///< number of time steps that were rejected and repeated as shorter ones
   int newton_iterations = 0;
   int linear_iterations = 0;    ///< iterations of conjugate gradients
   int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, in the last step
-  int constraints = 0;          ///< number of contacts that push plus number of held particles, in
-                                ///< the last step
+  int constraints = 0;          ///< number of contacts that push plus number of held particles, in the last step
   double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
-  double max_strain = 0;        ///< largest |length / rest length - 1| of threads at the end of any
-                                ///< step
-  double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch` at the
-                                ///< end of any step
+  double max_strain = 0;        ///< largest |length / rest length - 1| of threads at the end of any step
+  double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch` at the end of any step
   double kinetic_energy = 0;    ///< [J]
   double potential_energy = 0;  ///< of gravity, 0 at the origin [J]
-  double elastic_energy = 0;    ///< of stretch, shear, bending, seams, attachments and bodies with
-                                ///< a mass [J]
+  double elastic_energy = 0;    ///< of stretch, shear, bending, seams, attachments and bodies with a mass [J]
   double air_energy = 0;        ///< of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
-  double error_estimate = 0;    ///< sum, over the steps, of the estimated local errors of positions
-                                ///< [m]
-  double solver_error = 0;      ///< sum, over the steps, of the estimated errors of positions that
-                                ///< the solver leaves [m]
+  double error_estimate = 0;    ///< sum, over the steps, of the estimated local errors of positions [m]
+  double solver_error = 0;  ///< sum, over the steps, of the estimated errors of positions that the solver leaves [m]
   /// Largest number, in any step, of pinched triangles of cloth: obstacles leave them no space. A
   /// triangle that several limbs of a character pinch counts once per limb.
   int pinched_pairs = 0;
-  int lagging_particles = 0;  ///< largest number, in any step, of pinned particles that an obstacle
-                              ///< or cloth keeps from their targets
+  int lagging_particles = 0;              ///< largest number, in any step, of pinned particles that an obstacle
+                                          ///< or cloth keeps from their targets
   std::vector<EnclosedAir> enclosed_air;  ///< one per cloth with pressure
   std::vector<std::string> warnings;
 };
@@ -86,8 +79,7 @@ class WEFT_API Frame {
  public:
   int number() const;            ///< counted from 0
   double time() const;           ///< [s]
-  const Report& report() const;  ///< all zero and empty in the frame at which a simulation was
-                                 ///< restored
+  const Report& report() const;  ///< all zero and empty in the frame at which a simulation was restored
   /// Cloths and ropes, then obstacles, then characters; each kind in the order of the model or scene.
   std::span<const Object> objects() const;
   /// The object with this name. If there is none, throws std::out_of_range with the names of all objects.

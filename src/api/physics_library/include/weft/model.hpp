@@ -16,16 +16,15 @@ struct Mesh {
 
 /// A fabric as a continuum: its values do not depend on the mesh. The defaults are those of cotton.
 struct Material {
-  double density = 0.15;       ///< [kg/m²]
-  double stretch_weft = 800;   ///< stiffness along weft [N/m]
-  double stretch_warp = 2100;  ///< stiffness along warp [N/m]
-  double shear = 130;          ///< twice the shear modulus of linear elasticity [N/m]
-  double bend = 1e-5;          ///< bending stiffness [N·m]
-  double max_stretch = 0.1;    ///< relative extension at which threads lock (stiffen); 0: never
-  double max_shear = 0;        ///< deviation of the angle between weft and warp from 90° at which
-                               ///< threads lock [degrees]; 0: never
-  double stretch_viscosity = 0;  ///< force per width and strain rate, along weft and along warp
-                                 ///< [N·s/m]
+  double density = 0.15;         ///< [kg/m²]
+  double stretch_weft = 800;     ///< stiffness along weft [N/m]
+  double stretch_warp = 2100;    ///< stiffness along warp [N/m]
+  double shear = 130;            ///< twice the shear modulus of linear elasticity [N/m]
+  double bend = 1e-5;            ///< bending stiffness [N·m]
+  double max_stretch = 0.1;      ///< relative extension at which threads lock (stiffen); 0: never
+  double max_shear = 0;          ///< deviation of the angle between weft and warp from 90° at which
+                                 ///< threads lock [degrees]; 0: never
+  double stretch_viscosity = 0;  ///< force per width and strain rate, along weft and along warp [N·s/m]
   double shear_viscosity = 0;    ///< force per width and rate of shear [N·s/m]
   double bend_viscosity = 1e-6;  ///< moment per width and rate of curvature [N·m·s]
   double bend_friction = 5e-4;   ///< moment per width against a change of curvature [N]
@@ -33,8 +32,7 @@ struct Material {
                                  ///< other [m]; at most a quarter of the particle spacing has an
                                  ///< effect
   double friction = 0.3;         ///< Coulomb coefficient; a contact uses the geometric mean of both coefficients
-  double drag = 1;               ///< drag coefficient, for motion normal to the cloth; 0: no air
-                                 ///< resistance
+  double drag = 1;               ///< drag coefficient, for motion normal to the cloth; 0: no air resistance
 };
 
 /// A sheet of triangles. Its particles are the vertices of the mesh.
@@ -66,10 +64,8 @@ struct Body {
   std::string name{};
   Mesh mesh{};                  ///< in the coordinates of the body; must be closed if the body has a mass
   Pose pose{};                  ///< pose at the start, if there are no keys
-  std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; must be empty if
-                                ///< it has a mass
-  double mass = 0;              ///< [kg]; if above 0, forces move the body; if 0, keys or
-                                ///< Simulation::move() do
+  std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; must be empty if it has a mass
+  double mass = 0;              ///< [kg]; if above 0, forces move the body; if 0, keys or Simulation::move() do
   Vector velocity{0, 0, 0};     ///< velocity at the start, of a body with a mass [m/s]
   double friction = 0.3;        ///< Coulomb coefficient
   bool collide = true;          ///< false: nothing touches the body, but pins can follow it
@@ -78,9 +74,8 @@ struct Body {
 /// Holds particles of a cloth in place, or moves them with a body. A particle can be in one pin only.
 struct Pin {
   std::string cloth{};
-  std::vector<int> particles{};                              ///< indices
-  std::string body{};                                        ///< body without mass that they
-                                                             ///< follow; empty: they stay in place
+  std::vector<int> particles{};  ///< indices
+  std::string body{};            ///< body without mass that they follow; empty: they stay in place
   double release = std::numeric_limits<double>::infinity();  ///< time from which the particles are free [s]
 };
 
@@ -89,7 +84,7 @@ enum class Method { implicit_euler, implicit_midpoint, bdf2 };
 /// A model to simulate. No two cloths or bodies may have the same name. A Simulation copies the
 /// model.
 struct Model {
-  double fps = 25;     ///< frames per second
+  double fps = 25;  ///< frames per second
   /// Maximum time step [s]: a frame is divided into the fewest equal steps that are not longer.
   /// Exception: with implicit Euler, a frame in which everything rests may be one step.
   double step = 0.01;
