@@ -7,7 +7,6 @@
 
 #include "film/cache/codec.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "film/production/snapshots.hpp"
 #include "film/scene/loader.hpp"
 #include "film/scene/rule.hpp"
 
@@ -116,7 +115,28 @@ void expect_not_simulated(const std::string& change, const scene::Scene& before,
   const scene::Scene after = scene_with(changes);
   EXPECT_NE(after.hash, before.hash) << change;
   EXPECT_EQ(after.simulation_hash, before.simulation_hash) << change;
-  EXPECT_TRUE(bytes_of(*third_frame(after)) == bytes_of(*production::Looks(after).put_on(kept))) << change;
+  EXPECT_TRUE(bytes_of(*third_frame(after)) == bytes_of(*production::SceneSimulation(after).with_looks(kept)))
+      << change;
+}
+
+// What a character looks like decides how its surface is divided; the ball moves farther in a longer run.
+TEST(Looks, OfACharacterAndOfALongerRunAreThoseOfAnUninterruptedRun) {
+  const auto scene_with_model = [](const std::vector<std::string>& overrides) {
+    scene::LoadResult loaded = scene::load_text(
+        "[time]\nduration = 0.2\nfps = 10\n[[character]]\nname = \"model\"\nsource = \"mannequin\"\nedge_length = 0.1\n"
+        "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.1\nposition = [2, 0, 1]\n"
+        "keys = [{ time = 0, position = [2, 0, 1] }, { time = 1, position = [7, 0, 1] }]\n",
+        "s.toml", overrides);
+    EXPECT_TRUE(loaded.ok()) << loaded.describe();
+    return std::move(loaded.scene);
+  };
+  const frame::SnapshotPtr kept = third_frame(scene_with_model({}));
+  for (const char* change :
+       {"character.model.look.color=[1, 0, 0]", "character.model.look.roughness=0.2", "time.duration=0.9"}) {
+    const scene::Scene after = scene_with_model({change});
+    EXPECT_TRUE(bytes_of(*third_frame(after)) == bytes_of(*production::SceneSimulation(after).with_looks(*kept)))
+        << change;
+  }
 }
 
 TEST(Looks, AreAllThatTheRulesCallNotSimulatedAndNothingElse) {

@@ -65,7 +65,7 @@ TEST(CameraThatFollows, IsTheSameInFramesOfACache) {
   const frame::SnapshotPtr end = last_frame(scene);
   frame::FrameSnapshot stored = *end;
   stored.cameras.clear();
-  const frame::SnapshotPtr shown = Looks(scene).put_on(stored);
+  const frame::SnapshotPtr shown = SnapshotMaker(scene, environment::Environment(scene)).with_looks(stored);
   ASSERT_EQ(shown->cameras.size(), 3u);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(shown->cameras[c].position, end->cameras[c].position);
 }

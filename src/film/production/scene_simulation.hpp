@@ -23,6 +23,8 @@ class SceneSimulation : public simulation::Simulation {
   /// Snapshot of the current frame; made anew only if the simulation has changed since the last call. After
   /// construction, this is frame 0 or, with a preroll, the first frame of the preroll, whose number is negative.
   frame::SnapshotPtr snapshot() const;
+  /// As SnapshotMaker::with_looks().
+  frame::SnapshotPtr with_looks(const frame::FrameSnapshot& snapshot) const { return maker_.with_looks(snapshot); }
   std::vector<frame::ObjectInfo> objects() const;
 
  private:

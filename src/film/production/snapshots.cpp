@@ -320,13 +320,9 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
   }
 }
 
-Looks::Looks(const scene::Scene& scene, const environment::Environment* environment) : stage_(make_stage(scene)) {
-  for (const auto& cloth : scene.cloths) looks_[cloth.name] = look_of(cloth);
-  for (const auto& obstacle : scene.obstacles) {
-    looks_[obstacle.name] = obstacle.look;
+Looks::Looks(const scene::Scene& scene, const environment::Environment& environment) : stage_(make_stage(scene)) {
+  for (const auto& obstacle : scene.obstacles)
     if (obstacle.look.image) picture_places_[obstacle.name] = places_of(scene, obstacle, pictures_);
-  }
-  for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name,
                         .kind = scene::is_computed(camera.kind) ? static_cast<frame::Camera::Kind>(camera.kind)
@@ -357,12 +353,7 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment* environm
     light_tracks_.push_back(light_track(light));
   }
   const auto follows = [](const scene::Camera& camera) { return !camera.follow.empty(); };
-  if (std::ranges::none_of(scene.cameras, follows)) return;
-  if (environment) {
-    mounts_.emplace(scene, *environment);
-  } else {
-    mounts_.emplace(scene, environment::Environment(scene));
-  }
+  if (std::ranges::any_of(scene.cameras, follows)) mounts_.emplace(scene, environment);
 }
 
 std::vector<frame::Camera> Looks::cameras_at(double time) const {
@@ -398,29 +389,13 @@ void Looks::surround(frame::FrameSnapshot& snapshot) const {
   snapshot.lights = lights_at(snapshot.time);
 }
 
-frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
-  if (surfaces_.empty())
-    for (const auto& surface : snapshot.surfaces) surfaces_.push_back(dressed(*surface));
-  auto copy = std::make_shared<frame::FrameSnapshot>(snapshot);
-  copy->surfaces = surfaces_;
-  surround(*copy);
-  return copy;
-}
-
-std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) {
-  auto copy = std::make_shared<frame::Surface>(surface);
-  apply_look(*copy, looks_.at(surface.name), pictures_);
-  place_picture(*copy);
-  return copy;
-}
-
 void Looks::place_picture(frame::Surface& surface) const {
   const auto places = picture_places_.find(surface.name);
   if (places != picture_places_.end()) surface.paint_uv = places->second;
 }
 
 SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
-    : looks_(scene, &environment) {
+    : looks_(scene, environment) {
   Pictures pictures;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const model::Cloth& cloth = environment.model.cloths[c];
@@ -459,6 +434,13 @@ frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const model::Mode
   }
   looks_.surround(*snapshot);
   return snapshot;
+}
+
+frame::SnapshotPtr SnapshotMaker::with_looks(const frame::FrameSnapshot& snapshot) const {
+  auto copy = std::make_shared<frame::FrameSnapshot>(snapshot);
+  copy->surfaces = surfaces_;
+  looks_.surround(*copy);
+  return copy;
 }
 
 }  // namespace weft::production

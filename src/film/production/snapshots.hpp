@@ -32,28 +32,20 @@ class Pictures {
 /// colours), cameras and lights.
 class Looks {
  public:
-  /// `environment`: that of the scene. If this is nullptr and a camera follows a body, the constructor makes the
-  /// environment.
-  explicit Looks(const scene::Scene& scene, const environment::Environment* environment = nullptr);
+  Looks(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Returns a copy of a snapshot with these looks. The snapshot must have the same objects as the scene. All snapshots
-  /// must have the surfaces of the first call: their looks are applied only once.
-  frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
   /// Sets stage, cameras and lights of a snapshot. Its time and the positions of its objects must be set already.
   void surround(frame::FrameSnapshot& snapshot) const;
   /// Sets the texture coordinates of an obstacle that has a picture; does not change other surfaces.
   void place_picture(frame::Surface& surface) const;
 
  private:
-  std::shared_ptr<const frame::Surface> dressed(const frame::Surface& surface);
   std::vector<frame::Camera> cameras_at(double time) const;
   std::vector<frame::Light> lights_at(double time) const;
 
-  std::map<std::string, scene::Look> looks_;                          // by name of the object
   std::map<std::string, environment::PicturePlaces> picture_places_;  // by name of the obstacle, if it has a picture
   Pictures pictures_;
   std::shared_ptr<const frame::Stage> stage_;
-  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // made by the first put_on()
   std::vector<frame::Camera> cameras_;
   std::vector<frame::Light> lights_;
   // Values of camera tracks: position, target, field of view [degrees] or focal length [mm].
@@ -75,6 +67,9 @@ class SnapshotMaker {
   /// vertices if forces have moved the body [m], otherwise an empty list; or no lists, if forces move no body.
   frame::SnapshotPtr make(int frame, double time, const model::Model& model, std::span<const Vec3> particles,
                           std::vector<std::vector<float>> heat, std::vector<std::vector<Vec3>> moved = {}) const;
+  /// Returns a copy of a snapshot with surfaces, cameras and lights as make() makes them. The snapshot must be of a
+  /// scene whose simulation is the same, but which may have had other looks or another duration.
+  frame::SnapshotPtr with_looks(const frame::FrameSnapshot& snapshot) const;
 
  private:
   const Looks looks_;

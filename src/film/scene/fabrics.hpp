@@ -19,13 +19,13 @@ struct MeasuredValue {
 
 /// Quantities of a fabric that textile laboratories measure. EMT, G, B and HB are names of KES (see fabrics.cpp).
 struct Measurements {
-  MeasuredValue density;                         ///< [kg/m²]
-  MeasuredValue thickness;                       ///< of the cloth itself [m]
-  MeasuredValue extension_weft, extension_warp;  ///< EMT: strain at kExtensionLoad [1]
-  MeasuredValue shear;                           ///< G: shear force per width / shear angle [N/m]
-  MeasuredValue bend_weft, bend_warp;            ///< B: bending stiffness per width [N·m]
-  MeasuredValue hysteresis;  ///< HB / B: residual curvature after unloading [1/m]; HB: moment per
-                             ///< width against a change of curvature [N]
+  MeasuredValue density;                           ///< [kg/m²]
+  MeasuredValue thickness;                         ///< of the cloth itself [m]
+  MeasuredValue extension_weft, extension_warp;    ///< EMT: strain at kExtensionLoad [1]
+  MeasuredValue shear;                             ///< G: shear force per width / shear angle [N/m]
+  MeasuredValue bend_weft, bend_warp;              ///< B: bending stiffness per width [N·m]
+  MeasuredValue hysteresis;                        ///< HB / B: residual curvature after unloading [1/m]; HB: moment per
+                                                   ///< width against a change of curvature [N]
   std::optional<std::pair<double, double>> drape;  ///< Cusick's drape coefficient: smallest and
                                                    ///< largest published value [1]
 };

@@ -29,8 +29,8 @@ MadeFrame SceneSource::read_stored() {
   cache::CachedFrame cached = store_.earlier().read(next_);
   const bool fresh = cached.scene_hash != scene_.hash;
   if (fresh) {
-    if (!looks_) looks_.emplace(scene_);
-    cached.snapshot = looks_->put_on(*cached.snapshot);
+    if (!simulation_) prepare_simulation();
+    cached.snapshot = simulation_->with_looks(*cached.snapshot);
   }
   return {std::move(cached.snapshot), std::move(cached.report), fresh};
 }

@@ -8,7 +8,6 @@
 #include "core/progress.hpp"
 #include "film/cache/reader.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "film/production/snapshots.hpp"
 #include "film/render/camera_path.hpp"
 #include "film/scene/scene.hpp"
 #include "tools/cli/frame_range.hpp"
@@ -52,7 +51,6 @@ class SceneSource : public FrameSource {
   const std::atomic<bool>& stop_;
   Progress& progress_;
   std::unique_ptr<production::SceneSimulation> simulation_;
-  std::optional<production::Looks> looks_;  // current looks of the scene; set once a stored frame had former looks
   int next_ = 0;
 };
 
