@@ -347,7 +347,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
   impact_changes_.clear();
   if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h);
-  write_end_state(now, stage, held, next);
+  write_end_state(now, stage, h, held, next);
   if (method_ == Method::bdf2) solved_v_ = next.v;
   return report;
 }
@@ -425,14 +425,14 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   impact_changes_.resize(x_.size());
   cg_.solve(right_side, {parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations, impact_changes_,
             {.motion = v_});
-  for_each_particle(x_.size(), [&](std::size_t i) { v_[i] += (1 - h / stage.beta) * impact_changes_[i]; });
 }
 
-void Stepper::write_end_state(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+void Stepper::write_end_state(const State& now, const Stage& stage, double h, std::span<const HeldParticle> held,
                               State& next) const {
   for_each_particle(x_.size(), [&](std::size_t i) {
     next.x[i] = x_end_[i];
     next.v[i] = v_end(now, stage, i);
+    if (!impact_changes_.empty()) next.v[i] += (1 - h / stage.beta) * impact_changes_[i];
   });
   for (const HeldParticle& particle : held) {
     const auto i = static_cast<std::size_t>(particle.constraint.particle);

@@ -196,7 +196,8 @@ class Stepper {
   void bound_work(std::span<const double> masses, const State& now);
   bool is_solved(int iterations) const;
   void report_worst(StepReport& report) const;
-  void write_end_state(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
+  void write_end_state(const State& now, const Stage& stage, double h, std::span<const HeldParticle> held,
+                       State& next) const;
   void split_impacts(System& system, const State& now, const Stage& stage, double h);
   Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
 

@@ -100,13 +100,7 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   cloth_.inflation().linearise(at.x, force, system);
   add_pulls(at, force);
-  system.terms.clear();
-  system.wide_terms.clear();
-  system.diagonal_terms.clear();
-  for (const PinSpring& pull : pulls_)
-    system.diagonal_terms.push_back(
-        {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
-  if (attachments_ != nullptr) attachments_->add_terms(at.x_end, at.end_rate, system);
+  restart_terms(at);
   if (contacts_ == nullptr) return;
   add_contact_forces(at.x_end, force, [&](std::span<const Vec3> x, std::span<Vec3> of_all) {
     contacts_->update(x, memory_.contacts);
@@ -141,9 +135,7 @@ bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec
 bool StepProblem::find_impacts(const integrator::StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
   if (contacts_ == nullptr || contacts_->empty()) return false;
   solver::LinearSystem& system = memory_.system;
-  system.terms.clear();
-  system.wide_terms.clear();
-  system.diagonal_terms.clear();
+  restart_terms(at);
   if (vertices_ == nullptr) return contacts_->add_impacts(at.x_end, memory_.contacts, start, right_side, system);
   const std::vector<Vec3> x = with_vertices(start.x), v = with_vertices(start.v);
   std::vector<Vec3> v_before, x_before;
@@ -155,6 +147,18 @@ bool StepProblem::find_impacts(const integrator::StagePoint& at, const StepStart
   vertices_->gather(of_all, right_side);
   vertices_->spread(system);
   return any;
+}
+
+// Leaves the terms of pins and attachments alone beside the matrix; the caller adds those of contacts.
+void StepProblem::restart_terms(const integrator::StagePoint& at) {
+  solver::LinearSystem& system = memory_.system;
+  system.terms.clear();
+  system.wide_terms.clear();
+  system.diagonal_terms.clear();
+  for (const PinSpring& pull : pulls_)
+    system.diagonal_terms.push_back(
+        {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
+  if (attachments_ != nullptr) attachments_->add_terms(at.x_end, at.end_rate, system);
 }
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {

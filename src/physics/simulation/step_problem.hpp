@@ -95,6 +95,7 @@ class StepProblem final : public integrator::System {
 
  private:
   void reset_memory();
+  void restart_terms(const integrator::StagePoint& at);
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool update_positions(std::size_t cloth, const integrator::StagePoint& at);
