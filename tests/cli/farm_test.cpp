@@ -133,6 +133,13 @@ TEST_F(Farms, StatusEscapesControlCharactersOfLogs) {
   EXPECT_NE(status.out.find("\n  \\x1b[31mred\n"), std::string::npos) << status.out;
 }
 
+TEST_F(Farms, AreRememberedByADryRun) {
+  ASSERT_EQ(submit().exit_code, 0);
+  support::write_bytes(folder_ / "a b/farm/jobs", "7\tsimulate\n");
+  EXPECT_EQ(submit().exit_code, 0);
+  EXPECT_EQ(support::read_bytes(folder_ / "a b/farm/jobs"), "7\tsimulate\n");
+}
+
 // Some callers ignore SIGCHLD, which programs inherit; the exit codes of their child processes are lost then.
 TEST_F(Farms, FailuresOfSlurmAreNoSuccessesAndNoEmptyQueue) {
   EXPECT_EQ(with_failing_slurm("submit s.toml -o one --memory 100 --time 10").exit_code, 6);

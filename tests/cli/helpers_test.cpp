@@ -122,6 +122,19 @@ TEST_F(Helpers, WatchOfTheStartReplacesNoForeignPicture) {
   EXPECT_EQ(support::read_bytes(folder_ / "output/s.start.png"), "precious");
 }
 
+// `weft run` leaves its film under the usual name.
+TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
+  const Arguments small{"--size", "64x36", "--quality", "draft", "--frames", "0:2"};
+  Arguments run{"run", "s.toml"}, watch{"watch", "s.toml", "--film", "--times", "1"};
+  for (Arguments* command : {&run, &watch}) command->insert(command->end(), small.begin(), small.end());
+  ASSERT_EQ(run_weft(run, folder_).exit_code, 0);
+  const auto written = fs::last_write_time(folder_ / "output/s.mp4");
+  const Outcome watched = run_weft(watch, folder_);
+  EXPECT_EQ(watched.exit_code, 0) << watched.err;
+  EXPECT_EQ(fs::last_write_time(folder_ / "output/s.mp4"), written);
+  EXPECT_TRUE(fs::exists(folder_ / "output/s.watch.mp4"));
+}
+
 // The reading end of descriptor 9 is closed before the first byte, as `weft man | head` closes it before the last.
 TEST_F(Helpers, EndsQuietlyWhereNobodyReadsWhatItPrints) {
   std::array<int, 2> ends{};

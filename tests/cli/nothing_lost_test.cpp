@@ -105,6 +105,20 @@ TEST_F(NothingLost, OverwriteRemovesOnlyWhatALongerRunHasWritten) {
   EXPECT_FALSE(fs::exists(folder_ / "m/cloth_00008.ply"));
 }
 
+// --frames ::2 selects a part of the film: the other frames are no leftovers.
+TEST_F(NothingLost, EachSecondFrameWithOverwriteLeavesTheOthers) {
+  ASSERT_EQ(run_weft(with({"run", "s.toml", "-o", "p/{frame:05}.png", "--meshes", "m", "--frames", "0:4"}), folder_)
+                .exit_code,
+            0);
+  const std::string second = support::read_bytes(folder_ / "p/00001.png");
+  const Outcome outcome = run_weft(
+      with({"run", "s.toml", "-o", "p/{frame:05}.png", "--meshes", "m", "--frames", "::2", "--overwrite"}), folder_);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  for (const char* file : {"p/00001.png", "p/00003.png", "m/cloth_00001.ply"})
+    EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+  EXPECT_EQ(support::read_bytes(folder_ / "p/00001.png"), second);
+}
+
 TEST_F(NothingLost, AFolderThatIsRemovedWhileARunWorksEndsTheRun) {
   for (const Arguments& run :
        {Arguments{"run", "s.toml", "-o", "d/p/{frame:05}.png"}, Arguments{"run", "s.toml", "-o", "d/a.mp4"},

@@ -141,6 +141,7 @@ TEST(Options, OfWatchAreThoseThatItsDrawingTakes) {
   EXPECT_EQ(refused({"--start", "--frame", "3"}), "weft watch: expected --start or --frame, got both");
   EXPECT_EQ(refused({"-o", "a.mp4"}), "-o: expected a name ending in .png without --film, got a.mp4");
   EXPECT_TRUE(refused({"-o", "a.png", "--film"}).starts_with("-o: expected one {frame}"));
+  EXPECT_EQ(refused({"-o", "{frame}.png", "--film"}), "-o: expected a video with --film, got {frame}.png");
   for (const Arguments& good : {Arguments{"--film", "--frames", "0:3", "-o", "a.mp4"}, {"--start", "-o", "a.png"}})
     EXPECT_EQ(refused(good), "accepted");
 }

@@ -256,7 +256,7 @@ class Farm {
       write_file(folder_ / "farm" / name, text);
       if (options_.dry_run) print("==> {} <==\n{}\n", (folder_ / "farm" / name).string(), text);
     }
-    write_file(folder_ / "farm/jobs", "");
+    if (!options_.dry_run) write_file(folder_ / "farm/jobs", "");  // jobs of an earlier submission may still run
   }
 
   // Writes the program archive, unless the file exists or a task has unpacked it already.

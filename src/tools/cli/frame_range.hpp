@@ -12,6 +12,8 @@ namespace weft::cli {
 struct FrameSelection {
   std::optional<int> begin, end;
   int step = 1;
+
+  bool selects_all() const { return !begin && !end && step == 1; }
 };
 
 /// Frames begin, begin + step, ... below end. Never empty.

@@ -111,7 +111,8 @@ WatchOptions checked(WatchOptions watch) {
     throw Error(ExitCode::usage, "weft watch: expected --start or --frame, got both");
   if (const auto option = std::ranges::find(words, "--output"); option != words.end()) {
     const std::filesystem::path output = *(option + 1);
-    if (watch.film) (void)parse_output(output.string(), "");
+    if (watch.film && parse_output(output.string(), "").kind != OutputTarget::Kind::video)
+      throw Error(ExitCode::usage, "-o: expected a video with --film, got {}", output.string());
     if (!watch.film && output.has_extension() && output.extension() != ".png")
       throw Error(ExitCode::usage, "-o: expected a name ending in .png without --film, got {}", output.string());
   }

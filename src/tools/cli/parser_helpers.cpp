@@ -49,7 +49,8 @@ void Parser::add_watch() {
     });
   };
   const auto anything = [](const std::string&) {};
-  passed_on("--output,-o", "FILE.png|FILE.mp4", "Picture or video [output/<scene>.png, with --film .mp4]", anything);
+  passed_on("--output,-o", "FILE.png|FILE.mp4", "Picture or video [output/<scene>.png, with --film .watch.mp4]",
+            anything);
   passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
   passed_on("--camera", "NAME", "Camera of the scene that draws [render.camera, the first one, or automatic framing]",
             anything);

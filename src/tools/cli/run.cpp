@@ -149,7 +149,7 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
 /// With --overwrite, removes pictures and meshes of other frames, which an earlier run of a longer scene has left.
 /// Keeps them if --frames selects a part of the film, since other commands may write the other frames.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
-  if (!options.common.overwrite || options.frames.begin || options.frames.end) return;
+  if (!options.common.overwrite || !options.frames.selects_all()) return;
   const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
   if (plan.target.kind == Kind::images) FramePattern(plan.target.text).remove_others(plan.wanted, is_picture);
   if (options.meshes.empty()) return;

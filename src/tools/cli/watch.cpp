@@ -39,17 +39,19 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 class Watch {
  public:
   explicit Watch(const WatchOptions& options) : options_(options) {
-    // Each drawing replaces the output. Checks that an existing output is an earlier drawing of the scene.
+    // Each drawing replaces the output. Checks that an existing output is an earlier drawing of the scene. A film has a
+    // name of its own by default, because `weft run` may have left a finished film under the usual name.
     const auto option = std::ranges::find(options.passed_on, "--output");
     const bool start = std::ranges::find(options.passed_on, "--start") != options.passed_on.end();
     const std::string scene = options.scene.stem().string();
-    const char* ending = options.film ? ".mp4" : start ? ".start.png" : ".png";
+    const char* ending = options.film ? ".watch.mp4" : start ? ".start.png" : ".png";
     const fs::path output =
         option != options.passed_on.end() ? fs::path(*(option + 1)) : fs::path("output") / (scene + ending);
     std::error_code ignored;
     if (fs::exists(fs::symlink_status(output, ignored)) && !is_output_of(output, scene))
       throw Error(ExitCode::output_failed, "{}: exists already, and is no picture of {}; give another name",
                   output.string(), scene);
+    if (options.film && option == options.passed_on.end()) film_output_ = {"--output", output.string()};
   }
 
   /// Returns the exit code of the last drawing if the number of drawings is limited, and `ok` after a stop request.
@@ -80,6 +82,7 @@ class Watch {
                                    "--progress",
                                    "none"};
     words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
+    words.insert(words.end(), film_output_.begin(), film_output_.end());
     for (const std::string& text : options_.overrides) words.insert(words.end(), {"--set", text});
     const pid_t process = start_process(words, "");
     bool is_killed = false;
@@ -96,6 +99,7 @@ class Watch {
   }
 
   const WatchOptions& options_;
+  std::vector<std::string> film_output_;  // option for the default name of a film; empty if a name is given
   const StopSignals stop_{"ending"};
   std::vector<fs::path> files_;
   Stamps drawn_;
