@@ -210,6 +210,14 @@ TEST_F(SweepSheet, OfTooManyRunsShowsTheFirstRows) {
   EXPECT_LT(sheet.height, 2 * 8192);
 }
 
+TEST_F(SweepSheet, OfAnEarlierSweepDoesNotStayIfNoRunHasAPicture) {
+  support::write_bytes(folder_ / "sheet.png", "of an earlier sweep");
+  SweepResult result = made_up_result();
+  result.video = folder_ / "none.mp4";
+  write_sweep_sheet(folder_ / "sheet.png", {result}, "", {});
+  EXPECT_FALSE(fs::exists(folder_ / "sheet.png"));
+}
+
 class Sweeps : public CachedRun {
  protected:
   static constexpr const char* kRadius = "obstacle.ball.radius=0.1,0.11";

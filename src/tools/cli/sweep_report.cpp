@@ -150,7 +150,11 @@ void write_sweep_sheet(const std::filesystem::path& file, const std::vector<Swee
   std::vector<std::optional<image::Image>> found;
   for (const SweepResult& result : results) found.push_back(picture_of(result.video, frame));
   const auto some = std::ranges::find_if(found, [](const auto& picture) { return picture.has_value(); });
-  if (some == found.end()) return;
+  if (some == found.end()) {
+    std::error_code ignored;  // an earlier sweep may have left a sheet, which would pass for that of these runs
+    std::filesystem::remove(file, ignored);
+    return;
+  }
   image::Image none((*some)->width, (*some)->height);
   std::ranges::fill(none.rgb, kGrey);
   std::vector<image::SheetPicture> pictures;

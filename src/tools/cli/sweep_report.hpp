@@ -27,8 +27,8 @@ bench::Table sweep_table(const std::vector<SweepResult>& results);
 /// Writes a sheet with one picture per run, captioned with its values and with the CPU times of simulation and drawing
 /// or, if the run failed, with the exit code. The picture is the one with index `frame` in the video; if `frame` is
 /// missing or too large, the last one. A grey picture stands for a run without a picture, and for a picture whose size
-/// differs from that of the first run with a picture. Writes nothing if no run has a picture. If a PNG cannot hold all
-/// runs, the sheet shows the first ones, and a note says so.
+/// differs from that of the first run with a picture. If no run has a picture, writes nothing, and removes the sheet of
+/// an earlier sweep. If a PNG cannot hold all runs, the sheet shows the first ones, and a note says so.
 void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
                        const std::string& heading, std::optional<int> frame);
 
