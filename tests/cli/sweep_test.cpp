@@ -338,6 +338,21 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
 }
 
+// The second run, which does not begin before the sweep is stopped, has a complete video of the first sweep.
+TEST_F(Sweeps, ThatWereToBeRepeatedAndAreStoppedGoOnWithAllRuns) {
+  const Arguments arguments{"--set", kRadius, "--set", "time.step=0.002"};
+  ASSERT_EQ(sweep(arguments).exit_code, 0);
+  Arguments repeated = arguments;
+  repeated.emplace_back("--overwrite");
+  Subprocess process(with_sweep(repeated), folder_);
+  for (int i = 0; i < 3000 && !fs::exists(folder_ / "w/radius=0.1/.s.weft-cache/frame_00002.weft"); ++i) usleep(20'000);
+  process.send(SIGTERM);
+  EXPECT_EQ(process.wait().exit_code, 75);
+  const Outcome again = sweep(arguments);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(fs::exists(folder_ / "w/radius=0.11/s.json")) << "the run has no statistics: " << table();
+}
+
 /// Waits up to five seconds until no process writes this cache. Returns whether that is so.
 bool is_left(const fs::path& cache) {
   const int lock = ::open((cache / "lock").c_str(), O_RDONLY);

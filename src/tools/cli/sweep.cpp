@@ -77,11 +77,14 @@ class Sweep {
   }
 
  private:
-  /// Removes the statistics of all runs, by which a sweep recognises finished runs. Without this, if the sweep is
-  /// stopped, the next sweep would accept results that were made with earlier options.
+  /// Removes statistics and videos of all runs, by which a sweep and `weft run --resume` recognise finished runs.
+  /// Without this, if the sweep is stopped, the next sweep would accept results that were made with earlier options, or
+  /// videos whose statistics are missing.
   void forget_results() const {
-    std::error_code none;
-    for (const Job& job : jobs_) fs::remove(job.stats(), none);
+    std::error_code none;  // what cannot be removed is reported by the run that replaces it
+    for (const Job& job : jobs_)
+      for (const fs::path& file : {job.stats(), job.video()})
+        if (!fs::is_directory(file, none)) fs::remove(file, none);
   }
 
   std::vector<std::string> command(const Job& job) const {
