@@ -106,6 +106,27 @@ TEST_F(Diff, HeatMapsOfAnEarlierCallInAFolderAreNoPicturesToCompare) {
   expect({"diff", "ref", "out", "--heatmap", "out/maps", "--overwrite"}, 2, "is a picture to test, which is read");
 }
 
+// The name of the heat map comes first, and its metadata name no class of machines.
+TEST_F(Diff, HeatMapsTellNoClassOfMachinesAndBecomeNoReferences) {
+  const auto draw = [&](const char* name) {
+    image::Image image(32, 24);
+    std::fill(image.rgb.begin(), image.rgb.end(), std::uint8_t{100});
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    image::write_png(folder_ / name, image, {{"gl", "llvmpipe (LLVM 15.0.6, 256 bits); OpenGL 4.5 Mesa 22.3.6"}});
+  };
+  draw("ref/mesa-22.3-256bit/z.png");
+  draw("out/z.png");
+  write("ref/z.png", 50);
+  expect({"diff", "ref", "out", "--heatmap", "out/differences"}, 0, "z.png: same");
+  expect({"diff", "ref", "out", "--heatmap", "out/differences", "--overwrite"}, 0, "z.png: same");
+  expect({"diff", "ref", "out"}, 0, "z.png: same");
+  expect({"accept", "ref", "out", "--reason", "why"}, 0, "z.png: is the same already");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "ref/differences"));
+  expect({"accept", "ref", "out/differences/z.png", "--reason", "why"}, 2, "got a heat map of weft diff");
+  write("ref/differences/z.png", 100);
+  expect({"diff", "ref", "out"}, 7, "differences/z.png: missing: the reference");
+}
+
 TEST_F(Diff, EachPairIsOneLineWhateverItsName) {
   write("ref/a\nb.png: same.png", 100);
   write("out/a\nb.png: same.png", 130);

@@ -25,10 +25,6 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
-// Metadata of heat maps. By this entry, a later weft diff recognises the heat maps in its --heatmap folder, and does
-// not compare them.
-const image::Metadata kHeatMap{{"weft_picture", "heat map of weft diff"}};
-
 FileComparison only_one(const std::string& name, const fs::path& reference, const fs::path& test, Outcome outcome) {
   FileComparison result;
   result.name = name;
@@ -50,29 +46,17 @@ struct Pair {
   std::string name;
   std::optional<fs::path> reference;
   fs::path test;
+  bool has_test = true;  ///< whether `test` is a picture or video; false if it is missing or a heat map
   DiffLimits::Rules rules = {};
 
   FileComparison compare(const DiffOptions& options) const {
     if (!reference) return only_one(name, options.reference, test, Outcome::no_reference);
-    if (!fs::exists(test)) return only_one(name, *reference, test, Outcome::no_test);
+    if (!has_test) return only_one(name, *reference, test, Outcome::no_test);
     FileComparison result = compare::compare_files(*reference, test, rules.limits, rules.mask);
     result.name = name;
     return result;
   }
 };
-
-// Whether a file is a heat map below the folder of --heatmap. Such a file is not compared: an earlier call with the
-// same options has written it, and this call replaces it.
-bool is_earlier_heat_map(const DiffOptions& options, const fs::path& file) {
-  if (options.heatmap.empty()) return false;
-  const fs::path inside = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(options.heatmap));
-  if (inside.empty() || *inside.begin() == ".." || compare::is_video(file)) return false;
-  try {
-    return image::read_png_metadata(file) == kHeatMap;
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
@@ -84,10 +68,9 @@ std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   names.erase(std::unique(names.begin(), names.end()), names.end());
   std::vector<Pair> pairs;
   for (const std::string& name : names) {
-    const std::optional<fs::path> reference = compare::find_reference(options.reference, name, machine);
-    if (is_earlier_heat_map(options, options.test / name) || (reference && is_earlier_heat_map(options, *reference)))
-      continue;
-    pairs.push_back({name, reference, options.test / name});
+    const fs::path test = options.test / name;
+    pairs.push_back({name, compare::find_reference(options.reference, name, machine), test,
+                     fs::exists(test) && !compare::is_heat_map(test)});
   }
   if (pairs.empty()) {
     throw Error(ExitCode::reference_missing, "{}: expected pictures or videos, there are none",
@@ -192,7 +175,7 @@ ExitCode diff(const DiffOptions& options) {
   for (const Pair& pair : pairs) {
     FileComparison result = pair.compare(options);
     const fs::path heatmap = result.frames > 0 ? heatmap_file(options, pairs, pair.name) : fs::path();
-    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip), kHeatMap);
+    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip), compare::heat_map_metadata());
     json["results"].push_back(describe_json(result, pair.rules.limits, heatmap));
     lines.push_back(describe(result, pair.rules.limits));
     if (result.outcome == Outcome::differs || result.outcome == Outcome::size || result.outcome == Outcome::frame_count)

@@ -130,6 +130,8 @@ Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test, con
     throw Error(ExitCode::usage, "{}: expected a picture (.png) or a video such as .mp4", test.string());
   }
   check_readable(test);
+  if (is_heat_map(test))
+    throw Error(ExitCode::usage, "{}: expected a picture of a scene, got a heat map of weft diff", test.string());
   plan.test = test;
   const bool is_file = is_comparable(reference) && !fs::is_directory(reference);
   if (is_file && reference.extension() != test.extension()) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "film/image/png.hpp"
 #include "film/video/decoder.hpp"
 
 namespace weft::compare {
@@ -133,6 +132,20 @@ bool is_lossy_video(const std::filesystem::path& file) {
   if (!is_video(file)) return false;
   try {
     return video::Decoder(file).lossy();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+const image::Metadata& heat_map_metadata() {
+  static const image::Metadata kMetadata{{"weft_picture", "heat map of weft diff"}};
+  return kMetadata;
+}
+
+bool is_heat_map(const std::filesystem::path& file) {
+  if (file.extension() != ".png") return false;
+  try {
+    return image::read_png_metadata(file) == heat_map_metadata();
   } catch (const Error&) {
     return false;
   }

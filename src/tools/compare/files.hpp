@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "film/image/png.hpp"
 #include "tools/compare/compare.hpp"
 
 namespace weft::compare {
@@ -15,6 +16,11 @@ bool is_video(const std::filesystem::path& file);
 bool is_lossy_video(const std::filesystem::path& file);
 /// Whether the file is a picture (.png) or a video, by its extension.
 bool is_comparable(const std::filesystem::path& file);
+/// Metadata of the heat maps that weft diff writes.
+const image::Metadata& heat_map_metadata();
+/// Whether the file is a heat map of weft diff, by its metadata; false if it cannot be read. A heat map may lie in a
+/// folder of pictures, but is no picture to compare, and no reference.
+bool is_heat_map(const std::filesystem::path& file);
 /// Limits for two files: those of with_encoder_noise() if either is a lossy video, else `limits`.
 Limits limits_for(const Limits& limits, const std::filesystem::path& reference, const std::filesystem::path& test);
 

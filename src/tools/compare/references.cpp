@@ -53,7 +53,7 @@ std::string machine_class_of(const fs::path& file) {
 
 std::optional<fs::path> find_reference(const fs::path& folder, const std::string& name, const std::string& machine) {
   for (const fs::path& place : places(folder, machine)) {
-    if (fs::is_regular_file(place / name)) return place / name;
+    if (fs::is_regular_file(place / name) && !is_heat_map(place / name)) return place / name;
   }
   return std::nullopt;
 }
@@ -79,7 +79,8 @@ std::vector<std::string> comparable_names(const fs::path& folder) {
     std::error_code ignored;
     if (entry->is_directory(ignored)) {
       if (hidden) entry.disable_recursion_pending();
-    } else if (!hidden && entry->is_regular_file(ignored) && is_comparable(entry->path())) {
+    } else if (!hidden && entry->is_regular_file(ignored) && is_comparable(entry->path()) &&
+               !is_heat_map(entry->path())) {
       names.push_back(entry->path().lexically_relative(folder).generic_string());
     }
   }

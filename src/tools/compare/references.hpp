@@ -25,7 +25,7 @@ std::string machine_class(const std::string& gl);
 /// version of Mesa, or if the file cannot be read.
 std::string machine_class_of(const std::filesystem::path& file);
 
-/// The reference of this name that is used for the machine class `machine`; none if no file exists.
+/// The reference of this name that is used for the machine class `machine`; none if no file exists, or only heat maps.
 std::optional<std::filesystem::path> find_reference(const std::filesystem::path& folder, const std::string& name,
                                                     const std::string& machine);
 
@@ -33,8 +33,8 @@ std::optional<std::filesystem::path> find_reference(const std::filesystem::path&
 std::vector<std::string> reference_names(const std::filesystem::path& folder, const std::string& machine);
 
 /// Sorted names of all pictures and videos below a folder, such as "front/name.png". Skips hidden
-/// files and folders. Follows links to folders. Throws Error(asset_unreadable) if a folder cannot
-/// be listed or links form a cycle.
+/// files and folders, and heat maps (is_heat_map()). Follows links to folders. Throws Error(asset_unreadable) if a
+/// folder cannot be listed or links form a cycle.
 std::vector<std::string> comparable_names(const std::filesystem::path& folder);
 
 }  // namespace weft::compare
