@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 
 #include "cli/cached_run.hpp"
@@ -131,6 +132,17 @@ TEST_F(Farms, StatusEscapesControlCharactersOfLogs) {
   support::write_bytes(folder_ / "a b/farm/log/t.log", "weft: \x1b[31mred\n");
   const Outcome status = farm({"status", "a b"});
   EXPECT_NE(status.out.find("\n  \\x1b[31mred\n"), std::string::npos) << status.out;
+}
+
+TEST_F(Farms, RequestTheMemoryThatTheirPicturesNeed) {
+  const auto megabytes = [&](const char* folder, const char* size) {
+    const Outcome outcome =
+        farm({"submit", "s.toml", "-o", folder, "--dry-run", "--time", "10", "--quality", "draft", "--size", size});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::size_t option = outcome.out.find("--mem=");
+    return option == std::string::npos ? 0 : std::atoi(outcome.out.c_str() + option + 6);
+  };
+  EXPECT_GT(megabytes("large", "2560x1440"), megabytes("small", "64x36") + 30);
 }
 
 TEST_F(Farms, AreRememberedByADryRun) {

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "core/input_file.hpp"
 #include "core/json.hpp"
@@ -227,11 +228,16 @@ class Farm {
     if (options_.minutes && options_.memory) return;
     double simulate = 0, picture = 0, peak = 0;
     for (const std::size_t i : {plan_.submitted.front(), plan_.submitted.back()}) {
-      SceneOptions scene;
+      SceneOptions scene = options_.sweep.pictures;
       scene.scene = options_.sweep.scene;
       scene.overrides = plan_.jobs[i].overrides();
+      // If this run has no such camera, its tasks report it; other runs may have it.
+      const std::string camera = std::exchange(scene.camera, {});
       const scene::Scene loaded = load_scene(scene);
-      const Estimate estimate = estimate_run(loaded, render_settings(loaded, scene));
+      render::Settings settings = render_settings(loaded, scene);
+      if (std::ranges::find(loaded.cameras, camera, &scene::Camera::name) != loaded.cameras.end())
+        settings.camera = camera;
+      const Estimate estimate = estimate_run(loaded, settings);
       simulate = std::max(simulate, estimate.simulate_total());
       picture = std::max(picture, estimate.draw);
       peak = std::max(peak, static_cast<double>(estimate.peak));

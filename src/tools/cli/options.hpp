@@ -104,6 +104,7 @@ struct SweepOptions {
   std::vector<Axis> axes;
   std::filesystem::path output;        ///< folder
   std::vector<std::string> passed_on;  ///< options of `weft run` and their values, checked; each run gets them
+  SceneOptions pictures;               ///< size, camera and quality of `passed_on`; the rest is not set
   int jobs = 1;                        ///< number of concurrent runs
   std::optional<int> frame;            ///< picture of each video shown on the sheet, from 0; default: the last
   bool gather = false;                 ///< only make the sheet, the table and the page of existing runs

@@ -40,11 +40,13 @@ void add_runs(CLI::App& command, SweepOptions& sweep, FrameSelection* frames) {
               const FrameSelection selection = parse_frames(text);
               if (frames != nullptr) *frames = selection;
             });
-  passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
+  passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]",
+            [&sweep](const std::string& text) { sweep.pictures.size = parse_size(text); });
   passed_on("--camera", "NAME", "Camera of the scene that draws [render.camera, the first one, or automatic framing]",
-            [](const std::string&) {});
-  passed_on("--quality", "draft|preview|final", "Quality of the pictures [final]",
-            [](const std::string& text) { parse_choice("--quality", text, kQualities); });
+            [&sweep](const std::string& text) { sweep.pictures.camera = text; });
+  passed_on("--quality", "draft|preview|final", "Quality of the pictures [final]", [&sweep](const std::string& text) {
+    sweep.pictures.quality = parse_choice("--quality", text, kQualities);
+  });
   command.add_flag_callback(
       "--error", [&sweep] { sweep.passed_on.emplace_back("--error"); },
       "Also estimate the error of each run, from runs with other steps, solver settings and starts");
