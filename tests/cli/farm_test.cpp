@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 
 #include "cli/cached_run.hpp"
 
@@ -150,6 +151,22 @@ TEST_F(Farms, AreRememberedByADryRun) {
   support::write_bytes(folder_ / "a b/farm/jobs", "7\tsimulate\n");
   EXPECT_EQ(submit().exit_code, 0);
   EXPECT_EQ(support::read_bytes(folder_ / "a b/farm/jobs"), "7\tsimulate\n");
+}
+
+// Tasks that wait in the queue would do something else by other scripts. Slurm does not say whether there are any.
+TEST_F(Farms, ADryRunReplacesNoScriptsOfTasksThatMayWait) {
+  const std::string command = "submit s.toml -o one --memory 100 --time 10 --dry-run";
+  ASSERT_EQ(with_failing_slurm(command).exit_code, 0);
+  support::write_bytes(folder_ / "one/farm/jobs", "7\tsimulate\n");
+  std::map<std::string, std::string> before;
+  for (const char* file : {"farm/task.sh", "farm/submit.sh", "farm/tasks.tsv", "sweep.json"})
+    before[file] = support::read_bytes(folder_ / "one" / file);
+  const Outcome outcome = with_failing_slurm(command + " --part 7 --set time.step=0.01,0.02");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.out, "frames_each=7\n")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.err, "the scripts are printed, not written")) << outcome.err;
+  for (const auto& [file, bytes] : before) EXPECT_EQ(support::read_bytes(folder_ / "one" / file), bytes) << file;
+  EXPECT_FALSE(fs::exists(folder_ / "one/step=0.01"));
 }
 
 // Some callers ignore SIGCHLD, which programs inherit; the exit codes of their child processes are lost then.

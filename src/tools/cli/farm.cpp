@@ -251,15 +251,34 @@ class Farm {
                           plan_.needs.simulate_minutes, plan_.needs.draw_minutes, plan_.part, plan_.needs.memory));
   }
 
+  /// Whether submitted jobs wait or run; true also if Slurm does not answer.
+  bool may_have_jobs() const {
+    try {
+      std::map<std::string, int> states;
+      return !active_jobs(folder_, states).empty();
+    } catch (const Error&) {
+      return true;
+    }
+  }
+
+  /// Writes the scripts, and prints them in a dry run. Submitted tasks read the scripts when they start: a dry run does
+  /// not replace those of tasks that may still wait.
   void write() {
-    fs::create_directories(folder_ / "farm/log");
-    if (program_) write_program();
-    write_sweep_index(options_.sweep, plan_.jobs);
-    for (const std::size_t i : plan_.submitted) fs::create_directories(folder_ / plan_.jobs[i].run.name);
+    const bool only_prints = options_.dry_run && may_have_jobs();
+    if (program_) plan_.archive = program_->fingerprint();
+    if (only_prints) {
+      log::info(fmt::format("note: {}: has jobs that may wait or run; the scripts are printed, not written",
+                            folder_.string()));
+    } else {
+      fs::create_directories(folder_ / "farm/log");
+      if (program_) write_program();
+      write_sweep_index(options_.sweep, plan_.jobs);
+      for (const std::size_t i : plan_.submitted) fs::create_directories(folder_ / plan_.jobs[i].run.name);
+    }
     for (const auto& [name, text] :
          {std::pair("task.sh", task_script(options_, plan_)), std::pair("submit.sh", submit_script(options_, plan_)),
           std::pair("tasks.tsv", task_list(options_, plan_))}) {
-      write_file(folder_ / "farm" / name, text);
+      if (!only_prints) write_file(folder_ / "farm" / name, text);
       if (options_.dry_run) print("==> {} <==\n{}\n", (folder_ / "farm" / name).string(), text);
     }
     if (!options_.dry_run) write_file(folder_ / "farm/jobs", "");  // jobs of an earlier submission may still run
@@ -267,7 +286,6 @@ class Farm {
 
   // Writes the program archive, unless the file exists or a task has unpacked it already.
   void write_program() {
-    plan_.archive = program_->fingerprint();
     const fs::path tar = folder_ / program_tar(plan_.archive);
     if (!fs::exists(fs::path(tar).replace_extension()) && !fs::exists(tar)) program_->write_tar(tar);
   }
