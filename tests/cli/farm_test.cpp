@@ -83,6 +83,23 @@ TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
   EXPECT_NE(partly.out.find("--array=0\n"), std::string::npos) << "only what is missing: " << partly.out;
 }
 
+// The simulation goes on with another look, and writes statistics of the changed scene; pictures of the former scene
+// stay.
+TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
+  ASSERT_EQ(submit().exit_code, 0);
+  ASSERT_TRUE(do_tasks().empty()) << log("simulate_0");
+  support::write_bytes(folder_ / "s.toml",
+                       support::read_bytes(folder_ / "s.toml") + "\nlook = { color = \"#000000\" }\n");
+  ASSERT_EQ(submit().exit_code, 0);
+  const std::string task = "WEFT_PAUSE=0 sh '" + (folder_ / "a b/farm/task.sh").string() + "'";
+  for (const char* run : {"0", "1"})
+    EXPECT_EQ(std::system((task + " simulate " + run).c_str()), 0) << log("simulate_0");
+  const Outcome status = farm({"status", "a b"});
+  EXPECT_EQ(status.exit_code, 9) << status.out;
+  const Outcome again = submit();
+  EXPECT_EQ(again.err.find("all runs are done"), std::string::npos) << again.err;
+}
+
 // A program that is killed once succeeds on the second try; one that finds a mistake is not tried again.
 TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   ASSERT_EQ(submit().exit_code, 0);

@@ -15,6 +15,7 @@
 #include "tools/cli/commands.hpp"
 #include "tools/cli/estimate.hpp"
 #include "tools/cli/farm_scripts.hpp"
+#include "tools/cli/own_files.hpp"
 #include "tools/cli/program_archive.hpp"
 #include "tools/cli/scene_input.hpp"
 #include "tools/cli/standard_output.hpp"
@@ -88,7 +89,9 @@ State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
   const std::string scene = value_or(run, "scene", std::string());
   const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
   const bool simulated = value_or(stats, "exit_code", -1) == 0;
-  if (simulated && fs::is_regular_file(folder / (scene + ".mp4"))) return {"done", true};
+  const fs::path video = folder / (scene + ".mp4");  // may be that of a former scene
+  if (simulated && fs::is_regular_file(video) && scene_hash_of(video) == value_or(stats, "scene_hash", std::string()))
+    return {"done", true};
   const auto progress = [&](std::size_t count, const char* all, const char* done) {
     return State{fmt::format("{} of {} frames {}", count, value_or(run, all, 0), done), false};
   };

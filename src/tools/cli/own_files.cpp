@@ -42,6 +42,10 @@ bool has_entry(const std::map<std::string, std::string>& metadata, const std::st
 
 }  // namespace
 
+std::string scene_hash_of(const fs::path& file) {
+  return metadata_of(file)["scene_hash"];
+}
+
 bool is_picture_of(const fs::path& file, const std::string& scene, int frame) {
   const auto metadata = metadata_of(file);
   return metadata.contains("weft_version") && has_entry(metadata, "scene", scene) &&

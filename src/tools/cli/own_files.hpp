@@ -7,6 +7,9 @@
 
 namespace weft::cli {
 
+/// Hash of the scene that the metadata of a picture or video name; empty if there is none.
+std::string scene_hash_of(const std::filesystem::path& file);
+
 /// Whether the metadata of a picture names this scene and frame.
 bool is_picture_of(const std::filesystem::path& file, const std::string& scene, int frame);
 

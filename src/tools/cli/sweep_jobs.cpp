@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/json.hpp"
 #include "core/temporary_file.hpp"
+#include "tools/cli/own_files.hpp"
 #include "tools/cli/scene_input.hpp"
 #include "tools/review/find_runs.hpp"
 #include "tools/review/output_folder.hpp"
@@ -25,8 +26,9 @@ std::vector<std::string> SweepJob::overrides() const {
 
 bool SweepJob::is_done() const {
   const Json json = read_json_or_null(stats());
+  const std::string hash = fmt::format("{:016x}", scene_hash);
   return fs::is_regular_file(video()) && value_or(json, "exit_code", -1) == 0 &&
-         value_or(json, "scene_hash", std::string()) == fmt::format("{:016x}", scene_hash);
+         value_or(json, "scene_hash", std::string()) == hash && scene_hash_of(video()) == hash;
 }
 
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths) {

@@ -32,7 +32,8 @@ struct SweepJob {
   std::vector<std::string> overrides() const;
   /// Number of frames to simulate.
   int simulated_count() const { return may_find_camera ? frame_count : drawn.last() + 1; }
-  /// Whether the video exists, and the statistics are those of a successful run of this scene.
+  /// Whether the video is of this scene, and the statistics are those of a successful run of it. In a farm, different
+  /// tasks write the two files.
   bool is_done() const;
 };
 
