@@ -133,6 +133,13 @@ TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
   EXPECT_EQ(watched.exit_code, 0) << watched.err;
   EXPECT_EQ(fs::last_write_time(folder_ / "output/s.mp4"), written);
   EXPECT_TRUE(fs::exists(folder_ / "output/s.watch.mp4"));
+  watch.insert(watch.end(), {"-o", "output/s.mp4"});
+  const Outcome refused = run_weft(watch, folder_);
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_NE(refused.err.find("give a name that ends in .watch.mp4"), std::string::npos) << refused.err;
+  EXPECT_EQ(fs::last_write_time(folder_ / "output/s.mp4"), written);
+  watch.back() = "output/s.watch.mp4";
+  EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
 }
 
 // The reading end of descriptor 9 is closed before the first byte, as `weft man | head` closes it before the last.

@@ -71,7 +71,8 @@ void Parser::add_watch() {
       "  weft watch dress.toml --frame 20 --quality draft -o dress.png\n"
       "  weft watch dress.toml --film --quality draft --size 320x180\n"
       "\nIf a file changes during a drawing, that drawing is stopped and a new one begins. Viewers that follow the\n"
-      "output file show the last complete one.");
+      "output file show the last complete one. A video that exists before the first drawing is replaced only if its\n"
+      "name ends in .watch.mp4, .watch.mov or .watch.mkv.");
 }
 
 void Parser::add_completion() {

@@ -39,8 +39,8 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 class Watch {
  public:
   explicit Watch(const WatchOptions& options) : options_(options) {
-    // Each drawing replaces the output. Checks that an existing output is an earlier drawing of the scene. A film has a
-    // name of its own by default, because `weft run` may have left a finished film under the usual name.
+    // Each drawing replaces the output. Checks that an existing output is an earlier drawing of the scene. Films of
+    // `weft watch` are recognised by their names, because `weft run` makes the same ones.
     const auto option = std::ranges::find(options.passed_on, "--output");
     const bool start = std::ranges::find(options.passed_on, "--start") != options.passed_on.end();
     const std::string scene = options.scene.stem().string();
@@ -51,6 +51,11 @@ class Watch {
     if (fs::exists(fs::symlink_status(output, ignored)) && !is_output_of(output, scene))
       throw Error(ExitCode::output_failed, "{}: exists already, and is no picture of {}; give another name",
                   output.string(), scene);
+    if (options.film && fs::exists(output, ignored) && output.stem().extension() != ".watch")
+      throw Error(ExitCode::output_failed,
+                  "{}: exists already, and may be a film of weft run; give a name that ends in .watch{}, which is "
+                  "replaced, or remove the film",
+                  output.string(), output.extension().string());
     if (options.film && option == options.passed_on.end()) film_output_ = {"--output", output.string()};
   }
 
