@@ -112,6 +112,8 @@ void Parser::add_thumbnail() {
       "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft\n"
       "  weft thumbnail scenes/*.toml -o stills --size 320x180\n"
       "  weft thumbnail dress.toml --start -o start.png\n"
+      "\nWith --frame N, a scene is simulated up to frame N, and a computed camera shows what has happened until\n"
+      "then, that of the film all frames. A cache of all frames gives the picture of the film.\n"
       "\nIf a scene fails, the others are still drawn; the exit code is that of the first scene that failed.");
 }
 
