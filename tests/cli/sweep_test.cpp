@@ -293,6 +293,13 @@ TEST_F(Sweeps, RunsThatWereToBeRepeatedAreNotDoneUntilThen) {
   EXPECT_EQ(again.err.find("done already"), std::string::npos) << again.err;
 }
 
+TEST_F(Sweeps, AreNotReportedBeforeTheyBegin) {
+  const Outcome outcome = sweep({"--set", kRadius, "--report"});
+  EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+  EXPECT_NE(outcome.err.find("w: expected the folder of a sweep"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder_ / "w")) << "the sweep would refuse a folder that it has not begun";
+}
+
 TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
   // A camera that one of the scenes already has.
   const std::string cameras =

@@ -20,6 +20,7 @@
 #include "tools/cli/signals.hpp"
 #include "tools/cli/sweep_jobs.hpp"
 #include "tools/cli/sweep_report.hpp"
+#include "tools/review/find_runs.hpp"
 #include "tools/review/review.hpp"
 
 namespace weft::cli {
@@ -63,6 +64,9 @@ class Sweep {
     plan_ = read_sweep(options_, paths_);
     for (const SweepJob& job : plan_) jobs_.push_back({job});
     check_sweep_folder(options_, paths_);
+    if (options_.gather && !fs::exists(options_.output / review::kSweepName))
+      throw Error(ExitCode::asset_unreadable, "{}: expected the folder of a sweep, whose runs --report gathers",
+                  options_.output.string());
   }
 
   ExitCode make() {
