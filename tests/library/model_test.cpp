@@ -261,6 +261,23 @@ TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
   }
 }
 
+// Joined by commas, both lists of names are "a,b,c".
+TEST(LibraryModel, RefusesAStateOfOtherDrivenBodiesWhoseNamesHaveCommas) {
+  Model model;
+  model.cloths = {sheet()};
+  for (const char* name : {"a", "b,c", "a,b", "c"}) {
+    Body body = ball();
+    body.name = name, body.collide = false;
+    model.bodies.push_back(body);
+  }
+  Simulation whole(model, {.driven = {"a", "b,c"}, .state = {}});
+  whole.move("a", {{0, 0, 0.5}});
+  whole.advance();
+  const std::string state = whole.save();
+  EXPECT_NO_THROW(Simulation(model, {.driven = {"a", "b,c"}, .state = state}));
+  expect_refused("with the same driven bodies", model, {.driven = {"a,b", "c"}, .state = state});
+}
+
 // Without air, the sheet falls freely for 0.2 s and then keeps its velocity, which no warning takes for a gain.
 TEST(LibraryWeather, ChangesGravityBetweenFrames) {
   Model model;

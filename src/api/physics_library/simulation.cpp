@@ -114,7 +114,10 @@ std::string Simulation::save() const {
 namespace weft::library {
 
 std::string heading_of(std::uint64_t hash, const SimulationOptions& options) {
-  return fmt::format("weft {} {:016x} {}\n", kVersion, hash, fmt::join(options.driven, ","));
+  std::string heading = fmt::format("weft {} {:016x}", kVersion, hash);
+  // Each name with its size, since names may contain any character.
+  for (const std::string& name : options.driven) heading += fmt::format(" {}:{}", name.size(), name);
+  return heading + '\n';
 }
 
 }  // namespace weft::library
