@@ -228,11 +228,6 @@ void add_follower_points(const Cast& cast, const FollowerPoints& pin, const std:
   character::add_followers(body, start, mask, places);
 }
 
-/// Start of the run [s].
-double begin_of(const scene::Scene& scene) {
-  return -scene.preroll_frames() / scene.time.fps;
-}
-
 /// Times of the key frames of a character: k / rate for `count` integers k from `first` on.
 struct KeyTimes {
   double rate = kMinKeyRate;  // [1/s]
@@ -245,11 +240,12 @@ struct KeyTimes {
   }
 };
 
-/// `clip_rate`: keys per second of the clip; 0: no clip. `changes_stance`: whether the arms move after `dressing`.
+/// `clip_rate`: keys per second of the clip; 0: no clip. `changes_stance`: whether the body leaves a stance after
+/// `dressing`.
 KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
-  const double duration = cast.scene.time.duration, begin = begin_of(cast.scene);
+  const double duration = cast.scene.time.duration, begin = cast.begin();
   const bool grows = settings.grow > 0, moves = (clip_rate > 0 || changes_stance) && duration > cast.motion_start();
   if (!grows && !moves) return times;
   times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kMinKeyRate, kMaxKeyRate));
@@ -259,6 +255,13 @@ KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const double end = moves ? duration : begin + settings.grow;
   times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
   return times;
+}
+
+template <class Source>
+KeyTimes key_times(const Cast& cast, const Source& source, const Body& body) {
+  const double rate = body.clip ? character::key_rate(*body.clip) : 0;
+  const bool leaves_rest = body.clip && source.stance == scene::Stance::rest;
+  return key_times(cast, rate, source.stance_arms || (leaves_rest && rate == 0));
 }
 
 void check_memory(const Cast& cast, const KeyTimes& times, std::size_t vertices) {
@@ -320,8 +323,7 @@ StandingBody make_standing(const Cast& cast, const Source& source, const std::st
   const Body body = make_playing_body(cast, source);
   const character::Character& character = body.character;
   const character::Clip still;
-  const character::Pose pose =
-      performance_of(cast, source, body, body.clip ? *body.clip : still).at(begin_of(cast.scene));
+  const character::Pose pose = performance_of(cast, source, body, body.clip ? *body.clip : still).at(cast.begin());
   const scene::Pose& placed = cast.settings.pose;
   StandingBody standing;
   standing.mesh = character.mesh;
@@ -406,9 +408,9 @@ Actor make_actor_of(const Cast& cast, const Source& source, std::span<const Foll
       limb_clearance_of(cast, source, body, performance, parts, cloths);
   MaxDisplacement moved;
   std::vector<Index> limbs = shells_of_limbs(cast, source, body);
-  const character::Pose start = performance.at(begin_of(cast.scene));
+  const character::Pose start = performance.at(cast.begin());
   for (const FollowerPoints& pin : following) add_follower_points(cast, pin, parts, start, vertices, body.character);
-  const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
+  const KeyTimes times = key_times(cast, source, body);
   std::vector<Vec3> bones;  // per vertex of the body (not per follower point): the point from which it grows
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
@@ -419,7 +421,7 @@ Actor make_actor_of(const Cast& cast, const Source& source, std::span<const Foll
     character::skin(body.character, pose, x);
     if (grounds.size() == 1) lowest.push_back(height_over(grounds[0], std::span(x).first(vertices)));
     if (clearance) moved.add(clearance->move_skin(pose, x), t, x);
-    const double since = t - begin_of(cast.scene);
+    const double since = t - cast.begin();
     if (since >= cast.settings.grow) return;
     for (std::size_t v = 0; v < bones.size(); ++v)
       x[v] = bones[v] + character::grown(since, cast.settings.grow) * (x[v] - bones[v]);
@@ -463,9 +465,7 @@ KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertice
 template <class Source>
 KeyFrameCount count(const Cast& cast, const Source& source) {
   Body body = make_playing_body(cast, source);
-  KeyFrameCount counted =
-      count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0, source.stance_arms.has_value()),
-            body.character.mesh.positions.size());
+  KeyFrameCount counted = count(cast, key_times(cast, source, body), body.character.mesh.positions.size());
   for (const Part& part : parts_of(cast, source, {}, body))
     if (!part.collide) counted.left_out.emplace_back(part.name, std::ranges::count(part.vertices, 1));
   return counted;

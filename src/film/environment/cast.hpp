@@ -29,8 +29,10 @@ struct Cast {
 
   Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
   assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
+  /// Start of the run [s].
+  double begin() const { return -scene.preroll_frames() / scene.time.fps; }
   /// Time at which the character begins to move [s].
-  double motion_start() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
+  double motion_start() const { return settings.dressing + begin(); }
   character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }
 
   /// Throws Error(scene_invalid) about the key `key` of the character.

@@ -121,11 +121,10 @@ std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtSt
 std::vector<float> nearness_of_cloths(const Cast& cast, const character::Character& body,
                                       const character::Performance& performance, std::span<const ClothAtStart> cloths) {
   const scene::Pose& pose = cast.settings.pose;
-  const double begin = -cast.scene.preroll_frames() / cast.scene.time.fps;
   std::vector<float> nearness(body.mesh.positions.size(), 0);
   std::vector<Vec3> x(nearness.size());
   for (const ClothAtStart& cloth : cloths) {
-    character::skin(body, performance.at(begin + cloth.put_on), x);
+    character::skin(body, performance.at(cast.begin() + cloth.put_on), x);
     for (Vec3& v : x) v = pose.position + pose.rotation * v;
     const std::vector<float> here = nearness_of_cloth(x, cloth);
     for (std::size_t v = 0; v < here.size(); ++v) nearness[v] = std::max(nearness[v], here[v]);

@@ -1,0 +1,49 @@
+// Characters that stand in another pose than their clip begins with.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "film/environment/acting.hpp"
+#include "support/small_character.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+class Stance : public support::TestFolder {};
+
+// Without a rate of the clip, the body had one key, at time 0.
+TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
+  std::string text = support::rod_file();
+  const std::string keys = "2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;;";
+  text.replace(text.find(keys), keys.size(), "2; 1; 0;3;1.0,1.0,0.0;;;");
+  support::write_bytes(folder_ / "rod.x", text);
+  scene::Scene scene;
+  scene.time.duration = 2;
+  scene::Character& character = scene.characters.emplace_back();
+  character.name = "rod";
+  character.dressing = 0.5;
+  character.blend = 0.5;
+  scene::CharacterFile file;
+  file.path = folder_ / "rod.x";
+  file.clip = "Wave";
+  file.stance = scene::Stance::rest;
+  character.source = file;
+  const Actor actor = make_actor(scene, character);
+  const auto moved = [&](double t) {
+    std::vector<Vec3> x(actor.mesh.positions.size());
+    actor.keys.at(t, x);
+    double most = 0;
+    for (std::size_t v = 0; v < x.size(); ++v) most = std::max(most, (x[v] - actor.mesh.positions[v]).norm());
+    return most;
+  };
+  EXPECT_LT(moved(0.48), 1e-6);
+  EXPECT_NEAR(moved(0.75), 0.5, 0.02) << "half of the change";
+  EXPECT_NEAR(moved(1.5), 1, 1e-5);
+  EXPECT_EQ(count_key_frames(scene, character).bytes, actor.keys.bytes());
+}
+
+}  // namespace
+}  // namespace weft::environment
