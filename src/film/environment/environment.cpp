@@ -194,7 +194,7 @@ std::vector<Environment::Attached> Environment::add_cloths(const scene::Scene& s
     for (const std::string& warning : made.details.warnings) log::warn(warning);
     if (const std::string carrier = carrier_of(scene, cloth);
         !carrier.empty() && starts_untangled(cloth) && scene::rectangle_particles(cloth) > 0)
-      if (const double moved = move_off_carrier(cloth, wearers.of(carrier, made.cloth.source), made.cloth.start))
+      if (const double moved = move_off_carrier(cloth, wearers.carrier(carrier, made.cloth.source), made.cloth.start))
         log::note(fmt::format("{}: starts {:.3g} m farther away from '{}', through which it would go",
                               made.cloth.source, moved, carrier));
     model.cloths.push_back(std::move(made.cloth));

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include "core/error.hpp"
 #include "film/character/joints.hpp"
 #include "film/environment/acting.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::environment {
 namespace {
@@ -16,9 +18,20 @@ const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) 
   return joints[character::joint_number(name)];
 }
 
-/// Axes of a wearer: x to its left, z up. The origin is at the height of its lowest vertex, below the midpoint between
-/// its upper-leg joints or, if these are unknown, its upper-arm joints.
-Eigen::Isometry3d axes_of(const StandingBody& standing, const Vec3& up, const std::string& where) {
+/// Axes of a body with its left side in the horizontal direction `left`. The origin is below `middle`, at the height of
+/// the lowest vertex.
+Eigen::Isometry3d axes_at(const Vec3& middle, const Vec3& left, const StandingBody& standing, const Vec3& up) {
+  double floor = std::numeric_limits<double>::infinity();
+  for (const Vec3& x : standing.mesh.positions) floor = std::min(floor, up.dot(x));
+  Eigen::Isometry3d axes = Eigen::Isometry3d::Identity();
+  axes.linear() << left, up.cross(left), up;
+  axes.translation() = middle + (floor - up.dot(middle)) * up;
+  return axes;
+}
+
+/// Axes of a wearer: x to its left, z up. The origin is below the midpoint between its upper-leg joints or, if these
+/// are unknown, its upper-arm joints. Absent if both are unknown.
+std::optional<Eigen::Isometry3d> axes_by_joints(const StandingBody& standing, const Vec3& up) {
   for (const char* name : {"UpperLeg", "UpperArm"}) {
     const auto &left = joint(standing.joints, std::string("Left") + name),
                &right = joint(standing.joints, std::string("Right") + name);
@@ -27,23 +40,15 @@ Eigen::Isometry3d axes_of(const StandingBody& standing, const Vec3& up, const st
     across -= across.dot(up) * up;
     if (across.norm() == 0) continue;
     across.normalize();
-    double floor = std::numeric_limits<double>::infinity();
-    for (const Vec3& x : standing.mesh.positions) floor = std::min(floor, up.dot(x));
     const Vec3 middle = 0.5 * (*left + *right);
-    Eigen::Isometry3d axes = Eigen::Isometry3d::Identity();
-    axes.linear() << across, up.cross(across), up;
-    axes.translation() = middle + (floor - up.dot(middle)) * up;
-    return axes;
+    return axes_at(middle, across, standing, up);
   }
-  throw Error(ExitCode::scene_invalid,
-              "{}: expected a wearer that stands upright with two joints UpperLeg or UpperArm, got one without; "
-              "[[character.joint]] names them",
-              where);
+  return std::nullopt;
 }
 
-garment::Wearer make_wearer(const StandingBody& standing, const Vec3& up, const std::string& where) {
+garment::Wearer make_wearer(const StandingBody& standing, const Eigen::Isometry3d& axes) {
   garment::Wearer wearer;
-  wearer.to_world = axes_of(standing, up, where);
+  wearer.to_world = axes;
   const Eigen::Isometry3d to_own = wearer.to_world.inverse();
   for (const Vec3& x : standing.mesh.positions) wearer.skin.push_back(to_own * x);
   wearer.triangles = standing.mesh.topology.triangles;
@@ -101,11 +106,27 @@ const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string&
 }
 
 const garment::Wearer& Wearers::of(const std::string& name, const std::string& where) {
-  const auto found = std::ranges::find(scene_.characters, name, &scene::Character::name);
-  const auto known = made_.find(found->name);
+  const garment::Wearer& wearer = carrier(name, where);
+  if (without_axes_.contains(name))
+    throw Error(ExitCode::scene_invalid,
+                "{}: expected a wearer that stands upright with two joints UpperLeg or UpperArm, got one without; "
+                "[[character.joint]] names them",
+                where);
+  return wearer;
+}
+
+const garment::Wearer& Wearers::carrier(const std::string& name, const std::string& where) {
+  const auto known = made_.find(name);
   if (known != made_.end()) return known->second;
+  const auto found = std::ranges::find(scene_.characters, name, &scene::Character::name);
   const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
-  return made_.emplace(found->name, make_wearer(make_standing_body(scene_, *found, where), up, where)).first->second;
+  const StandingBody standing = make_standing_body(scene_, *found, where);
+  std::optional<Eigen::Isometry3d> axes = axes_by_joints(standing, up);
+  if (!axes) {
+    without_axes_.insert(name);
+    axes = axes_at(mesh::bounding_box(standing.mesh.positions).center(), Vec3::UnitX(), standing, up);
+  }
+  return made_.emplace(name, make_wearer(standing, *axes)).first->second;
 }
 
 }  // namespace weft::environment

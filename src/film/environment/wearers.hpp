@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 
 #include "film/garment/wearer.hpp"
@@ -20,10 +21,15 @@ class Wearers {
   /// The character of this name, which must exist. Throws Error(scene_invalid) if it lacks bones,
   /// or has neither two UpperLeg joints nor two UpperArm joints.
   const garment::Wearer& of(const std::string& name, const std::string& where);
+  /// The character of this name, which must exist, as the body that a sheet hangs from. If it lacks the joints that
+  /// define its axes, its origin is below its middle, and its x axis is that of the world. Throws Error(scene_invalid)
+  /// if it lacks bones.
+  const garment::Wearer& carrier(const std::string& name, const std::string& where);
 
  private:
   const scene::Scene& scene_;
   std::map<std::string, garment::Wearer> made_;
+  std::set<std::string> without_axes_;  // characters that lack the joints that define their axes
 };
 
 }  // namespace weft::environment
