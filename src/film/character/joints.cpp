@@ -18,8 +18,8 @@ struct BodyPart {
 };
 
 // Names in the rigs of Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai;
-// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; the
-// built-in mannequin.
+// SMPL; CMU as BVH and as Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman;
+// Quaternius; the built-in mannequin.
 const std::vector<BodyPart> kMiddle = {
     {"Hips", {"hips", "pelvis", "hip"}},
     {"Spine",
@@ -33,7 +33,7 @@ const std::vector<BodyPart> kSides = {
     {"Shoulder", {"clavicle", "collar", "shoulder", "thorax"}},
     {"UpperArm", {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"}},
     {"LowerArm", {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"}},
-    {"Hand", {"wrist", "hand"}},
+    {"Hand", {"wrist", "hand", "palm", "palm2", "fist"}},
     {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip", "leg"}},
     {"LowerLeg", {"lowerleg", "lowleg", "calf", "shin", "lowerleg01", "tibia", "knee", "leg"}},
     {"Foot", {"ankle", "foot"}},
