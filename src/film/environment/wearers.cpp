@@ -46,7 +46,29 @@ std::optional<Eigen::Isometry3d> axes_by_joints(const StandingBody& standing, co
   return std::nullopt;
 }
 
+/// Adds the hands that a rig lacks, so that its arms are known: a hand is at the mean position of the skin of its arm
+/// beyond the elbow.
+void estimate_hands(const StandingBody& standing, Joints& joints) {
+  for (const bool left : {true, false}) {
+    const std::string side = left ? "Left" : "Right";
+    const character::Limb arm = left ? character::Limb::left_arm : character::Limb::right_arm;
+    const auto &shoulder = joint(joints, side + "UpperArm"), &elbow = joint(joints, side + "LowerArm");
+    if (!shoulder || !elbow || joint(joints, side + "Hand")) continue;
+    Vec3 sum = Vec3::Zero();
+    double count = 0;
+    for (std::size_t v = 0; v < standing.limbs.size(); ++v) {
+      const Vec3& x = standing.mesh.positions[v];
+      if (standing.limbs[v] != arm || (x - *elbow).dot(*elbow - *shoulder) <= 0) continue;
+      sum += x;
+      ++count;
+    }
+    if (count > 0) joints[character::joint_number(side + "Hand")] = Vec3(sum / count);
+  }
+}
+
 garment::Wearer make_wearer(const StandingBody& standing, const Eigen::Isometry3d& axes) {
+  Joints known = standing.joints;
+  estimate_hands(standing, known);
   garment::Wearer wearer;
   wearer.to_world = axes;
   const Eigen::Isometry3d to_own = wearer.to_world.inverse();
@@ -71,7 +93,7 @@ garment::Wearer make_wearer(const StandingBody& standing, const Eigen::Isometry3
   const auto limb = [&](const std::string& side, const std::array<const char*, 3>& names) {
     std::optional<garment::Limb> joints(std::in_place);
     for (std::size_t k = 0; k < names.size(); ++k) {
-      const auto& place = joint(standing.joints, side + names[k]);
+      const auto& place = joint(known, side + names[k]);
       if (!place) return std::optional<garment::Limb>();
       (*joints)[k] = to_own * *place;
     }
@@ -86,7 +108,7 @@ garment::Wearer make_wearer(const StandingBody& standing, const Eigen::Isometry3
   for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
   wearer.neck = garment::kNeckHeightRatio * crown;
   for (const char* name : {"Head", "Neck"})
-    if (const auto& base = joint(standing.joints, name)) wearer.neck = (to_own * *base).z();
+    if (const auto& base = joint(known, name)) wearer.neck = (to_own * *base).z();
   return wearer;
 }
 

@@ -1,0 +1,58 @@
+// Bodies of characters as wearers of garments.
+#include "film/environment/wearers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+class WearerBodies : public support::TestFolder {};
+
+std::string matrix(const std::string& translation) {
+  return "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0," + translation + ",1.0;;";
+}
+
+std::string frame_of(const std::string& name, const std::string& translation, const std::string& below) {
+  return "Frame " + name + " { FrameTransformMatrix { " + matrix(translation) + " }\n" + below + " }\n";
+}
+
+// Two arms in a T-pose, with forearms as their only skin, as ASCII X. The elbows are at x = ±0.5 m.
+std::string arms_without_hands() {
+  const std::string arms = frame_of("LeftUpperArm", "0.2,1.4,0.0", frame_of("LeftLowerArm", "0.3,0.0,0.0", "")) +
+                           frame_of("RightUpperArm", "-0.2,1.4,0.0", frame_of("RightLowerArm", "-0.3,0.0,0.0", "")) +
+                           "Mesh Arms { 8; 0.6;1.3;0.0;, 0.6;1.5;0.0;, 0.8;1.5;0.0;, 0.8;1.3;0.0;,\n"
+                           " -0.6;1.3;0.0;, -0.6;1.5;0.0;, -0.8;1.5;0.0;, -0.8;1.3;0.0;;\n"
+                           " 4; 3;0,1,2;, 3;0,2,3;, 3;4,6,5;, 3;4,7,6;;\n"
+                           " XSkinMeshHeader { 1; 1; 2; }\n"
+                           " SkinWeights { \"LeftLowerArm\"; 4; 0,1,2,3; 1.0,1.0,1.0,1.0; " +
+                           matrix("-0.5,-1.4,0.0") +
+                           " }\n SkinWeights { \"RightLowerArm\"; 4; 4,5,6,7; 1.0,1.0,1.0,1.0; " +
+                           matrix("0.5,-1.4,0.0") + " } }\n";
+  return "xof 0303txt 0032\n" + frame_of("Root", "0.0,0.0,0.0", arms);
+}
+
+TEST_F(WearerBodies, HaveArmsIfTheirRigLacksHands) {
+  support::write_bytes(folder_ / "arms.x", arms_without_hands());
+  scene::Scene scene;
+  scene::CharacterFile file;
+  file.path = folder_ / "arms.x";
+  scene::Character& character = scene.characters.emplace_back();
+  character.name = "robot";
+  character.source = file;
+  Wearers wearers(scene);
+  const garment::Wearer& robot = wearers.of("robot", "here");
+  // The floor is at the lowest vertex, 0.1 m below the arms.
+  for (const auto& [arm, side] : {std::pair{robot.left_arm, 1.0}, {robot.right_arm, -1.0}}) {
+    ASSERT_TRUE(arm.has_value()) << side;
+    EXPECT_LT(((*arm)[1] - Vec3(side * 0.5, 0, 0.1)).norm(), 1e-6);
+    EXPECT_LT(((*arm)[2] - Vec3(side * 0.7, 0, 0.1)).norm(), 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace weft::environment
