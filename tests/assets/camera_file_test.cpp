@@ -69,6 +69,36 @@ TEST_F(CameraFile, MayHaveIntegersAsKeys) {
   EXPECT_LT((camera.positions.back() - Vec3(3, 1, 0)).norm(), 1e-3);
 }
 
+TEST_F(CameraFile, StaysAtEachKeyOfStepsUntilTheNext) {
+  document_["animations"][0]["samplers"][0]["interpolation"] = "STEP";
+  const LoadedCamera camera = load();
+  for (std::size_t i = 0; i < camera.times.size(); ++i)
+    if (camera.times[i] < 1.9985) EXPECT_LT((camera.positions[i] - Vec3(0, 1, 3)).norm(), kSingle) << camera.times[i];
+  EXPECT_LT((camera.positions.back() - Vec3(3, 1, 0)).norm(), kSingle);
+}
+
+// Both keys have tangents of zero: the camera starts and stops smoothly.
+TEST_F(CameraFile, FollowsSplines) {
+  const float half = std::sqrt(0.5F);
+  std::string keys;
+  for (const float x : {0.0F, 2.0F,                                                              // times
+                        0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 0.0F,  // tangent, value, ...
+                        0.0F, 0.0F, 0.0F, 0.0F, 0.0F, half, 0.0F, half, 0.0F, 0.0F, 0.0F, 0.0F})
+    keys.append(reinterpret_cast<const char*>(&x), sizeof x);
+  support::write_bytes(folder_ / "keys.bin", keys);
+  document_["buffers"][0] = {{"byteLength", keys.size()}, {"uri", "keys.bin"}};
+  document_["bufferViews"][1]["byteLength"] = keys.size() - 8;
+  document_["accessors"][1]["count"] = 6;
+  document_["animations"][0]["samplers"][0]["interpolation"] = "CUBICSPLINE";
+  const LoadedCamera camera = load();
+  EXPECT_NEAR(camera.times.back(), 2, kSingle);
+  for (std::size_t i = 0; i < camera.times.size(); ++i) {
+    const double u = camera.times[i] / 2, part = u * u * (3 - 2 * u), along = part * std::sqrt(0.5);
+    const double angle = 2 * std::atan2(along, 1 - part + along);
+    EXPECT_LT((camera.positions[i] - Vec3(3 * std::sin(angle), 1, 3 * std::cos(angle))).norm(), 1e-3) << u;
+  }
+}
+
 TEST_F(CameraFile, StandsStillWithoutAnAnimation) {
   document_.erase("animations");
   const LoadedCamera camera = load("eye");

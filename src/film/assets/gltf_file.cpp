@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -136,7 +138,13 @@ std::size_t components_of(const Json& accessor) {
   throw std::runtime_error(fmt::format("expected SCALAR or VEC2 to VEC4 as the type of integers, got \"{}\"", type));
 }
 
-/// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats.
+/// Largest interval between keys that replace a spline [s], and their largest number in an interval of the spline.
+constexpr double kSplineInterval = 1.0 / 60, kMaxSplinePieces = 1000;
+/// Duration of the change from one value to the next that replaces a step [s]: less than a frame.
+constexpr double kStepDuration = 1e-3;
+
+/// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats, and in which the
+/// values of all animations change linearly.
 class Rewriter {
  public:
   Rewriter(Json& gltf, std::string data, const std::filesystem::path& file) : gltf_(gltf), file_(file) {
@@ -151,8 +159,11 @@ class Rewriter {
         for (Json& target : list_of(primitive, "targets")) use_floats(target);
       }
     for (Json& animation : list_of(gltf_, "animations"))
-      for (Json& sampler : list_of(animation, "samplers")) use_floats(sampler);
-    if (new_accessors_.empty()) return std::nullopt;
+      for (Json& sampler : list_of(animation, "samplers")) {
+        make_linear(sampler);
+        use_floats(sampler);
+      }
+    if (new_accessors_.empty() && floats_.empty()) return std::nullopt;
     return to_binary();
   }
 
@@ -176,10 +187,15 @@ class Rewriter {
     if (integer_of(entry_of(gltf_, "accessors", accessor)) == nullptr) return accessor;
     const auto known = new_accessors_.find(accessor);
     if (known != new_accessors_.end()) return known->second;
-    Json copy = entry_of(gltf_, "accessors", accessor);
-    const std::vector<double> values = values_of(copy);
+    const Json copy = entry_of(gltf_, "accessors", accessor);
+    return new_accessors_[accessor] = append_floats(copy, values_of(copy));
+  }
+
+  /// Appends an accessor of floats, and returns its number. `copy`: an accessor with the same type of elements.
+  int append_floats(Json copy, const std::vector<double>& values) {
     for (const char* key : {"normalized", "byteOffset", "min", "max", "sparse"}) copy.erase(key);
     copy["componentType"] = kFloat;
+    copy["count"] = values.size() / components_of(copy);
     copy["bufferView"] = gltf_["bufferViews"].size();
     gltf_["bufferViews"].push_back(
         {{"buffer", -1}, {"byteOffset", floats_.size()}, {"byteLength", values.size() * sizeof(float)}});
@@ -188,7 +204,68 @@ class Rewriter {
       floats_.append(reinterpret_cast<const char*>(&number), sizeof number);
     }
     gltf_["accessors"].push_back(std::move(copy));
-    return new_accessors_[accessor] = static_cast<int>(gltf_["accessors"].size()) - 1;
+    return static_cast<int>(gltf_["accessors"].size()) - 1;
+  }
+
+  /// Replaces the keys of a spline or of steps by more keys with linear changes between them, since assimp takes the
+  /// keys of any sampler for such. Leaves steps between equal values, which some programs write for all that is still.
+  void make_linear(Json& sampler) {
+    const std::string kind = value_or<std::string>(sampler, "interpolation", "");
+    const bool spline = kind == "CUBICSPLINE";
+    if (!spline && kind != "STEP") return;
+    const Json input = entry_of(gltf_, "accessors", value_or<int>(sampler, "input", -1)),
+               output = entry_of(gltf_, "accessors", value_or<int>(sampler, "output", -1));
+    const std::vector<double> times = numbers_of(input), values = numbers_of(output);
+    // A key of a spline has three parts: the tangent before it, its value, and the tangent behind it.
+    const std::size_t parts = spline ? 3 : 1, value_part = spline ? 1 : 0, keys = times.size();
+    if (keys < 2 || values.empty() || values.size() % (parts * keys) != 0) return;
+    if (!std::ranges::all_of(times, [](double t) { return std::isfinite(t); })) return;
+    const std::size_t width = values.size() / (parts * keys);
+    const auto part = [&](std::size_t key, std::size_t which) {
+      return std::span(values).subspan((parts * key + which) * width, width);
+    };
+    bool still = !spline;
+    for (std::size_t i = width; still && i < values.size(); ++i) still = values[i] == values[i - width];
+    if (still) return;
+    std::vector<double> new_times, new_values;
+    for (std::size_t key = 0; key + 1 < keys; ++key) {
+      const double begin = times[key], duration = times[key + 1] - begin;
+      if (!spline) {
+        for (const double t : {begin, begin + duration - std::min(kStepDuration, 0.5 * duration)}) {
+          new_times.push_back(t);
+          for (const double value : part(key, 0)) new_values.push_back(value);
+        }
+        continue;
+      }
+      const int pieces =
+          static_cast<int>(std::clamp(std::ceil(duration / kSplineInterval - 1e-6), 1.0, kMaxSplinePieces));
+      for (int piece = 0; piece < pieces; ++piece) {
+        const double u = static_cast<double>(piece) / pieces;
+        new_times.push_back(begin + u * duration);
+        for (std::size_t i = 0; i < width; ++i)  // glTF 2.0, appendix C.5
+          new_values.push_back((2 * u * u * u - 3 * u * u + 1) * part(key, 1)[i] +
+                               duration * (u * u * u - 2 * u * u + u) * part(key, 2)[i] +
+                               (3 * u * u - 2 * u * u * u) * part(key + 1, 1)[i] +
+                               duration * (u * u * u - u * u) * part(key + 1, 0)[i]);
+      }
+    }
+    new_times.push_back(times.back());
+    for (const double value : part(keys - 1, value_part)) new_values.push_back(value);
+    sampler["interpolation"] = "LINEAR";
+    sampler["input"] = append_floats(input, new_times);
+    sampler["output"] = append_floats(output, new_values);
+  }
+
+  /// The values of an accessor of integers or floats.
+  std::vector<double> numbers_of(const Json& accessor) {
+    if (integer_of(accessor) != nullptr) return values_of(accessor);
+    // Reads floats as integers of the same bits.
+    Json bits = accessor;
+    bits.erase("normalized");
+    bits["componentType"] = kIntegers.back().code;
+    std::vector<double> values = values_of(bits);
+    for (double& value : values) value = static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(value)));
+    return values;
   }
 
   /// The values of an accessor of integers, including the replacements of its sparse part.

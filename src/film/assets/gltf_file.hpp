@@ -8,14 +8,16 @@
 namespace weft::assets {
 
 /// Returns bytes of a binary glTF file that assimp reads in place of `file`, or nullopt if assimp
-/// can read the file itself. Two kinds of files need this:
+/// can read the file itself. Three kinds of files need this:
 /// - Files with integers in attributes or in channels of animations: the integers become floats.
 ///   Otherwise assimp would copy the bytes of the integers into its floats.
+/// - Files with animations in steps or splines: their keys become such with linear changes between
+///   them, as assimp reads all keys.
 /// - Files in binary layout with another ending than .glb, such as .vrm, which assimp would read as
 ///   OBJ: their bytes are returned unchanged.
 /// Throws std::runtime_error if a glTF file requires an unsupported extension of glTF, such as a
-/// compression, if its JSON is nested too deeply, or if such integers or their buffers cannot be
-/// read.
+/// compression, if its JSON is nested too deeply, or if such integers, keys or their
+/// buffers cannot be read.
 std::optional<std::string> readable_gltf(const std::filesystem::path& file);
 
 }  // namespace weft::assets
