@@ -117,6 +117,20 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
   EXPECT_NEAR(volumes[150], 0.5 * (volumes[0] + volumes[20]), 0.15 * swing);
 }
 
+// The floor cuts off a cap of 10 % of the sphere, and untangling moves it up.
+TEST_F(Balloon, IsClosedWithTheVolumeThatItHasOnceItIsUntangled) {
+  const auto start = [&](const std::string& more) {
+    return production::SceneSimulation(scene("", more + "pressure = { control = \"fill\", fill = 1 }\n" +
+                                                     "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n"))
+        .initial_report()
+        .enclosed.at(0);
+  };
+  const EnclosedAir given = start("position = [0, 0, 1]\n");
+  const EnclosedAir untangled = start("position = [0, 0, 0.06]\nstart = \"untangle\"\n");
+  EXPECT_LT(untangled.volume, 0.98 * given.volume);
+  EXPECT_NEAR(untangled.pressure, 0, 1e-6 * kAmbient);
+}
+
 TEST_F(Balloon, FliesOnWithItsMomentum) {
   const scene::Scene balloon =
       scene("duration = 0.4\nstep = 0.005", "velocity = [0.3, 0.1, 0]\nspin = [0, 0, 90]\npressure.gauge = 500\n");

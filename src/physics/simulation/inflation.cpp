@@ -45,6 +45,17 @@ Inflation::Inflation(const model::Model& model, std::span<const Index> first_par
   }
 }
 
+// Makes the volume at x [m], of all particles, the reference for amounts of air.
+void Inflation::Cloth::close(std::span<const Vec3> x) {
+  const double enclosed = evaluate(x);
+  if (control != model::PressureControl::gauge && volume.is_flat(enclosed))
+    throw Error(ExitCode::scene_invalid,
+                "{}: expected cloth that encloses a volume when it is closed, for an amount of air, got {:.3g} m³; "
+                "close it, or give its pressure (control = \"gauge\")",
+                where, enclosed);
+  closed_volume = std::max(0.0, enclosed);
+}
+
 // Amount of air, as its volume at the outside pressure [m³].
 double Inflation::Cloth::air() const {
   return std::max(0.0, control == model::PressureControl::fill ? value * closed_volume : closed_volume + value);
@@ -85,15 +96,14 @@ void Inflation::begin_step(double t, std::span<const Vec3> x, const std::functio
     if (!is_closed(cloth.number)) {
       cloth.closed_volume = kOpen;
     } else if (cloth.closed_volume == kOpen) {
-      const double volume = cloth.evaluate(x);
-      if (cloth.control != model::PressureControl::gauge && cloth.volume.is_flat(volume))
-        throw Error(ExitCode::scene_invalid,
-                    "{}: expected cloth that encloses a volume when it is closed, for an amount of air, got {:.3g} m³; "
-                    "close it, or give its pressure (control = \"gauge\")",
-                    cloth.where, volume);
-      cloth.closed_volume = std::max(0.0, volume);
+      cloth.close(x);
     }
   }
+}
+
+void Inflation::measure_closed_volumes(std::span<const Vec3> x, std::span<const std::size_t> kept) {
+  for (Cloth& cloth : cloths_)
+    if (cloth.closed_volume != kOpen && std::ranges::find(kept, cloth.number) == kept.end()) cloth.close(x);
 }
 
 bool Inflation::is_constant_between(double t0, double t1) const {

@@ -37,6 +37,9 @@ class Inflation {
   /// reference for amounts of air. Throws Error(scene_invalid) if the cloth then encloses no volume
   /// although the model gives an amount of air.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
+  /// Call after cloth has been moved at the start: the volume that each closed cloth encloses at x [m] becomes the
+  /// reference for amounts of air, except for the cloths with the numbers `kept`. Throws as begin_step() does.
+  void measure_closed_volumes(std::span<const Vec3> x, std::span<const std::size_t> kept);
   /// Whether the model gives the same pressures or amounts of air at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;
 
@@ -68,6 +71,7 @@ class Inflation {
     double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch
 
+    void close(std::span<const Vec3> x);
     double air() const;
     double pressure(double at_volume) const;
     double stiffness(double at_volume) const;

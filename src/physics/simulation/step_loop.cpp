@@ -72,6 +72,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
 void StepLoop::untangle() {
   if (!collisions_) return;
   collisions_->untangle(held_, put_on_, progress_.now);
+  cloth_.inflation().measure_closed_volumes(progress_.now.particles(), put_on_);
   next_ = progress_.now;
 }
 
