@@ -44,6 +44,15 @@ TEST(RopeRuns, GoOnFromSavedStatesAsIfNeverInterrupted) {
   EXPECT_EQ(testing::continue_runs(support::scene_of_text(kTangle), {14, {3, 7, 11}}).difference, "");
 }
 
+// The strains that colour a frame refer to the rest lengths at its time, also in the frame of the saved state.
+TEST(RopeRuns, ShowTheStrainsOfTheirPresentLengthOnceTheyAreRestored) {
+  const scene::Scene scene = support::scene_of_text(
+      "[time]\nduration = 0.6\n[render]\nheat = \"strain\"\n"
+      "[[rope]]\nname = \"line\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\ndiameter = 0.006\npin = [{ at = 0 }]\n"
+      "keys = [{ time = 0, length = 1 }, { time = 0.5, length = 0.7 }]\n");
+  EXPECT_EQ(testing::continue_runs(scene, {12, {3, 7, 11}}).difference, "");
+}
+
 TEST(RopeRuns, AreDrawnInToTheLengthOfTheirKeys) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 1.2\n[[rope]]\nname = \"line\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\ndiameter = 0.006\n"

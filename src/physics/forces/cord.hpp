@@ -44,6 +44,7 @@ class Cord final : public Membrane {
 
   /// Sets the rest lengths to `ratio` times the initial ones. Returns whether this changes the constant stiffness.
   bool set_length_ratio(double ratio);
+  double length_ratio() const { return length_ratio_; }
 
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;

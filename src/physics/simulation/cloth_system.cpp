@@ -1,10 +1,10 @@
 #include "physics/simulation/cloth_system.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
@@ -18,7 +18,6 @@
 #include "physics/forces/stretch.hpp"
 #include "physics/forces/stretch_limit.hpp"
 #include "physics/forces/triangle_bend.hpp"
-#include "physics/mesh/geometry.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -50,50 +49,6 @@ double max_shear_sine(const model::Material& m) {
 }
 double max_extension(const model::Material& m) {
   return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
-}
-
-/// Indices of one box of a lattice that divides the rest shape: along normal, warp and weft of a
-/// grid, or along z, y and x for triangles. build_aggregates() makes aggregates from such boxes.
-using Box = std::array<int, 3>;
-struct Lattice {
-  std::vector<Box> boxes;       // of each particle, or of each box of the finer lattice
-  std::array<double, 3> sides;  // of a box, along the same axes [m]
-};
-
-// The finest lattice. Grids have one box per particle; triangles have cubes with the mean particle distance as side.
-Lattice lattice_of(const model::Cloth& cloth) {
-  Lattice lattice;
-  const mesh::Grid& grid = cloth.grid;
-  lattice.sides = {grid.lu, grid.lv, grid.lu};
-  for (int j = 0; j < grid.nv; ++j)
-    for (int i = 0; i < grid.nu; ++i) lattice.boxes.push_back({0, j, i});
-  if (cloth.sheet.triangles.empty()) return lattice;
-  const std::vector<Vec3>& rest = cloth.sheet.rest;
-  const Vec3 corner = mesh::bounding_box(rest).min();
-  const double side = std::sqrt(mesh::surface_area(cloth.sheet.triangles, rest) / static_cast<double>(rest.size()));
-  lattice.sides.fill(side);
-  for (const Vec3& x : rest) {
-    const Vec3 place = (x - corner) / side;
-    lattice.boxes.push_back({static_cast<int>(place.z()), static_cast<int>(place.y()), static_cast<int>(place.x())});
-  }
-  return lattice;
-}
-
-// Doubles each side of the boxes that is at most √2 times the shortest one (of axes with several boxes), so that sides
-// become more equal. Cloth is stiffest between particles that are close together, so these are
-// merged first.
-void coarsen(Lattice& lattice) {
-  Box last{0, 0, 0};
-  for (const Box& box : lattice.boxes)
-    for (std::size_t axis = 0; axis < 3; ++axis) last[axis] = std::max(last[axis], box[axis]);
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    if (last[axis] > 0) least = std::min(least, lattice.sides[axis]);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (lattice.sides[axis] > std::numbers::sqrt2 * least) continue;
-    lattice.sides[axis] *= 2;
-    for (Box& box : lattice.boxes) box[axis] /= 2;
-  }
 }
 
 // Progress of sewing as a function of the elapsed fraction of its duration; the slope is zero at both ends.
@@ -294,34 +249,6 @@ std::size_t ClothSystem::largest_range_count() const {
   return count;
 }
 
-// Builds the aggregates of the preconditioner. Each level merges the boxes of the next finer one (coarsen()). The last
-// level has at most `numerics.linear.coarsest_aggregates` boxes, or one per cloth if there are more cloths. Each frame
-// particle is an aggregate of its own at all levels.
-void ClothSystem::build_aggregates(const model::Model& model) {
-  std::vector<Lattice> lattices;
-  for (const model::Cloth& cloth : model.cloths) lattices.push_back(lattice_of(cloth));
-  bool is_coarse = false;
-  do {
-    solver::Aggregates aggregates;
-    for (Lattice& lattice : lattices) {
-      coarsen(lattice);
-      std::vector<Box>& members = lattice.boxes;
-      std::vector<Box> halved = members;
-      std::ranges::sort(halved);
-      halved.erase(std::unique(halved.begin(), halved.end()), halved.end());
-      for (const Box& box : members)
-        aggregates.of.push_back(aggregates.count +
-                                static_cast<Index>(std::ranges::lower_bound(halved, box) - halved.begin()));
-      aggregates.count += static_cast<Index>(halved.size());
-      members = std::move(halved);
-    }
-    const Index of_cloths = aggregates.count;
-    for (Index i = first_[cloths()]; i < first_.back(); ++i) aggregates.of.push_back(aggregates.count++);
-    aggregate_levels_.push_back(std::move(aggregates));
-    is_coarse = of_cloths <= std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size()));
-  } while (!is_coarse);
-}
-
 double ClothSystem::Sewing::progress_at(double t) const {
   return duration > 0 ? ease((t - begin) / duration) : 1;
 }
@@ -345,9 +272,8 @@ bool ClothSystem::is_constant_between(double t0, double t1) const {
 }
 
 bool ClothSystem::sew(double t) {
-  bool changes_constant = false;
   for (const KeyedRope& rope : keyed_ropes_)
-    changes_constant |= rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
+    constant_changed_ |= rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
     const double progress = sewing.progress_at(t);
     if (sewing.ties != nullptr) {
@@ -356,7 +282,7 @@ bool ClothSystem::sew(double t) {
     }
     if (progress != sewing.progress) sewing.set_progress(progress);
   }
-  return changes_constant;
+  return std::exchange(constant_changed_, false);
 }
 
 void ClothSystem::inflate(double t, std::span<const Vec3> x) {
@@ -402,6 +328,13 @@ void ClothSystem::copy_seams_from(const ClothSystem& there, std::span<const std:
 
 template <class Archive>
 void ClothSystem::serialize(Archive& archive) {
+  for (const KeyedRope& rope : keyed_ropes_) {
+    double ratio = rope.cord->length_ratio();
+    archive.value(ratio);
+    if constexpr (!Archive::kReads) continue;
+    require(std::isfinite(ratio) && ratio > 0, "a length of a rope");
+    constant_changed_ |= rope.cord->set_length_ratio(ratio);
+  }
   for (Sewing& sewing : sewing_) {
     archive.value(sewing.progress);
     if (sewing.ties != nullptr) archive.value(sewing.time);

@@ -83,7 +83,7 @@ class ClothSystem {
   solver::LinearSystem make_linear_system() const;
 
   /// Updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t [s since the start of the
-  /// run]. Returns whether this changes the constant part of the stiffness.
+  /// run]. Returns whether the constant part of the stiffness has changed since the last call.
   bool sew(double t);
 
   /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1. Both are
@@ -108,7 +108,7 @@ class ClothSystem {
   /// Copies which ties of seams hold or are torn. `cloths[k]`: number, in this object, of cloth k of `there`.
   void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
 
-  /// Saves or restores the progress of sewing, torn seams, and enclosed air.
+  /// Saves or restores rope lengths, the progress of sewing, torn seams, and enclosed air.
   template <class Archive>
   void serialize(Archive& archive);
 
@@ -170,6 +170,7 @@ class ClothSystem {
     motion::Spline<1> lengths;  // over time
   };
   std::vector<KeyedRope> keyed_ropes_;
+  bool constant_changed_ = false;  // whether the constant part of the stiffness has changed since the last sew()
   Inflation inflation_;
   std::vector<char> held_;  // per particle: whether a pin holds it
   Vec3 gravity_;
