@@ -117,6 +117,23 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
   EXPECT_NEAR(volumes[150], 0.5 * (volumes[0] + volumes[20]), 0.15 * swing);
 }
 
+TEST_F(Balloon, IsPushedByThePressureInTheMiddleOfAStepOfTheMidpointRule) {
+  viscosity_ = 0;
+  scene::Scene balloon = scene("step = 0.0001\nintegrator = \"implicit_midpoint\"",
+                               "pressure.keys = [{ time = 0, gauge = 0 }, { time = 0.01, gauge = 10000 }]\n");
+  balloon.time.fps = 10000;
+  testing::solve_tightly(balloon);
+  production::SceneSimulation simulation(balloon);
+  EXPECT_NEAR(simulation.advance().enclosed.at(0).pressure, 100, 1e-6);  // at the end of the step
+  const ParticleState state = simulation.state();
+  double momentum = 0, mass = 0;
+  for (std::size_t i = 0; i < state.positions.size(); ++i)
+    momentum += state.masses[i] * state.velocities[i].dot(state.positions[i].normalized()), mass += state.masses[i];
+  // The pressure grows by 1 MPa/s, so the velocity is half of that times h², divided by the density. The threads hardly
+  // act yet.
+  EXPECT_NEAR(momentum / mass / (0.5 * 1e6 * 1e-8 / kDensity), 1, 0.03);
+}
+
 // The floor cuts off a cap of 10 % of the sphere, and untangling moves it up.
 TEST_F(Balloon, IsClosedWithTheVolumeThatItHasOnceItIsUntangled) {
   const auto start = [&](const std::string& more) {

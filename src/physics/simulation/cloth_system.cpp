@@ -272,6 +272,17 @@ bool ClothSystem::is_constant_between(double t0, double t1) const {
 }
 
 bool ClothSystem::sew(double t) {
+  update_rest_state(t);
+  return std::exchange(constant_changed_, false);
+}
+
+void ClothSystem::finish_step(double t) {
+  update_rest_state(t);
+  inflation_.set_time(begin_ + t);
+}
+
+// Updates rope lengths, rest shapes and ties to time t [s since the start of the run].
+void ClothSystem::update_rest_state(double t) {
   for (const KeyedRope& rope : keyed_ropes_)
     constant_changed_ |= rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
@@ -282,7 +293,6 @@ bool ClothSystem::sew(double t) {
     }
     if (progress != sewing.progress) sewing.set_progress(progress);
   }
-  return std::exchange(constant_changed_, false);
 }
 
 void ClothSystem::inflate(double t, std::span<const Vec3> x) {

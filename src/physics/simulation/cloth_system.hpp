@@ -82,16 +82,20 @@ class ClothSystem {
   /// An empty system with the sparsity pattern of these forces.
   solver::LinearSystem make_linear_system() const;
 
-  /// Updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t [s since the start of the
-  /// run]. Returns whether the constant part of the stiffness has changed since the last call.
+  /// Before a step: updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t of its stage
+  /// (integrator::Stepper) [s since the start of the run]. Returns whether the constant part of the stiffness has
+  /// changed since the last call.
   bool sew(double t);
+  /// After a step that ends at time t [s since the start of the run]: as sew(t); also updates given pressures and
+  /// amounts of air. With the midpoint rule, the stage is earlier than t.
+  void finish_step(double t);
 
   /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1. Both are
   /// scene times [s]; sew() takes the time since the start of the run.
   bool is_constant_between(double t0, double t1) const;
 
-  /// Updates the enclosed air for the step that ends at time t [s since the start of the run]; call it after sew(t).
-  /// `x`: particles at the start of the step [m].
+  /// Updates the enclosed air for the step with its stage at time t [s since the start of the run]; call it after
+  /// sew(t). `x`: particles at the start of the step [m].
   void inflate(double t, std::span<const Vec3> x);
   const Inflation& inflation() const { return inflation_; }
   Inflation& inflation() { return inflation_; }
@@ -139,6 +143,7 @@ class ClothSystem {
   solver::BlockMatrix lay_out_matrix() const;
   void build_aggregates(const model::Model& model);
   void divide_into_ranges();
+  void update_rest_state(double t);
 
   std::vector<Index> first_;  // of each part, then the number of all particles
   std::vector<double> masses_;

@@ -91,14 +91,18 @@ double Inflation::Cloth::energy(double at_volume) const {
 }
 
 void Inflation::begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed) {
+  set_time(t);
   for (Cloth& cloth : cloths_) {
-    cloth.value = cloth.track.at(t).value[0];
     if (!is_closed(cloth.number)) {
       cloth.closed_volume = kOpen;
     } else if (cloth.closed_volume == kOpen) {
       cloth.close(x);
     }
   }
+}
+
+void Inflation::set_time(double t) {
+  for (Cloth& cloth : cloths_) cloth.value = cloth.track.at(t).value[0];
 }
 
 void Inflation::measure_closed_volumes(std::span<const Vec3> x, std::span<const std::size_t> kept) {

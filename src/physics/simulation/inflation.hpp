@@ -31,12 +31,14 @@ class Inflation {
 
   bool empty() const { return cloths_.empty(); }
 
-  /// Begins a step that ends at the scene time t [s], with particles at x [m]. As long as
+  /// Begins a step with its stage (integrator::Stepper) at the scene time t [s], and particles at x [m]. As long as
   /// is_closed(number of the cloth in the model) is false, the cloth has no gauge pressure. In the
   /// first step in which the cloth is closed, the volume that it encloses at x becomes the
   /// reference for amounts of air. Throws Error(scene_invalid) if the cloth then encloses no volume
   /// although the model gives an amount of air.
   void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
+  /// Sets the given pressures and amounts of air to those of the scene time t [s].
+  void set_time(double t);
   /// Call after cloth has been moved at the start: the volume that each closed cloth encloses at x [m] becomes the
   /// reference for amounts of air, except for the cloths with the numbers `kept`. Throws as begin_step() does.
   void measure_closed_volumes(std::span<const Vec3> x, std::span<const std::size_t> kept);
@@ -67,7 +69,7 @@ class Inflation {
     forces::EnclosedVolume volume;
     model::PressureControl control;
     motion::Spline<1> track;
-    double value = 0;                      // of `track` at the end of the step; for the unit, see PressureControl
+    double value = 0;                      // of `track` at the time set last; for the unit, see PressureControl
     double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch
 

@@ -136,7 +136,8 @@ bool Pins::release_between(double t0, double t1) const {
   });
 }
 
-void Pins::held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const {
+void Pins::held_at(double t, double t_targets, const model::Model& model,
+                   std::vector<integrator::HeldParticle>& held) const {
   held.clear();
   for (std::size_t number = 0; number < groups_.size(); ++number) {
     const Group& group = groups_[number];
@@ -148,7 +149,7 @@ void Pins::held_at(double t, const model::Model& model, std::vector<integrator::
       std::array<MovingPoint, 3> corners;
       MovingPoint place{Vec3::Zero(), Vec3::Zero()};
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto vertex = model.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t);
+        const auto vertex = model.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t_targets);
         corners[k] = {vertex.position, vertex.velocity};
         place.x += anchor.weights[k] * vertex.position;
         place.v += anchor.weights[k] * vertex.velocity;
@@ -160,15 +161,15 @@ void Pins::held_at(double t, const model::Model& model, std::vector<integrator::
     }
     for (std::size_t p = 0; p < group.followed_vertices.size(); ++p) {
       if (!has(p)) continue;
-      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.followed_vertices[p], t);
+      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.followed_vertices[p], t_targets);
       held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
     }
     if (!group.anchors.empty() || !group.followed_vertices.empty()) continue;
     motion::PoseSample pose;
     if (group.follow >= 0) {
-      pose = model.pose(static_cast<std::size_t>(group.follow), t);
+      pose = model.pose(static_cast<std::size_t>(group.follow), t_targets);
     } else {
-      pose = group.track->at(t);
+      pose = group.track->at(t_targets);
     }
     for (std::size_t p = 0; p < group.particles.size(); ++p) {
       if (!has(p)) continue;

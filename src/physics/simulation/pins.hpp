@@ -39,7 +39,12 @@ class Pins {
   /// targets of these particles at t. Each particle has one entry. If pins share a particle, it
   /// belongs to the first of them in the model that is not released; pins that have the particle in
   /// their region precede pins that have it in their fade (model::WeightedParticle::faded).
-  void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const;
+  void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const {
+    held_at(t, t, model, held);
+  }
+  /// As above, with the same particles in the same order, but with their targets at the time `t_targets` [s].
+  void held_at(double t, double t_targets, const model::Model& model,
+               std::vector<integrator::HeldParticle>& held) const;
   /// Whether a pin is released at a time in [t0, t1) [s].
   bool release_between(double t0, double t1) const;
 

@@ -50,21 +50,24 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
     stepper_.restart();
   }
   pinned_ = held_.size();
-  problem_.begin_step(t + h - start_, progress_.now.particles(), held_, pins_.pulls());
+  step_end_ = t + h;
   attachments_.begin_step(t, t + h, progress_.now.particles(), cloth_.masses());
   Start start = Start::unchanged_velocity;
   if (collisions_) {
     const Stopwatch watch(report.collide);
     if (collisions_->begin_step(t, h, held_, progress_.now, next_)) start = Start::next;
   }
-  update_weather(t, h);
+  // Forces that change with time are those of the time of the stage (integrator::Stepper), which follows from method()
+  // and thus from the contacts. Held particles, contacts and attachments have their positions at the end of the step.
+  const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
+  problem_.begin_step(t + until_stage - start_, progress_.now.particles(), held_, pins_.pulls());
+  update_weather(t, until_stage);
   return start;
 }
 
-// Sets gravity and the air velocity at the time of the step's stage (integrator::Stepper). Evaluates the air velocity
-// at the positions that the particles reach until then with unchanged velocities.
-void StepLoop::update_weather(double t, double h) {
-  const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
+// Sets gravity and the air velocity at the time t + until_stage of the step's stage. Evaluates the air velocity at the
+// positions that the particles reach until then with unchanged velocities.
+void StepLoop::update_weather(double t, double until_stage) {
   gravity_ = weather_.gravity(t + until_stage);
   cloth_.use_gravity(gravity_);
   if (!weather_.differs_from_wind()) return;

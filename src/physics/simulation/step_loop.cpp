@@ -235,6 +235,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   pins_.accept();
   for (const std::string& text : attachments_.accept(next_.particles()))
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
+  cloth_.finish_step(step_end_ - start_);
   cloth_.accept(next_.particles());
   if (collisions_) collisions_->accept();
   std::swap(progress_.now, next_);

@@ -131,7 +131,7 @@ class StepLoop {
   // One attempt at a step, which writes `next_`: step_attempt.cpp.
   Rejection attempt(double t, double h, int rejections, bool is_last, FrameReport& report);
   Start begin_attempt(const Attempt& attempt, FrameReport& report);
-  void update_weather(double t, double h);
+  void update_weather(double t, double until_stage);
   Rejection solve_with_springs(const Attempt& attempt, Start start, FrameReport& report);
   Rejection solve_with_velocity_constraints(const Attempt& attempt, Start start, FrameReport& report);
   Rejection solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early, bool& solved,
@@ -166,7 +166,8 @@ class StepLoop {
   std::optional<CollisionStage> collisions_;
   Attachments attachments_;
   model::Weather weather_;
-  Vec3 gravity_;  // in the current step [m/s²]
+  Vec3 gravity_;         // in the current step [m/s²]
+  double step_end_ = 0;  // time at which the current step ends [s]
 };
 
 }  // namespace weft::simulation

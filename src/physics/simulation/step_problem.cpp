@@ -156,16 +156,18 @@ void StepProblem::restart_terms(const integrator::StagePoint& at) {
   system.wide_terms.clear();
   system.diagonal_terms.clear();
   for (const PinSpring& pull : pulls_)
-    system.diagonal_terms.push_back(
-        {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
+    system.diagonal_terms.push_back({pull.particle, (pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
   if (attachments_ != nullptr) attachments_->add_terms(at.x_end, at.end_rate, system);
 }
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {
   if (attachments_ != nullptr) attachments_->add_forces(at.x_end, force);
-  for (const PinSpring& pull : pulls_)
+  const bool at_middle = at.end_rate != 1;  // the midpoint rule; with other methods, the stage is the end of the step
+  for (const PinSpring& pull : pulls_) {
+    const Vec3 away = at_middle ? pull.x_middle - at.x[pull.particle] : pull.x - at.x_end[pull.particle];
     force[pull.particle] +=
-        pull.stiffness * (pull.x - at.x_end[pull.particle]) + pull.damping * (pull.v - at.v[pull.particle]);
+        pull.stiffness * away + pull.damping * ((at_middle ? pull.v_middle : pull.v) - at.v[pull.particle]);
+  }
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {

@@ -37,9 +37,10 @@ struct SolveMemory {
 /// A damped spring that pulls a particle to a point.
 struct PinSpring {
   Index particle;
-  Vec3 x, v;         ///< the point and its velocity at the end of the step [m], [m/s]
-  double stiffness;  ///< [N/m]; 0 for a particle that lags, which only the damper pulls
-  double damping;    ///< [N·s/m]
+  Vec3 x, v;                ///< the point and its velocity at the end of the step [m], [m/s]
+  double stiffness;         ///< [N/m]; 0 for a particle that lags, which only the damper pulls
+  double damping;           ///< [N·s/m]
+  Vec3 x_middle, v_middle;  ///< as x and v, in the middle of the step; used by the midpoint rule
 };
 
 /// Sums the forces of ClothSystem, Attachments, ContactResponse and pin springs; keeps their memory between
@@ -59,10 +60,10 @@ class StepProblem final : public integrator::System {
   /// Sets the springs between cloths and to bodies. They must outlive the steps.
   void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
 
-  /// Begins a step that ends at time t [s since the start of the run], before its first solve. Updates rest shapes and
-  /// enclosed air. Resets the memory: thread locks start from the tensions at the start positions x [m], and the next
-  /// linearisation assembles the whole matrix. `pinned`: particles that pins or keys hold in the step. `pulls` must
-  /// outlive the step.
+  /// Begins a step with its stage at time t [s since the start of the run], before its first solve. Updates rest shapes
+  /// and enclosed air. Resets the memory: thread locks start from the tensions at the start positions x [m], and the
+  /// next linearisation assembles the whole matrix. `pinned`: particles that pins or keys hold in the step. `pulls`
+  /// must outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const PinSpring> pulls = {});
 

@@ -42,6 +42,7 @@ YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& 
     double weight = 0;
     for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * model.physics.largest_gravity();
     pull_force_.push_back(numerics.pins.cloth_weight_factor * weight);
+    needs_middle_ |= info.strength && model.time.integrator == integrator::Method::implicit_midpoint;
   }
 }
 
@@ -53,6 +54,7 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   step_start_ = t;
   step_length_ = h;
   pins_.held_at(t + h, model_, targets_);
+  if (needs_middle_) pins_.held_at(t + h, t + 0.5 * h, model_, middles_);
   const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
   if (any_lagged) pins_.held_at(t, model_, at_start_);
   std::ranges::fill(lags_, std::uint8_t{0});
@@ -72,10 +74,11 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
     lags_[i] |= released_[i];
     lagging_particles_[pin_of(target.constraint.particle)] += lags_[i];
   }
-  for (const integrator::HeldParticle& target : targets_) {
+  for (std::size_t k = 0; k < targets_.size(); ++k) {
+    const integrator::HeldParticle& target = targets_[k];
     const auto i = static_cast<std::size_t>(target.constraint.particle);
     if (lags_[i] != 0 || pins_.info(pin_of(target.constraint.particle)).strength)
-      pull(target, h, x);
+      pull(target, needs_middle_ ? middles_[k] : target, h, x);
     else
       held_.push_back(target);
   }
@@ -90,16 +93,19 @@ bool YieldingPins::are_constant_between(double t0, double t1) {
   });
 }
 
-// Appends the pull on a particle. A pin with a strength is a critically damped spring. A lagging particle gets a
-// damper: the force falls linearly from its maximum on a particle at rest to zero at the velocity `speed`. An opposing
-// force below the maximum slows the particle but does not stop it.
-void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
+// Appends the pull on a particle. `target`, `middle`: at the end and in the middle of the step. A pin with a strength
+// is a critically damped spring. A lagging particle gets a damper: the force falls linearly from its maximum on a
+// particle at rest to zero at the velocity `speed`. An opposing force below the maximum slows the particle but does not
+// stop it.
+void YieldingPins::pull(const integrator::HeldParticle& target, const integrator::HeldParticle& middle, double h,
+                        std::span<const Vec3> x) {
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);
   const std::size_t pin = pin_of(particle);
   if (const auto& pin_strength = pins_.info(pin).strength) {
     const double strength = *pin_strength * strength_fraction(particle);
-    pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
+    pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i]),
+                      middle.x_end, middle.v_end});
     return;
   }
   Vec3 speed = (target.x_end - h * target.v_end - x[i]) / h;
@@ -111,7 +117,8 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
                 std::min(pull_force_[pin] / static_cast<double>(lagging_particles_[pin]),
                          numerics.pins.most_acceleration * masses_[i]),
                 numerics.pins.acceleration * masses_[i]});
-  pulls_.push_back({particle, x[i], speed, 0, max_force / std::max(numerics.newton.unseen_velocity(), speed.norm())});
+  const double damping = max_force / std::max(numerics.newton.unseen_velocity(), speed.norm());
+  pulls_.push_back({particle, x[i], speed, 0, damping, x[i], speed});
 }
 
 void YieldingPins::release_particle(Index particle, const std::string& obstruction) {

@@ -55,7 +55,8 @@ class YieldingPins {
   void serialize(Archive& archive);
 
  private:
-  void pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x);
+  void pull(const integrator::HeldParticle& target, const integrator::HeldParticle& middle, double h,
+            std::span<const Vec3> x);
   // The functions of Pins, at the end of the step.
   std::size_t pin_of(Index particle) const { return pins_.pin_of(particle, step_start_ + step_length_); }
   double strength_fraction(Index particle) const {
@@ -66,7 +67,9 @@ class YieldingPins {
   const model::Model& model_;
   std::span<const double> masses_;
   std::vector<double> pull_force_;  // per pin: W in the maximum force of Numerics::Pins [N]
-  std::vector<integrator::HeldParticle> targets_, at_start_, held_;
+  bool needs_middle_ = false;       // whether the midpoint rule may integrate a pin with a strength
+  // Targets at the end of the step, the same in its middle (empty unless needs_middle_), and those at its start.
+  std::vector<integrator::HeldParticle> targets_, middles_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_,
       lags_;                                    // per particle: lagged in the previous step, lags in this one
