@@ -2,8 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
+#include "film/environment/environment.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "physics/simulation/step_loop.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -87,6 +90,70 @@ TEST(FailedStep, InTheMiddleOfAFrameTakesBackWhatWasTied) {
                         [&] { simulation.advance(); });
   simulation.save(after);
   EXPECT_TRUE(before == after);
+}
+
+// Two jaws close on a hanging sheet until they overlap; pins move the edge of a sheet into a box.
+constexpr const char* kJaws = R"(
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [11, 11]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+[[obstacle]]
+name = "left"
+shape = "box"
+size = [0.2, 0.016, 0.2]
+interpolation = "linear"
+keys = [{ time = 0, position = [0.02, -0.108, 0.55] }, { time = 0.2, position = [0.02, -0.003, 0.55] }]
+[[obstacle]]
+name = "right"
+shape = "box"
+size = [0.2, 0.016, 0.2]
+interpolation = "linear"
+keys = [{ time = 0, position = [-0.02, 0.108, 0.53] }, { time = 0.2, position = [-0.02, 0.003, 0.53] }]
+)";
+constexpr const char* kPinIntoABox = R"(
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [9, 9]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+[[cloth.pin]]
+low = [0, 1]
+interpolation = "linear"
+keys = [{ time = 0 }, { time = 0.2, offset = [0, 0.3, 0] }]
+[[obstacle]]
+name = "box"
+shape = "box"
+size = [0.6, 0.4, 0.6]
+position = [0, 0.35, 0.6]
+)";
+
+// Each frame is taken back once, as after a failure.
+TEST(FailedStep, TakesBackPinchedClothAndPinsThatLag) {
+  for (const char* text : {kJaws, kPinIntoABox}) {
+    const model::Model model = environment::Environment(support::scene_of_text(text)).model;
+    StepLoop steps(model, 0);
+    const auto advance = [&](int frame) {
+      FrameReport report;
+      report.frame = frame + 1;
+      steps.advance(frame / model.time.fps, (frame + 1) / model.time.fps, report);
+    };
+    const auto take_obstructions = [&] { return steps.take_pinches().pairs + steps.take_lags().particles; };
+    int found = 0;
+    for (int frame = 0; found == 0; ++frame) {
+      ASSERT_LT(frame, 10);
+      StepLoop::Checkpoint start = steps.checkpoint();
+      advance(frame);
+      steps.return_to(std::move(start));
+      EXPECT_EQ(take_obstructions(), 0) << "frame " << frame + 1;
+      advance(frame);
+      found = take_obstructions();
+    }
+  }
 }
 
 TEST(FailedStep, IsHalvedUntilItCanBeSolved) {

@@ -318,9 +318,14 @@ double Engine::min_distance() const {
 }
 
 template <class Archive>
-void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
+void Engine::serialize_events(Archive& archive) {
   pinched_.serialize(archive);
   response_.serialize(archive);
+}
+
+template <class Archive>
+void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
+  serialize_events(archive);
   bool kept = candidates_.covers_start(x);
   archive.value(kept);
   if (kept)
@@ -357,6 +362,8 @@ void Engine::serialize_candidates(Archive& archive) {
   separation_.serialize(archive);
 }
 
+template void Engine::serialize_events(ByteWriter&);
+template void Engine::serialize_events(ByteReader&);
 template void Engine::serialize(ByteWriter&, std::span<const Vec3>);
 template void Engine::serialize(ByteReader&, std::span<const Vec3>);
 

@@ -74,6 +74,10 @@ class Engine {
   /// if restored data do not fit these bodies.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
+  /// Saves or restores only what accepted steps have changed: pinched cloth and the state of walls. The rest of
+  /// serialize() fits any positions.
+  template <class Archive>
+  void serialize_events(Archive& archive);
 
   ContactResponse& response() { return response_; }
   const ContactResponse& response() const { return response_; }

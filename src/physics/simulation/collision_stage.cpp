@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
@@ -189,58 +188,6 @@ const std::vector<Vec3>& CollisionStage::append_bodies(SystemState& start) const
 
 std::vector<IntersectionPlace> CollisionStage::find_intersections(const SystemState& start) {
   return group_intersections(engine_.find_intersections(start.x), engine_.bodies(), names_, start.x);
-}
-
-double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
-  constexpr int kMaxStackHeight = 32;  // maximum height of a stack of bodies; each round lifts one more of its bodies
-  const std::size_t cloths = model_.cloths.size();
-  const collision::Bodies& bodies = engine_.bodies();
-  const auto is_free = [&](std::size_t body) {
-    return bodies[body].frame >= 0 && t >= model_.bodies[bodies_[body - cloths]].dynamics->release;
-  };
-  const auto height = [&](std::size_t body) {  // of its centre
-    double sum = 0;
-    for (std::size_t k = 0; bodies[body].frame >= 0 && k < mesh::RigidFrame::kParticles; ++k)
-      sum += up.dot(start.x[static_cast<std::size_t>(bodies[body].frame) + k]);
-    return sum / mesh::RigidFrame::kParticles;
-  };
-  const auto may_be_untangled = [&](std::size_t body) {
-    return body < cloths && model_.cloths[body].may_be_untangled();
-  };
-  const std::vector<Vec3> given = start.x;
-  // First considers all surfaces. If some still touch at the end, starts again without cloth that untangle() may move.
-  for (const bool with_all : {true, false}) {
-    const auto find_pairs = [&] {
-      std::vector<std::array<std::size_t, 2>> pairs;
-      for (const collision::CornerPair& pair : engine_.find_intersections(start.x)) {
-        const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
-        if (with_all || (!may_be_untangled(a) && !may_be_untangled(b))) pairs.push_back({a, b});
-      }
-      return pairs;
-    };
-    std::map<std::size_t, int> lifts;
-    for (int round = 0; round <= kMaxStackHeight; ++round) {
-      std::set<std::size_t> touching;
-      for (const auto& [a, b] : find_pairs()) {
-        if (is_free(a) && (!is_free(b) || height(a) > height(b)))
-          touching.insert(a);
-        else if (is_free(b))
-          touching.insert(b);
-      }
-      if (touching.empty()) break;
-      for (const std::size_t body : touching) {
-        ++lifts[body];
-        for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k)
-          start.x[static_cast<std::size_t>(bodies[body].frame) + k] += numerics.separation.restored_gap * up;
-      }
-      rigid_.place(start.x);
-    }
-    int max_lift = 0;
-    for (const auto& [body, count] : lifts) max_lift = std::max(max_lift, count);
-    if (lifts.empty() || find_pairs().empty()) return max_lift * numerics.separation.restored_gap;
-    start.x = given;
-  }
-  return 0;
 }
 
 // Bodies that do not move stay where append_bodies() has put them.
@@ -477,13 +424,29 @@ template <class Archive>
 void CollisionStage::serialize(Archive& archive, double t, SystemState& now) {
   place_bodies(t, now);
   engine_.serialize(archive, now.x);
+  serialize_reported_pinches(archive);
+}
+
+template <class Archive>
+void CollisionStage::serialize_events(Archive& archive) {
+  engine_.serialize_events(archive);
+  serialize_reported_pinches(archive);
+}
+
+template <class Archive>
+void CollisionStage::serialize_reported_pinches(Archive& archive) {
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
   serialize_each(archive, before,
                  [&](PinchingObjects& objects) { serialize_values(archive, objects.first, objects.second); });
+  if constexpr (!Archive::kReads) return;
   pinching_before_ = {before.begin(), before.end()};
+  pinching_.clear();
+  pinches_ = {};
 }
 
 template void CollisionStage::serialize(ByteWriter&, double, SystemState&);
 template void CollisionStage::serialize(ByteReader&, double, SystemState&);
+template void CollisionStage::serialize_events(ByteWriter&);
+template void CollisionStage::serialize_events(ByteReader&);
 
 }  // namespace weft::simulation

@@ -141,6 +141,10 @@ class CollisionStage {
   /// archive does not fit.
   template <class Archive>
   void serialize(Archive& archive, double t, SystemState& now);
+  /// Saves or restores only what accepted steps have changed (Engine::serialize_events()) and which pinches were
+  /// reported. Restoring discards the pinches of a frame that has not ended.
+  template <class Archive>
+  void serialize_events(Archive& archive);
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }
@@ -160,6 +164,8 @@ class CollisionStage {
   std::string describe(const collision::CornerPair& pair, const SystemState& moment) const;
   std::string describe(const collision::Pinch& pinch) const;
   void note_pinches(const SystemState& start);
+  template <class Archive>
+  void serialize_reported_pinches(Archive& archive);
 
   const model::Model& model_;
   std::vector<std::string> names_;   // of all cloths, then of all bodies_

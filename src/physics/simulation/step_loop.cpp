@@ -296,6 +296,7 @@ void StepLoop::serialize_parts(Archive& archive) {
 StepLoop::Checkpoint StepLoop::checkpoint() {
   ByteWriter parts;
   serialize_parts(parts);
+  if (collisions_) collisions_->serialize_events(parts);
   return {progress_, stepper_.history(), std::move(parts.bytes)};
 }
 
@@ -305,6 +306,7 @@ void StepLoop::return_to(Checkpoint checkpoint) {
   stepper_.return_to(std::move(checkpoint.history));
   ByteReader parts{checkpoint.parts};
   serialize_parts(parts);
+  if (collisions_) collisions_->serialize_events(parts);
 }
 
 template void StepLoop::serialize(ByteWriter&);

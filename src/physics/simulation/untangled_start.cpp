@@ -1,11 +1,16 @@
-// CollisionStage::untangle(): moves cloth off the surfaces that it touches or crosses, before the first step.
+// CollisionStage::lift_bodies() and untangle(): move bodies and cloth off the surfaces that they touch or cross, before
+// the first step.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "core/error.hpp"
 #include "core/log.hpp"
+#include "core/numerics.hpp"
 #include "physics/simulation/collision_stage.hpp"
 #include "physics/untangle/untangle.hpp"
 
@@ -33,6 +38,58 @@ bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std:
 }
 
 }  // namespace
+
+double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
+  constexpr int kMaxStackHeight = 32;  // maximum height of a stack of bodies; each round lifts one more of its bodies
+  const std::size_t cloths = model_.cloths.size();
+  const collision::Bodies& bodies = engine_.bodies();
+  const auto is_free = [&](std::size_t body) {
+    return bodies[body].frame >= 0 && t >= model_.bodies[bodies_[body - cloths]].dynamics->release;
+  };
+  const auto height = [&](std::size_t body) {  // of its centre
+    double sum = 0;
+    for (std::size_t k = 0; bodies[body].frame >= 0 && k < mesh::RigidFrame::kParticles; ++k)
+      sum += up.dot(start.x[static_cast<std::size_t>(bodies[body].frame) + k]);
+    return sum / mesh::RigidFrame::kParticles;
+  };
+  const auto may_be_untangled = [&](std::size_t body) {
+    return body < cloths && model_.cloths[body].may_be_untangled();
+  };
+  const std::vector<Vec3> given = start.x;
+  // First considers all surfaces. If some still touch at the end, starts again without cloth that untangle() may move.
+  for (const bool with_all : {true, false}) {
+    const auto find_pairs = [&] {
+      std::vector<std::array<std::size_t, 2>> pairs;
+      for (const collision::CornerPair& pair : engine_.find_intersections(start.x)) {
+        const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
+        if (with_all || (!may_be_untangled(a) && !may_be_untangled(b))) pairs.push_back({a, b});
+      }
+      return pairs;
+    };
+    std::map<std::size_t, int> lifts;
+    for (int round = 0; round <= kMaxStackHeight; ++round) {
+      std::set<std::size_t> touching;
+      for (const auto& [a, b] : find_pairs()) {
+        if (is_free(a) && (!is_free(b) || height(a) > height(b)))
+          touching.insert(a);
+        else if (is_free(b))
+          touching.insert(b);
+      }
+      if (touching.empty()) break;
+      for (const std::size_t body : touching) {
+        ++lifts[body];
+        for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k)
+          start.x[static_cast<std::size_t>(bodies[body].frame) + k] += numerics.separation.restored_gap * up;
+      }
+      rigid_.place(start.x);
+    }
+    int max_lift = 0;
+    for (const auto& [body, count] : lifts) max_lift = std::max(max_lift, count);
+    if (lifts.empty() || find_pairs().empty()) return max_lift * numerics.separation.restored_gap;
+    start.x = given;
+  }
+  return 0;
+}
 
 void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> put_on,
                               SystemState& start) {

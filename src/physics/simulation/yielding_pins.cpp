@@ -169,7 +169,13 @@ void YieldingPins::serialize(Archive& archive) {
   serialize_plain(archive, before);
   if constexpr (Archive::kReads)
     require(std::ranges::all_of(before, [&](std::uint64_t pin) { return pin < pins_.size(); }), "pins of the model");
+  if constexpr (!Archive::kReads) return;
   lagging_before_ = {before.begin(), before.end()};
+  // Discards what belongs to a frame that has not ended.
+  lagging_.clear();
+  seen_ = {};
+  std::ranges::fill(released_, std::uint8_t{0});
+  obstructions_.clear();
 }
 
 template void YieldingPins::serialize(ByteWriter&);

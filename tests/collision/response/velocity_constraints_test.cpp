@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "core/numerics.hpp"
 
 namespace weft::collision {
@@ -164,6 +165,29 @@ TEST(VelocityConstraints, AParticleBetweenTwoWallsSticksHoweverManyOtherWallsItH
   }
   begin();
   EXPECT_EQ(particle.prescribed().constraint.free, Mat3::Zero());
+}
+
+TEST(VelocityConstraints, ForgetWhatTheyHeldIfAnEarlierStateIsRestored) {
+  OneParticle particle;
+  ByteWriter start;
+  particle.constraints.serialize(start);
+  const auto begin = [&] {
+    particle.constraints.begin_step(kStep);
+    particle.wall(Vec3::UnitZ(), kDMin, Vec3::Zero(), 0.5);
+    particle.x_t1[0] = Vec3(0, 0, -1e-4);
+    particle.prepare();
+  };
+  for (int step = 0; step < 3; ++step) {
+    begin();
+    particle.revise(Vec3::Zero(), kMass * kGravity * Vec3::UnitZ());
+    particle.constraints.accept();
+  }
+  begin();
+  EXPECT_EQ(particle.prescribed().constraint.free, Mat3::Zero()) << "it sticks";
+  ByteReader bytes{start.bytes};
+  particle.constraints.serialize(bytes);
+  begin();
+  EXPECT_NE(particle.prescribed().constraint.free, Mat3::Zero()) << "it slides, as in a first step";
 }
 
 TEST(VelocityConstraints, LeanToWallsThatHeldAndAreNotThereNow) {

@@ -370,6 +370,8 @@ void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate
 
 template <class Archive>
 void VelocityConstraints::serialize(Archive& archive) {
+  if constexpr (Archive::kReads)
+    for (Index particle : remembered_) memory_[particle] = {};
   serialize_each(archive, remembered_, [&](Index& particle) {
     archive.value(particle);
     if constexpr (Archive::kReads)
