@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "film/environment/environment.hpp"
 #include "film/production/plan.hpp"
 #include "film/production/scene_simulation.hpp"
 #include "support/scene_runs.hpp"
@@ -196,6 +197,23 @@ TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
     sag += (0.8 - state.positions[i].z()) / 13;
   // After 3 s the remaining swing is below a hundredth of the sag.
   EXPECT_NEAR(sag, weight / (13 * 5), 0.02 * weight / (13 * 5));
+}
+
+TEST(LaggingPin, IsPulledWithTheWeightOfItsClothUnderThePresentGravity) {
+  model::Model model = environment::Environment(support::scene_of_text(hanging(1, "", ""))).model;
+  const ClothSystem cloth(model);
+  YieldingPins pins(model, {0}, cloth.masses());
+  const std::vector<Vec3>& x = model.cloths[0].start;
+  pins.begin_step(0, 0.01, x);
+  pins.release_particle(pins.held().at(6).constraint.particle, "'box' near (0, 0, 0) m");
+  const auto damping = [&] {
+    pins.begin_step(0, 0.01, x);
+    return pins.pulls().at(0).damping;
+  };
+  const double before = damping();
+  model.physics.keys = {{0, 2 * model.physics.gravity, Vec3::Zero()}};
+  pins.update_gravity();
+  EXPECT_NEAR(damping() / before, 2, 1e-12);
 }
 
 // The upper row is held. A pull that fades over 0.2 m draws the particles below to where the rigid motion of that row

@@ -68,7 +68,10 @@ class StepLoop {
   const ClothSystem& cloth() const { return cloth_; }
   const model::Weather& weather() const { return weather_; }
   /// Between two frames: takes gravity, wind and their keys from the model again.
-  void reload_weather() { weather_ = model::Weather(model_); }
+  void reload_weather() {
+    weather_ = model::Weather(model_);
+    pins_.update_gravity();
+  }
   const Attachments& attachments() const { return attachments_; }
   const StepProblem& problem() const { return problem_; }
   /// Number of particles that pins, keys or velocity constraints hold.

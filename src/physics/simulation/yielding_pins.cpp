@@ -30,19 +30,27 @@ YieldingPins::YieldingPins(const model::Model& model, const std::vector<Index>& 
                            std::span<const double> masses)
     : pins_(model, first_particle),
       model_(model),
+      first_particle_(first_particle),
       masses_(masses),
       lagged_(masses.size(), 0),
       lags_(masses.size(), 0),
       released_(masses.size(), 0),
       lagging_particles_(pins_.size(), 0) {
+  for (std::size_t pin = 0; pin < pins_.size(); ++pin)
+    needs_middle_ |= pins_.info(pin).strength && model.time.integrator == integrator::Method::implicit_midpoint;
+  update_gravity();
+}
+
+void YieldingPins::update_gravity() {
+  const double gravity = model_.physics.largest_gravity();
+  pull_force_.clear();
   for (std::size_t pin = 0; pin < pins_.size(); ++pin) {
-    const Pins::Info& info = pins_.info(pin);
-    const auto begin = static_cast<std::size_t>(first_particle[info.cloth]);
-    const std::size_t count = model.cloths[info.cloth].start.size();
+    const std::size_t cloth = pins_.info(pin).cloth;
+    const auto begin = static_cast<std::size_t>(first_particle_[cloth]);
+    const std::size_t count = model_.cloths[cloth].start.size();
     double weight = 0;
-    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * model.physics.largest_gravity();
+    for (std::size_t i = begin; i < begin + count; ++i) weight += masses_[i] * gravity;
     pull_force_.push_back(numerics.pins.cloth_weight_factor * weight);
-    needs_middle_ |= info.strength && model.time.integrator == integrator::Method::implicit_midpoint;
   }
 }
 

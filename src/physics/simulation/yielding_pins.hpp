@@ -21,6 +21,9 @@ class YieldingPins {
   /// `first_particle`: of each cloth; `masses`: of all particles [kg]. The model and `masses` must outlive this object.
   YieldingPins(const model::Model& model, const std::vector<Index>& first_particle, std::span<const double> masses);
 
+  /// Call between two frames if the gravity of the model has changed: the maximum pulls depend on it.
+  void update_gravity();
+
   /// Begins a step from t to t + h [s] with particles at x [m]: determines which particles are held at t + h, and which
   /// are pulled.
   void begin_step(double t, double h, std::span<const Vec3> x);
@@ -65,6 +68,7 @@ class YieldingPins {
 
   Pins pins_;
   const model::Model& model_;
+  std::vector<Index> first_particle_;  // of each cloth
   std::span<const double> masses_;
   std::vector<double> pull_force_;  // per pin: W in the maximum force of Numerics::Pins [N]
   bool needs_middle_ = false;       // whether the midpoint rule may integrate a pin with a strength
