@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/timer.hpp"
 #include "integrator/small_systems.hpp"
 
 namespace weft::integrator {
@@ -193,6 +194,26 @@ TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
     EXPECT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, continued, start, at_once.newton_iterations).verdict,
               Verdict::solved);
   }
+}
+
+/// Needs 5 ms to find that there is no impact.
+class SlowImpacts final : public Spring {
+ public:
+  using Spring::Spring;
+  bool find_impacts(const StagePoint&, const StepStart&, std::span<Vec3>) override {
+    const WallTimer timer;
+    while (timer.seconds() < 0.005) {
+    }
+    return false;
+  }
+};
+
+TEST(Stepper, CountsTheTimeOfImpacts) {
+  SlowImpacts spring(40);
+  Stepper stepper(Method::bdf2, kTight);
+  const State now{{{1, 0, 0}}, {{0, 0, 0}}};
+  State next = now;
+  EXPECT_GE(stepper.step(spring, now, 0.1, Vec3::Zero(), {}, next).times.forces.wall_s, 0.005);
 }
 
 TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {

@@ -341,12 +341,12 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     else if (!solved_all && report.newton_iterations >= pause_after)
       report.verdict = Verdict::unfinished;
   } while (!solved_all && report.verdict == Verdict::solved);
-  report.times = times_;
   iterations_before_pause_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear, stage);
-  if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
   impact_changes_.clear();
   if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h);
+  report.times = times_;
+  if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
   write_end_state(now, stage, h, held, next);
   if (method_ == Method::bdf2) solved_v_ = next.v;
   return report;
@@ -409,22 +409,6 @@ void Stepper::report_worst(StepReport& report) const {
     report.left = part.error();
     report.allowed = part.allowed;
   }
-}
-
-// Replaces the velocity changes δ/β of impacts by δ/h; see Stepper.
-void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
-  std::vector<Vec3>& right_side = scratch_;
-  std::ranges::fill(right_side, Vec3::Zero());
-  const StepStart start{h, now.x, now.v, history_.h, history_.before.x, history_.before.v};
-  if (!system.find_impacts({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, start, right_side)) return;
-  cg_.filter(right_side);
-  cg_.prepare(system.linear_system(), solver::AggregateSums::reuse);
-  goals_.clear();
-  for (const BlockState& part : blocks_)
-    goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
-  impact_changes_.resize(x_.size());
-  cg_.solve(right_side, {parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations, impact_changes_,
-            {.motion = v_});
 }
 
 void Stepper::write_end_state(const State& now, const Stage& stage, double h, std::span<const HeldParticle> held,

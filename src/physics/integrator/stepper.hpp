@@ -38,7 +38,7 @@ std::string_view describe(Verdict verdict);
 struct StageTimes {
   StageTime forces;          ///< evaluation of forces and assembly of their matrix
   StageTime preconditioner;  ///< setup, and applications outside of linear solves
-  StageTime linear;          ///< linear solves of Newton's method
+  StageTime linear;          ///< linear solves of Newton's method and, with BDF2, of impacts
 };
 
 struct StepReport {

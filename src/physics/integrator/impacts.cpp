@@ -1,0 +1,35 @@
+// Stepper::split_impacts(): the part of a BDF2 step that impacts cause.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/numerics.hpp"
+#include "core/timer.hpp"
+#include "physics/integrator/stepper.hpp"
+
+namespace weft::integrator {
+
+// Replaces the velocity changes δ/β of impacts by δ/h; see Stepper.
+void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
+  std::vector<Vec3>& right_side = scratch_;
+  std::ranges::fill(right_side, Vec3::Zero());
+  const StepStart start{h, now.x, now.v, history_.h, history_.before.x, history_.before.v};
+  {
+    const Stopwatch watch(times_.forces);
+    if (!system.find_impacts({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, start, right_side)) return;
+  }
+  cg_.filter(right_side);
+  {
+    const Stopwatch watch(times_.preconditioner);
+    cg_.prepare(system.linear_system(), solver::AggregateSums::reuse);
+  }
+  goals_.clear();
+  for (const BlockState& part : blocks_)
+    goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
+  impact_changes_.resize(x_.size());
+  const Stopwatch watch(times_.linear);
+  cg_.solve(right_side, {parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations, impact_changes_,
+            {.motion = v_});
+}
+
+}  // namespace weft::integrator
