@@ -43,7 +43,8 @@ Lattice lattice_of(const model::Cloth& cloth) {
 
 // Doubles each side of the boxes that is at most √2 times the shortest one (of axes with several boxes), so that sides
 // become more equal. Cloth is stiffest between particles that are close together, so these are
-// merged first.
+// merged first. Halves the indices of boxes along at least one axis with several boxes. Of a grid, two axes have
+// several; the boxes of triangles are cubes, and all axes are halved.
 void coarsen(Lattice& lattice) {
   Box last{0, 0, 0};
   for (const Box& box : lattice.boxes)
@@ -64,6 +65,8 @@ void coarsen(Lattice& lattice) {
 // level has at most `numerics.linear.coarsest_aggregates` boxes, or one per cloth if there are more cloths. Each frame
 // particle is an aggregate of its own at all levels.
 void ClothSystem::build_aggregates(const model::Model& model) {
+  static_assert(std::size_t{2 * std::numeric_limits<int>::digits} <= solver::kMaxAggregateLevels,
+                "coarsen() halves indices of type int to 0 along at most two axes that are not halved together");
   std::vector<Lattice> lattices;
   for (const model::Cloth& cloth : model.cloths) lattices.push_back(lattice_of(cloth));
   bool is_coarse = false;

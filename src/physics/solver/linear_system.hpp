@@ -59,6 +59,9 @@ struct Aggregates {
   Index count = 0;
 };
 
+/// Maximum number of levels of aggregates, the coarsest included; the preconditioner has arrays of this size.
+inline constexpr std::size_t kMaxAggregateLevels = 64;
+
 /// A diagonal block: rows [begin, end), such as the particles of one cloth, that the matrix does not couple with other
 /// rows. Contact terms may couple different diagonal blocks.
 struct DiagonalBlock {

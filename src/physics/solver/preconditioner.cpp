@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -12,8 +13,6 @@
 namespace weft::solver {
 namespace {
 
-// Maximum number of levels, the coarsest included.
-constexpr std::size_t kMaxLevels = 16;
 // The block of an aggregate may be singular up to rounding. A shift by this fraction of the block's trace makes it
 // definite. The fraction must be below the ratio of mass part to thread stiffness (measured: with 1e-9 of the mean
 // trace, cells of 0.1 m by 1e-5 m take twenty times the iterations).
@@ -123,6 +122,7 @@ void Preconditioner<Real>::allocate_levels() {
   const std::size_t rows = at(system_->matrix.rows());
   inverse_.resize(rows);
   has_terms_.assign(rows, 0);
+  assert(system_->aggregate_levels.size() <= kMaxAggregateLevels);
   levels_.resize(system_->aggregate_levels.size());
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const Aggregates& aggregates = system_->aggregate_levels[l];
@@ -256,8 +256,8 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
   };
   // Aggregates are nested, so threads can sum different coarsest aggregates at the same time.
   const auto sum_row = [&](Index i) {
-    std::array<Mat3, kMaxLevels> own;
-    std::array<double, kMaxLevels> own_scalars{};
+    std::array<Mat3, kMaxAggregateLevels> own;
+    std::array<double, kMaxAggregateLevels> own_scalars{};
     std::fill_n(own.begin(), depth, Mat3::Zero());
     std::fill_n(own_scalars.begin(), depth, 0.0);
     const double weight = system_->norm_weights.empty() ? 0 : system_->norm_weights[i];
