@@ -196,6 +196,29 @@ TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
   }
 }
 
+/// Records the number of earlier iterations of each linearisation.
+class CountedSpring final : public testing::HardeningSpring {
+ public:
+  void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) override {
+    iterations.push_back(iteration);
+    HardeningSpring::linearise(at, iteration, force);
+  }
+  std::vector<int> iterations;
+};
+
+TEST(Stepper, DoesNotContinueAStepThatItHasReturnedFrom) {
+  const State now{{{2, 0, 0}}, {{0, 3, 0}}};
+  CountedSpring spring;
+  Stepper stepper(Method::implicit_euler, kTight);
+  State next = now;
+  const auto start = Stepper::Start::unchanged_velocity;
+  ASSERT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, next, start, 2).verdict, Verdict::unfinished);
+  stepper.return_to(stepper.history());
+  spring.iterations.clear();
+  stepper.step(spring, now, 1, Vec3::Zero(), {}, next, Stepper::Start::next);
+  EXPECT_EQ(spring.iterations.front(), 0);
+}
+
 /// Needs 5 ms to find that there is no impact.
 class SlowImpacts final : public Spring {
  public:

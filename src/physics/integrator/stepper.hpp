@@ -127,7 +127,11 @@ class Stepper {
     double h = 0;  ///< its length [s]; 0: no history
   };
   const History& history() const { return history_; }
-  void return_to(History history) { history_ = std::move(history); }
+  /// Returns to an earlier history. A step that is unfinished is discarded: step() does not continue it.
+  void return_to(History history) {
+    history_ = std::move(history);
+    iterations_before_pause_ = 0;
+  }
 
   /// Longest step [s] that may follow the last accepted one; infinite without a history, or if the method has no bound.
   double longest_step() const;
