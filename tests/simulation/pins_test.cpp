@@ -188,5 +188,18 @@ TEST(PinsThatOverlap, HoldWhatPinsBeforeThemHaveReleased) {
   EXPECT_NEAR((after[0].x_end - pinned.start(after[0]) - Vec3(0, 0, 0.5)).norm(), 0, 1e-12);
 }
 
+// 0.1 + 0.02 is larger than 0.12 in double precision, so that pins let go one step too early.
+TEST(PinsThatAreReleased, HoldUntilTheStepThatEndsAtTheirRelease) {
+  const Pinned pinned(
+      support::scene_of_text("[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [{ low = [0, 1], "
+                             "high = [1, 1], release = 0.12 "
+                             "}]\n"));
+  ASSERT_GT(0.1 + 0.02, 0.12);
+  EXPECT_EQ(pinned.at(0.1 + 0.02).size(), 3u);
+  EXPECT_TRUE(pinned.pins.release_between(0.1 + 0.02, 0.14));
+  EXPECT_FALSE(pinned.pins.release_between(0.1, 0.1 + 0.02));
+  EXPECT_TRUE(pinned.at(0.121).empty());
+}
+
 }  // namespace
 }  // namespace weft::simulation

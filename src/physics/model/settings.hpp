@@ -11,6 +11,14 @@ namespace weft::model {
 /// `kMaxStepsInFrame`: largest number of steps in a frame, so that an int can count them.
 inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
 
+/// Times that differ by less count as equal [s]: the end of a step is a sum of step lengths, which rounding parts from
+/// the time that a scene prescribes.
+inline constexpr double kSameTime = 1e-9;
+/// Whether `t` is later than `prescribed`, by more than rounding.
+constexpr bool is_later(double t, double prescribed) {
+  return t > prescribed + kSameTime;
+}
+
 struct Time {
   double fps = 25;         ///< frames per second; frame k is at the time k / fps
   int preroll_frames = 0;  ///< number of frames before frame 0, with which the run begins

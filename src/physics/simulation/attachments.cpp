@@ -42,7 +42,8 @@ Attachments::Attachments(const model::Model& model, std::span<const Index> first
 }
 
 bool Attachments::holds_at(const Attachment& attachment, double t) const {
-  return attachment.state != State::broken && t >= attachment.begin && t <= attachment.release;
+  return attachment.state != State::broken && !model::is_later(attachment.begin, t) &&
+         !model::is_later(t, attachment.release);
 }
 
 // Position of a body's vertex at time t [m].
@@ -112,7 +113,7 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
 void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x, std::span<const double> masses) {
   for (Attachment& attachment : attachments_) {
     // A longer attempt, which was rejected, tied the attachment. This shorter step ends before the attachment begins.
-    if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;
+    if (attachment.state == State::tied && model::is_later(attachment.begin, t1)) attachment.state = State::open;
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;
     if (attachment.state == State::open) tie_to_target(attachment, t0, x, masses);

@@ -60,7 +60,7 @@ std::vector<std::vector<Pins::Owner>> Pins::owners(const model::Model& model,
 
 Pins::Owner Pins::owner_at(Index particle, double t) const {
   for (const Owner& owner : owners_of_[static_cast<std::size_t>(particle)])
-    if (t <= owner.release) return owner;
+    if (!model::is_later(t, owner.release)) return owner;
   return {};
 }
 
@@ -132,7 +132,8 @@ std::vector<Pins::Anchor> Pins::anchor(const model::Model& model, std::size_t ch
 
 bool Pins::release_between(double t0, double t1) const {
   return std::ranges::any_of(groups_, [&](const Group& group) {
-    return !group.particles.empty() && group.release >= 0 && t0 <= group.release && group.release < t1;
+    return !group.particles.empty() && group.release >= 0 && !model::is_later(t0, group.release) &&
+           model::is_later(t1, group.release);
   });
 }
 
@@ -141,7 +142,7 @@ void Pins::held_at(double t, double t_targets, const model::Model& model,
   held.clear();
   for (std::size_t number = 0; number < groups_.size(); ++number) {
     const Group& group = groups_[number];
-    if (group.particles.empty() || (group.release >= 0 && t > group.release)) continue;
+    if (group.particles.empty() || (group.release >= 0 && model::is_later(t, group.release))) continue;
     const auto has = [&](std::size_t p) { return pin_of(group.particles[p], t) == number; };
     for (std::size_t p = 0; p < group.anchors.size(); ++p) {
       if (!has(p)) continue;

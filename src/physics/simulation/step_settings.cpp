@@ -27,12 +27,9 @@ std::vector<Index> first_particles(const ClothSystem& cloth) {
 
 namespace {
 
-// Times that differ by less count as equal [s].
-constexpr double kSameTime = 1e-9;
-
 // Whether keys hold a dynamic body in a step that ends at t [s].
 bool is_held_until(const model::Dynamics& body, double t) {
-  return t <= body.release + kSameTime;
+  return !model::is_later(t, body.release);
 }
 
 bool is_released(const model::Body& body, double t, double h) {
@@ -59,8 +56,8 @@ FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::P
 motion::PoseSample pose_of_frame(const model::Model& model, std::size_t body, double t) {
   motion::PoseSample pose = model.pose(body, t);
   const bool rests = pose.velocity == Vec3::Zero() && pose.angular_velocity == Vec3::Zero();
-  if (!rests || std::abs(t - model.bodies[body].dynamics->release) > kSameTime) return pose;
-  const motion::PoseSample before = model.pose(body, t - kSameTime);
+  if (!rests || std::abs(t - model.bodies[body].dynamics->release) > model::kSameTime) return pose;
+  const motion::PoseSample before = model.pose(body, t - model::kSameTime);
   pose.velocity = before.velocity;
   pose.angular_velocity = before.angular_velocity;
   return pose;
