@@ -54,6 +54,10 @@ TEST(Outlines, SmoothCommandsReflectTheHandleBefore) {
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0T4 0L4 2L0 2Z"), area_of("M0 0Q1 1 2 0Q3-1 4 0L4 2L0 2Z"), 1e-12);
   // The area under a quadratic is two thirds of its control triangle.
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0Z"), -2.0 / 3, 1e-4);
+  // The handle before is that of another outline.
+  const ParsedPaths two = parse_paths("M9 9L9 8C6 8 5 5 9 9M0 0S2-1 3 0L3 2L0 2Z");
+  ASSERT_EQ(two.outlines.size(), 2u) << two.mistake;
+  EXPECT_NEAR(polygon_area(sampled(two.outlines[1])), area_of("M0 0S2-1 3 0L3 2L0 2Z"), 1e-12);
 }
 
 TEST(Outlines, WhatIsNoOutlineIsRefusedWithItsPlace) {

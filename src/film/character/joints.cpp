@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <map>
 #include <set>
+#include <string_view>
 
 #include "film/character/nameless.hpp"
 
@@ -48,9 +50,25 @@ bool is_filler_word(const std::string& word) {
   return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
 }
 
+// Programs write characters that FBX does not allow in a name as "FBXASC" and their code: "Arm.L" is "ArmFBXASC046L".
+std::string without_fbx_escapes(std::string name) {
+  constexpr std::string_view kEscape = "FBXASC";
+  constexpr std::size_t kDigits = 3;
+  for (std::size_t at = name.find(kEscape); at != std::string::npos; at = name.find(kEscape, at + 1)) {
+    int code = 0;
+    const char* digits = name.data() + at + kEscape.size();
+    if (at + kEscape.size() + kDigits > name.size()) break;
+    const auto [end, error] = std::from_chars(digits, digits + kDigits, code);
+    if (error == std::errc() && end == digits + kDigits && code >= 0 && code < 128)
+      name.replace(at, kEscape.size() + kDigits, 1, static_cast<char>(code));
+  }
+  return name;
+}
+
 /// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" contain "upper", "arm" and "l". Digits
 /// belong to the preceding word. The name of a rig before a colon is dropped.
-std::vector<std::string> words_of(const std::string& name) {
+std::vector<std::string> words_of(const std::string& written) {
+  const std::string name = without_fbx_escapes(written);
   std::vector<std::string> words;
   bool inside = false;
   const std::size_t start = name.rfind(':') == std::string::npos ? 0 : name.rfind(':') + 1;

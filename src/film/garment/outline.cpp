@@ -161,6 +161,7 @@ class PathReader {
       if (kind == 'M' && first) {
         pen_ = first_ = point(relative);
         started_ = true;
+        last_ = 'M';  // an S or T after it has no handle to reflect
       } else {
         draw(kind == 'M' ? 'L' : kind, relative);
       }
