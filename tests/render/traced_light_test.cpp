@@ -195,6 +195,28 @@ TEST(ReflectedLight, HolesOfPicturesDoNotDarkenTheirColor) {
   EXPECT_EQ(colors.of(look, false), Vector3f(1, 0, 0));
 }
 
+// A picture of which a quarter of the surface shows the whole, with the colour of the surface around it.
+TEST(ReflectedLight, PictureThatLiesOnceHidesTheColorOnlyWhereItLies) {
+  frame::Surface surface;
+  surface.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
+  surface.uv = {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1), Vec2(0, 1), Vec2(4, 0), Vec2(4, 1)};
+  std::vector<Vec3> positions;
+  for (const Vec2& uv : surface.uv) positions.emplace_back(uv.x(), uv.y(), 0);
+  frame::Appearance& look = surface.appearance;
+  look.color = Vec3(0, 0, 1);
+  look.paint.texture = std::make_shared<const frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
+  ShadedMesh mesh = shade(surface.triangles, CornerMap(surface.triangles, positions.size()), positions, 180);
+  const PaintedMesh painted = make_painted_mesh(surface, mesh);
+  ASSERT_EQ(painted.ranges.size(), 1u);
+  const auto color = [&] {
+    const double covered = covered_fraction(painted, painted.ranges[0], mesh.triangles, positions);
+    return Vector3f(MeanColors().of(look, false, covered));
+  };
+  EXPECT_EQ(color(), Vector3f(0, 0, 0)) << "repeated: multiplied by the colour everywhere";
+  look.paint.wrap_u = frame::Paint::Wrap::once;
+  EXPECT_TRUE(color().isApprox(Vector3f(0.25f, 0, 0.75f))) << color().transpose();
+}
+
 /// Points that show a plane in one half of the picture and another, 0.1 m behind it, in the other.
 struct TwoPlanes {
   static constexpr int kWidth = 40, kHeight = 24;

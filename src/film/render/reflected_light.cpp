@@ -21,9 +21,34 @@ Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
       .max(0.0f);
 }
 
+/// Whether the picture lies over the colour where it is, with the colour alone around it (laid() in
+/// geometry_buffer.cpp).
+bool lies_once(const frame::Paint& paint) {
+  using Wrap = frame::Paint::Wrap;
+  return paint.alpha == frame::Paint::Alpha::ignored && (paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once);
+}
+
 }  // namespace
 
-Vector3f MeanColors::of(const frame::Appearance& look, bool back) {
+double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, std::span<const Triangle> triangles,
+                        std::span<const Vec3> positions) {
+  const frame::Paint& paint = range.look->paint;
+  if (!paint.texture) return 1;
+  const auto is_inside = [](double place, frame::Paint::Wrap wrap) {
+    return wrap != frame::Paint::Wrap::once || (place >= 0 && place <= 1);
+  };
+  double all = 0, inside = 0;  // [m²], doubled
+  for (const auto& [a, b, c] : triangles.subspan(range.first, range.count)) {
+    const double area = (positions[b] - positions[a]).cross(positions[c] - positions[a]).norm();
+    const Vec2 middle = ((painted.places[a] + painted.places[b] + painted.places[c]) / 3.0f).cast<double>();
+    const Vec2 place = paint.texture_from_uv * middle.homogeneous();
+    all += area;
+    if (is_inside(place.x(), paint.wrap_u) && is_inside(place.y(), paint.wrap_v)) inside += area;
+  }
+  return all > 0 ? inside / all : 1;
+}
+
+Vector3f MeanColors::of(const frame::Appearance& look, bool back, double fraction) {
   const Vec3 own = image::linear_from_srgb(back ? look.back_color : look.color);
   const frame::Paint& paint = look.paint;
   if (!paint.texture || (back && !look.back_painted) || paint.alpha == frame::Paint::Alpha::over_color)
@@ -43,20 +68,26 @@ Vector3f MeanColors::of(const frame::Appearance& look, bool back) {
     }
     if (covered > 0) known->second = (sum / covered).cast<float>();
   }
-  return known->second.cwiseProduct(image::linear_from_srgb(look.color).cast<float>());
+  const Vector3f color = image::linear_from_srgb(look.color).cast<float>();
+  if (lies_once(paint)) return color + static_cast<float>(fraction) * (known->second - color);
+  return known->second.cwiseProduct(color);
 }
 
 ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
                                      bool dark, MeanColors& colors) {
   const bool cloth = surface.surface().kind == frame::ObjectKind::cloth;
-  const auto range = [&](const frame::Appearance& of, std::size_t end) {
+  const auto range = [&](const frame::Appearance& of, std::size_t end, double covered) {
     if (dark) return ReflectingSurface::Range{end, Vector3f::Zero(), Vector3f::Zero()};
-    return ReflectingSurface::Range{end, colors.of(of, false), colors.of(of, cloth)};
+    return ReflectingSurface::Range{end, colors.of(of, false, covered), colors.of(of, cloth, covered)};
   };
-  if (plain || surface.painted() == nullptr) return {{range(look, 0)}};
+  if (plain || surface.painted() == nullptr) return {{range(look, 0, 1)}};
+  const PaintedMesh& painted = *surface.painted();
   ReflectingSurface result;
-  for (const PaintedRange& each : surface.painted()->ranges)
-    result.ranges.push_back(range(*each.look, each.first + each.count));
+  for (const PaintedRange& each : painted.ranges) {
+    const double covered =
+        lies_once(each.look->paint) ? covered_fraction(painted, each, surface.triangles(), surface.positions()) : 1;
+    result.ranges.push_back(range(*each.look, each.first + each.count, covered));
+  }
   return result;
 }
 

@@ -17,12 +17,19 @@
 
 namespace weft::render {
 
+/// Fraction of the area of a painted range on which the picture of its appearance lies. A triangle counts if its middle
+/// is inside the picture along each axis with Wrap::once. `triangles`, `positions`: of the drawn mesh. 1 without a
+/// picture.
+double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, std::span<const Triangle> triangles,
+                        std::span<const Vec3> positions);
+
 /// Mean linear colours of appearances, of the front or of the `back`. A picture with
 /// Alpha::over_color is ignored. In a picture with Alpha::cutout, each pixel counts by its opacity.
-/// Each picture is averaged only once.
+/// Each picture is averaged only once. `fraction`: covered_fraction() of a picture with Alpha::ignored
+/// and Wrap::once, which lies over the colour.
 class MeanColors {
  public:
-  Eigen::Vector3f of(const frame::Appearance& look, bool back);
+  Eigen::Vector3f of(const frame::Appearance& look, bool back, double fraction = 1);
 
  private:
   std::map<std::pair<std::shared_ptr<const frame::Texture>, bool>, Eigen::Vector3f> means_;  // bool: cuts holes
