@@ -10,6 +10,7 @@
 #include "film/image/color.hpp"
 #include "film/render/joint_filter.hpp"
 #include "film/render/renderer.hpp"
+#include "film/render/shading.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -193,6 +194,16 @@ TEST(ReflectedLight, HolesOfPicturesDoNotDarkenTheirColor) {
   EXPECT_EQ(colors.of(look, false), Vector3f(0.5f, 0, 0));
   look.paint.alpha = frame::Paint::Alpha::cutout;
   EXPECT_EQ(colors.of(look, false), Vector3f(1, 0, 0));
+}
+
+TEST(ReflectedLight, OfClayHasNoColorOfPictures) {
+  frame::Surface lace, bare;
+  lace.appearance.paint.texture =
+      std::make_shared<const frame::Texture>(frame::Texture{2, 1, {255, 0, 0, 255, 0, 0, 0, 0}});
+  lace.appearance.paint.alpha = frame::Paint::Alpha::cutout;
+  MeanColors colors;
+  for (const bool back : {false, true})
+    EXPECT_EQ(colors.of(material_of(lace, true).appearance, back), colors.of(material_of(bare, true).appearance, back));
 }
 
 // A picture of which a quarter of the surface shows the whole, with the colour of the surface around it.

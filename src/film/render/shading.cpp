@@ -72,12 +72,13 @@ struct Grid {
   }
 };
 
-/// Replaces colours, roughness and finish of an appearance with those of clay, without threads,
-/// hem, metal and coat.
+/// Replaces colours, roughness and finish of an appearance with those of clay, without picture,
+/// threads, hem, metal and coat.
 frame::Appearance clay(const frame::Appearance& look) {
   frame::Appearance plain = look;
   plain.color = Vec3(0.74, 0.72, 0.69);
   plain.back_color = Vec3(0.60, 0.58, 0.56);
+  plain.paint = {};  // also in reflected light
   plain.roughness = 0.7;
   plain.thread_spacing = 0;
   plain.finish = {0, 0.5, 0.2, 0};
