@@ -184,6 +184,22 @@ TEST(ReflectedLight, SurfacesAreShadedByOthers) {
   EXPECT_EQ(mean_arriving(light, 8000).light.at(0), Vector3f::Zero());
 }
 
+TEST(ReflectedLight, TheFloorHidesWhatIsBelowIt) {
+  // Seen from the origin, the floor is in front of a plate that the sun would light.
+  const Mesh mesh = rectangle(10, 10, 1.5);
+  const DrawnMesh drawn = mesh.drawn();
+  RayScene scene;
+  scene.build({&drawn, 1});
+  frame::Light sun;
+  sun.direction = Vec3(0, 0, 1);
+  const ReflectingSurface white{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
+  const ReflectedLight light(scene, {white}, {make_lamp(sun, Vec3::Ones())}, no_light(),
+                             Floor{Vec3(0, 0, 1), Vec3(0, 0, -1), {}}, Vector3f::Ones());
+  const ReflectedLight::Arriving found = mean_arriving(light, 8000);
+  EXPECT_EQ(found.open[0], 1);
+  EXPECT_EQ(found.light.at(0), Vector3f::Zero());
+}
+
 TEST(ReflectedLight, HolesOfPicturesDoNotDarkenTheirColor) {
   frame::Texture lace{2, 1, {255, 0, 0, 255, 0, 0, 0, 0}};
   frame::Appearance look;

@@ -120,7 +120,10 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     normal.set(lane, Vector3f::UnitZ());
     if (rays.wanted[lane] == 0) continue;
     const Vector3f start = rays.origin.at(lane), way = rays.direction.at(lane);
-    if (hits.mesh[lane] != Hits::kNone) {
+    const float down = -floor_normal_.dot(way), height = floor_normal_.dot(start) - floor_height_;
+    const bool meets_floor = has_floor_ && down >= kMinSlope * way.norm() && height >= 2 * kRayStart;
+    // `rays_` has no floor: the floor hides surfaces below it.
+    if (hits.mesh[lane] != Hits::kNone && !(meets_floor && height < down * hits.distance[lane])) {
       const auto& ranges = surfaces_[static_cast<std::size_t>(hits.mesh[lane])].ranges;
       auto range = std::ranges::find_if(ranges, [&](const auto& each) { return hits.triangle[lane] < each.end; });
       if (range == ranges.end()) --range;
@@ -132,8 +135,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
       point.set(lane, start + hits.distance[lane] * way + kRayStart * facing);
     } else {
       result.open[lane] = 1;
-      const float down = -floor_normal_.dot(way), height = floor_normal_.dot(start) - floor_height_;
-      if (!has_floor_ || down < kMinSlope * way.norm() || height < 2 * kRayStart) continue;
+      if (!meets_floor) continue;
       ends[lane] = End::floor;
       normal.set(lane, floor_normal_);
       albedo.set(lane, floor_color_);
