@@ -197,5 +197,32 @@ TEST(Refinement, NeighboursShareTheirMiddles) {
   EXPECT_EQ(shared, 1);
 }
 
+// Cloth of 2 cm with cells of 1 mm; a ball of 1 mm lies 0.1 mm in front of it.
+TEST(Refinement, SmallClothDoesNotCoverWhatIsCloseInFrontOfIt) {
+  constexpr Index kSide = 21;
+  std::vector<Vec3> positions;
+  std::vector<std::array<Index, 3>> triangles;
+  for (Index i = 0; i < kSide; ++i)
+    for (Index j = 0; j < kSide; ++j) positions.emplace_back(1e-3 * (i - 10), 0, 1e-3 * (j - 10));
+  for (Index i = 0; i + 1 < kSide; ++i) {
+    for (Index j = 0; j + 1 < kSide; ++j) {
+      const Index a = i * kSide + j, b = a + kSide;
+      triangles.push_back({a, b, a + 1});
+      triangles.push_back({a + 1, b, b + 1});
+    }
+  }
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = square_at(0).stage;
+  frame::Surface& cloth = add_surface(snapshot, frame::ObjectKind::cloth, positions, triangles);
+  cloth.appearance.color = cloth.appearance.back_color = Vec3::Ones();
+  add_sphere(snapshot, Vec3(0, -0.6e-3, 0), 0.5e-3, 16).appearance.color = Vec3(0.7, 0, 0);
+  snapshot.cameras = {camera_at(Vec3(0, -0.1, 0), Vec3::Zero(), 3)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  const image::Image image = Renderer(small_settings()).draw(snapshot);
+  EXPECT_GT(image.pixel(100, 50)[0], 100);
+  EXPECT_LT(image.pixel(100, 50)[1], 60) << "the ball is red";
+  EXPECT_GT(image.pixel(60, 50)[1], 100) << "the cloth is white";
+}
+
 }  // namespace
 }  // namespace weft::render

@@ -22,12 +22,14 @@ int laid(const frame::Appearance& look) {
   return 1;
 }
 
-// Depth offset of refined cloth towards the viewer [m]. Parts of the curved triangles lie behind
-// the simulated faces, by up to max_midpoint_offset(). Without the offset, surfaces below the cloth
-// would be visible there.
-constexpr float kDepthOffset = 1.5e-3f;
+// Maximum depth offset of refined cloth towards the viewer [m]. Parts of the curved triangles lie
+// behind the simulated faces, by up to max_midpoint_offset(). Without the offset, surfaces below the
+// cloth would be visible there. A midpoint is at most a quarter of its edge away from the straight
+// edge (middle()), so the offset is no larger than that: small cloth must not cover what is in front
+// of it.
+constexpr double kMaxDepthOffset = 1.5e-3;
 float nearer(const SurfaceBuffers& surface) {
-  return surface.refined() ? kDepthOffset : 0.0f;
+  return surface.refined() ? static_cast<float>(std::min(kMaxDepthOffset, 0.25 * surface.longest_edge())) : 0.0f;
 }
 
 }  // namespace

@@ -114,7 +114,9 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
 void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
   refinement_->update(mesh_.triangles, vertices.size());
   const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
+  longest_edge_ = 0;
   for (const auto& [a, b] : refinement_->edges()) {
+    longest_edge_ = std::max(longest_edge_, (positions_[b] - positions_[a]).norm());
     const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b], max_offset);
     positions_.push_back(here.position);
     vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),

@@ -28,6 +28,8 @@ class SurfaceBuffers {
 
   const frame::Surface& surface() const { return *surface_; }
   bool refined() const { return refinement_.has_value(); }
+  /// Longest edge before refinement [m]; 0 without refinement.
+  double longest_edge() const { return longest_edge_; }
   bool trimmed() const { return trims_.has_value() && detail_.trims; }
 
   /// Copies the state of a frame. Throws Error(internal) if a triangle names a vertex without a
@@ -77,7 +79,7 @@ class SurfaceBuffers {
   std::optional<PaintedMesh> painted_;
   std::optional<Trims> trims_;
   std::size_t uploaded_trim_count_ = 0;  // number of vertices whose trims are uploaded
-  double rim_width_ = 0;
+  double rim_width_ = 0, longest_edge_ = 0;
   std::vector<Triangle> with_rims_;
   std::vector<Vec3> positions_;
   frame::SurfaceState state_;  // of the last frame
