@@ -426,6 +426,20 @@ TEST_F(Scenes, TextureCoordinatesAreTransformedAsGltfStates) {
   std::filesystem::remove(file);
 }
 
+TEST_F(Scenes, TextureCoordinatesAreFiniteWhateverTheirTransform) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / ("weft_turned_" + std::to_string(::getpid()) + ".gltf");
+  std::ofstream(file) << gltf_tetrahedron_of_integers(
+      R"(,"material":0)", R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{
+"KHR_texture_transform":{"rotation":1e39}}}}}],"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],
+"images":[{"uri":"absent.png"}])");
+  const character::Character body = load_character(file, {}, "here").character;
+  std::filesystem::remove(file);
+  ASSERT_EQ(body.coloring.uv.size(), 4U);
+  for (const auto& corners : body.coloring.uv)
+    for (const Vec2& uv : corners) EXPECT_TRUE(uv.allFinite());
+}
+
 TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
   auto* material = new aiMaterial;
   const aiString outside("C:\\paint\\skin.tga");

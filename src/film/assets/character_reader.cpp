@@ -398,7 +398,9 @@ class CharacterReader {
     if (mesh.mTextureCoords[channel] == nullptr) channel = 0;
     if (mesh.mTextureCoords[channel] == nullptr) return Vec2::Zero();
     const Vec2 uv(mesh.mTextureCoords[channel][v].x, mesh.mTextureCoords[channel][v].y);
-    return uv.allFinite() ? placed_uv(*scene_.mMaterials[mesh.mMaterialIndex], uv) : Vec2(Vec2::Zero());
+    // Transforms in files may be infinite, too.
+    const Vec2 placed = placed_uv(*scene_.mMaterials[mesh.mMaterialIndex], uv);
+    return placed.allFinite() ? placed : Vec2(Vec2::Zero());
   }
 
   /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged;
