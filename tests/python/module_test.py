@@ -406,6 +406,7 @@ friction = 0.8
         for error in (weft.SceneError, weft.FileError, weft.SimulationError):
             self.assertTrue(error.__doc__)
         self.assertNotIn(" object at ", weft.Model.add_cloth.__doc__)
+        self.assertIn("calling thread alone", weft.Report.cpu_s.__doc__)
 
 
 if __name__ == "__main__":

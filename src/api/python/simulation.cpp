@@ -204,8 +204,9 @@ void bind_frame(py::module_& module) {
       .def_readonly("volume", &EnclosedAir::volume)
       .def_readonly("pressure", &EnclosedAir::pressure);
   py::class_<Report>(module, "Report", "Cost and results of the computation of one frame; SI units.")
-      .def_readonly("wall_s", &Report::wall_s)
-      .def_readonly("cpu_s", &Report::cpu_s)
+      .def_readonly("wall_s", &Report::wall_s, "Wall time of simulating this frame, s.")
+      .def_readonly("cpu_s", &Report::cpu_s,
+                    "CPU time of simulating this frame, s: that of the calling thread alone, without helper threads.")
       .def_readonly("steps", &Report::steps)
       .def_readonly("rejected_steps", &Report::rejected_steps)
       .def_readonly("newton_iterations", &Report::newton_iterations)
