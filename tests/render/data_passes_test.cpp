@@ -238,6 +238,33 @@ TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
   EXPECT_EQ(count, 2);
 }
 
+// The camera moves backward past a square.
+TEST_F(DataPassesTest, WhatWasBehindTheCameraDoesNotMove) {
+  frame::FrameSnapshot before;
+  before.stage = stage_without_sky();
+  add_square(before, frame::ObjectKind::obstacle, Vec3(0.1, -0.5, 0.05), -Vec3::UnitY(), Vec3::UnitX(), 0.05);
+  before.cameras = {camera_at(Vec3::Zero(), Vec3(0, 2, 0), 40)};
+  frame::FrameSnapshot now = before;
+  now.cameras = {camera_at(Vec3(0, -1, 0), Vec3(0, 2, 0), 40)};
+  Settings settings;
+  settings.width = kPassWidth;
+  settings.height = kPassHeight;
+  settings.layers = true;
+  Renderer renderer(settings);
+  renderer.draw(now, &before);
+  const image::Layers layers = renderer.layers();
+  int count = 0;
+  for (int y = 0; y < kPassHeight; ++y) {
+    for (int x = 0; x < kPassWidth; ++x) {
+      if (value(layers, "id.object", x, y) != 2) continue;
+      ++count;
+      EXPECT_EQ(value(layers, "motion.X", x, y), 0);
+      EXPECT_EQ(value(layers, "motion.Y", x, y), 0);
+    }
+  }
+  EXPECT_GT(count, 100);
+}
+
 TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
   int whole = 0, same = 0, partly = 0;
   for (int y = 0; y < kPassHeight; ++y) {

@@ -75,10 +75,11 @@ void DataPasses::find_hits(std::span<const SurfaceBuffers> surfaces, const View&
   }
 }
 
-/// Position in the picture [pixels], from the lower left corner.
-Vec2 DataPasses::to_picture(const View& view, const Vec3& position) const {
+/// Position in the picture [pixels], from the lower left corner; absent if `position` is nearer than the near plane.
+std::optional<Vec2> DataPasses::to_picture(const View& view, const Vec3& position) const {
   const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
-  return {(0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_};
+  if (clip.w() < view.near) return std::nullopt;
+  return Vec2((0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_);
 }
 
 void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
@@ -145,7 +146,8 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
           position_before = shown.position;
         }
       }
-      if (shown.object != kNothing && before) shown.motion = here - to_picture(before->view, position_before);
+      if (shown.object != kNothing && before)
+        if (const auto there = to_picture(before->view, position_before)) shown.motion = here - *there;
       if (shown.motion.norm() < kRounding) shown.motion.setZero();  // exact zeros compress better
       const double values[] = {shown.depth,      shown.position.x(), shown.position.y(), shown.position.z(),
                                shown.normal.x(), shown.normal.y(),   shown.normal.z(),   shown.object,

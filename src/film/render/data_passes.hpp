@@ -37,7 +37,7 @@ class DataPasses {
   /// - uv.U, .V: Surface::uv (weft, warp) [m]; 0 if the surface has none
   /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the
   ///   motion of the camera; a surface for which `before`->positions() is null counts as still; 0
-  ///   if `before` is absent, and for the backdrop
+  ///   if `before` is absent, for the backdrop, and for points that were behind the camera
   /// - heat.V: strain or speed (Stage::heat), only if a surface has heat values
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
             const std::optional<Before>& before, image::Layers& layers);
@@ -48,7 +48,7 @@ class DataPasses {
     std::int32_t surface = -1, triangle = -1;
   };
   void find_hits(std::span<const SurfaceBuffers> surfaces, const View& view);
-  Vec2 to_picture(const View& view, const Vec3& position) const;
+  std::optional<Vec2> to_picture(const View& view, const Vec3& position) const;
 
   int width_, height_;
   std::vector<Hit> hits_;  // lowest row first
