@@ -335,6 +335,21 @@ TEST(JointFilter, InterpolationKeepsSurfacesApartAndFollowsSlopes) {
   }
 }
 
+TEST(JointFilter, InterpolationFollowsSlopesFromTheLowestRowOn) {
+  const TwoPlanes picture;
+  for (const int divisor : {2, 4}) {
+    const PixelPoints few = picture.points(divisor), many = picture.points(1);
+    std::vector<Eigen::Vector4f> values, results(picture.seen.size());
+    for (int y = 0; y < few.height(); ++y)
+      for (int x = 0; x < few.width(); ++x) values.push_back(Eigen::Vector4f::Constant(static_cast<float>(y)));
+    interpolate(values, few, many, 0, many.height(), results);
+    const int first = divisor / 2, last = first + divisor * (few.height() - 1);
+    for (int y = first; y <= last; ++y)
+      EXPECT_NEAR(results[static_cast<std::size_t>(y) * many.width()][0], 1.0 * (y - first) / divisor, 1e-5)
+          << divisor << ": " << y;
+  }
+}
+
 /// Fraction of a disc of radius 1 on one side of a line at distance d from its centre, negative beyond it.
 double beyond_line(double d) {
   if (d <= -1) return 1;

@@ -139,18 +139,18 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
   std::vector<Place> columns;
   for (int x = 0; x < many.width(); ++x) columns.push_back(place(x, few.width()));
   // One flag per column of `few`, for the 2 x 2 points in this and the next column, and in the rows
-  // row.low and row.low + 1. `even`: the four values are equal. `alike`, set only if `even` is 0:
+  // row.low and row.high. `even`: the four values are equal. `alike`, set only if `even` is 0:
   // the four points show the same smooth surface.
   std::vector<char> even(static_cast<std::size_t>(few.width())), alike(even.size());
-  int known_row = -1;
+  int known_low = -1, known_high = -1;  // rows to which the flags belong; both are 0 below the first row of `few`
   for (int y = begin; y < end; ++y) {
     const Place row = place(y, few.height());
     const Rows here(many, y);
     const std::array<Rows, 2> there{Rows(few, row.low), Rows(few, row.high)};
     const std::array<const Eigen::Vector4f*, 2> lines{values.data() + static_cast<std::size_t>(row.low) * few.width(),
                                                       values.data() + static_cast<std::size_t>(row.high) * few.width()};
-    if (row.low != known_row) {
-      known_row = row.low;
+    if (row.low != known_low || row.high != known_high) {
+      known_low = row.low, known_high = row.high;
       constexpr float kAlike = 0.95f;
       for (int x = 0; x < few.width(); ++x) {
         const int next = std::min(x + 1, few.width() - 1);
