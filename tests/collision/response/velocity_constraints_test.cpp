@@ -81,6 +81,21 @@ TEST(VelocityConstraints, MoveWithTheObstacle) {
   EXPECT_NEAR(particle.prescribed().v_end.z(), motion.z() / kStep, 1e-13);
 }
 
+// A plate rises through a floor, found before or after it.
+TEST(VelocityConstraints, MoveWithTheStricterOfTwoParallelWalls) {
+  const Vec3 motion(0.001, 0, 0.002);
+  for (const bool plate_first : {false, true}) {
+    OneParticle particle;
+    if (plate_first) particle.wall(Vec3::UnitZ(), kDMin, motion);
+    particle.wall(Vec3::UnitZ(), 2 * kDMin);
+    if (!plate_first) particle.wall(Vec3::UnitZ(), kDMin, motion);
+    particle.prepare();
+    ASSERT_TRUE(particle.held());
+    EXPECT_NEAR(particle.prescribed().x_end.z(), motion.z(), 1e-15);
+    EXPECT_NEAR(particle.prescribed().v_end.z(), motion.z() / kStep, 1e-13) << plate_first;
+  }
+}
+
 TEST(VelocityConstraints, HoldAParticleInACornerByAllItsWalls) {
   // A right-angled and an acute valley; the second needs both walls at once, not one after the other.
   for (double slope : {1.0, 3.0}) {

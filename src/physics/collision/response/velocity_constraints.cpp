@@ -62,7 +62,10 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
   for (int w = touched.first_wall; w >= 0; w = walls_[w].next) {
     Wall& wall = walls_[w];
     if (wall.normal.dot(normal) < kMinSameWallCosine) continue;
-    wall.bound = std::max(wall.bound, bound);
+    if (bound > wall.bound + kRoundoff)
+      wall = {wall.normal, bound, motion, friction, std::max(friction, static_friction), wall.next};
+    else
+      wall.bound = std::max(wall.bound, bound);
     return;
   }
   walls_.push_back({normal, bound, motion, friction, std::max(friction, static_friction), touched.first_wall});

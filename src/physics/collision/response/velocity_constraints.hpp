@@ -60,8 +60,8 @@ class VelocityConstraints {
   /// there to the particle. The point moves by `motion` [m] in the step. `d_min`: activation
   /// distance [m]. `friction`: Coulomb coefficient while sliding. `static_friction`: coefficient
   /// while sticking; a value below `friction` is raised to `friction`. If the particle already has
-  /// a wall with nearly the same normal, the stricter bound of both applies, and nothing else
-  /// changes.
+  /// a wall with nearly the same normal, the one with the stricter bound replaces the other one,
+  /// except for the normal. If the bounds differ by less than kRoundoff [m], the first wall stays.
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
