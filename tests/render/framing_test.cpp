@@ -58,6 +58,17 @@ TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
   }
 }
 
+TEST(Framing, SmallSubjectsReachTheMarginAsWell) {
+  for (const auto kind : {frame::Camera::Kind::whole, frame::Camera::Kind::follow}) {
+    frame::FrameSnapshot snapshot;
+    add_square(snapshot, frame::ObjectKind::cloth, Vec3(0.3, 0, 0), Vec3::UnitY(), Vec3::UnitX(), 0.002);
+    frame::Camera camera = automatic_camera();
+    camera.kind = kind;
+    snapshot.cameras = {camera};
+    EXPECT_NEAR(extent(snapshot, camera_of(snapshot, "", 1.5), Vec3::UnitZ(), 1.5).maxCoeff(), 0.86, 1e-9);
+  }
+}
+
 TEST(Framing, LooksDownOnTheFloorFromTheFrontRight) {
   frame::FrameSnapshot snapshot;
   add_sphere(snapshot, Vec3::Zero(), 1, 8);

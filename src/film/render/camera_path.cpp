@@ -18,8 +18,7 @@ constexpr double kClothRange = 1.5;
 // The smoothing kernel, a Gaussian, ends at this number of standard deviations; 0.3 % of its weight is beyond.
 constexpr double kKernelSigmas = 3;
 
-constexpr double kMaxFieldOfView = 100;   // limit on computed fields of view [degrees]
-constexpr double kMinEyeDistance = 0.05;  // minimum distance of orbiting and following cameras from their target [m]
+constexpr double kMaxFieldOfView = 100;  // limit on computed fields of view [degrees]
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3(Vec3::UnitZ());
@@ -148,8 +147,9 @@ void CameraPath::compute_fixed_camera() {
 /// the subjects of every frame are in view.
 void CameraPath::compute_orbit() {
   const Vec3 center = subject_bounds_.center();
-  double distance = kMinEyeDistance;
+  double distance = 0;
   for (const Frame& frame : frames_) distance = std::max(distance, frame.fit.distance(center));
+  distance = eye_distance(distance);
   for (Frame& frame : frames_) {
     frame.camera.target = center;
     frame.camera.position = center - distance * frame.fit.axes().forward;
@@ -191,7 +191,7 @@ void CameraPath::compute_following_camera() {
   const auto count = static_cast<std::ptrdiff_t>(frames_.size());
   std::vector<double> needed_distances;
   for (std::ptrdiff_t k = 0; k < count; ++k)
-    needed_distances.push_back(std::max(kMinEyeDistance, frames_[k].fit.distance(centers[k])));
+    needed_distances.push_back(eye_distance(frames_[k].fit.distance(centers[k])));
   std::vector<double> distances(needed_distances.size(), *std::ranges::max_element(needed_distances));
   if (frames_.front().camera.kind == Kind::close) {
     const std::vector<double> weights = gaussian(std::max(1e-3, frames_in(frames_.front().camera.smoothing)));

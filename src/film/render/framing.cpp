@@ -82,8 +82,8 @@ double FrustumFit::distance(const Vec3& center) const {
 
 void FrustumFit::place(frame::Camera& camera, const Vec3& center) const {
   const double depth = axes_.forward.dot(center);
-  // For a single point the fit gives distance 0; the eye stays at least 0.05 m away.
-  const double stand = std::min({horizontal_.forward(), vertical_.forward(), depth - 0.05});
+  const double nearest = std::min(horizontal_.forward(), vertical_.forward()), fit = depth - nearest;
+  const double stand = eye_distance(fit) > fit ? depth - eye_distance(fit) : nearest;
   camera.position = horizontal_.across() * axes_.right + vertical_.across() * axes_.up + stand * axes_.forward;
   camera.target = camera.position + (depth - stand) * axes_.forward;
 }

@@ -25,6 +25,14 @@ Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 /// The camera of scenes without cameras. It shows the whole run.
 frame::Camera automatic_camera();
 
+/// Distance of the eye of a computed camera from the centre of its subjects [m]. `fit`: smallest
+/// distance at which all subjects are in the picture. For a single point this is 0; the eye is then
+/// 0.05 m away.
+inline double eye_distance(double fit) {
+  constexpr double kMinFit = 1e-4, kFromPoint = 0.05;
+  return fit < kMinFit ? kFromPoint : fit;
+}
+
 /// Axes of a computed camera, from its azimuth and elevation.
 ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
@@ -49,10 +57,9 @@ class FrustumFit {
   /// has all points in its picture.
   double distance(const Vec3& center) const;
   /// Sets position and target of the camera. Depth is the coordinate along the view axis. The eye
-  /// has the largest depth at which all points are in the picture, but at least 0.05 m less depth
-  /// than `center`. Of both directions of the picture (horizontal and vertical), the points are
-  /// centred in the one that needs the larger distance. The target is on the view axis, at the
-  /// depth of `center`.
+  /// has the largest depth at which all points are in the picture; for a point, see eye_distance().
+  /// Of both directions of the picture (horizontal and vertical), the points are centred in the one
+  /// that needs the larger distance. The target is on the view axis, at the depth of `center`.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:
