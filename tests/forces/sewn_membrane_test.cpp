@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "core/archive.hpp"
 #include "forces/sheets.hpp"
 #include "physics/forces/bands.hpp"
 
@@ -55,6 +56,59 @@ TEST(SewnMembranes, AreStrainedByTheShareOfTheWay) {
     const double energy = area * (500 * weft * weft + 350 * warp * warp);
     EXPECT_NEAR(sewn.energy(sheet.rest), energy, 1e-12 * energy);
   }
+}
+
+// The start is twice as long along weft as the pattern, and something holds it at 1.5 times the pattern.
+TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
+  constexpr double kOnset = 0.1, kHeld = 1.5, kStep = 0.01;
+  mesh::Sheet sheet = flat_sheet();
+  sheet.sewn = true;
+  Positions held = sheet.rest;
+  for (Vec3& x : held) x.x() *= kHeld;
+  for (Vec3& x : sheet.rest) x.x() *= 2;
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0}), free(sheet, 0, {1000, 700, 0}, {100, 0}), restored = sewn;
+  bool ended = false;
+  for (int step = 1; step <= 100; ++step) {
+    const double progress = step * kStep;
+    sewn.interpolate_rest_shape(0.5 * (2 * progress - kStep));  // an attempt that was rejected
+    sewn.interpolate_rest_shape(progress);
+    EXPECT_FALSE(ended);
+    ended = sewn.accept_rest_shape(held, kOnset);
+    free.interpolate_rest_shape(progress);
+    free.accept_rest_shape(held, 1);
+    if (step != 80) continue;
+    ByteWriter saved;
+    sewn.serialize_rest_shape(saved, progress);
+    ByteReader reader{saved.bytes};
+    restored.serialize_rest_shape(reader, progress);
+    restored.interpolate_rest_shape(progress);
+    EXPECT_EQ(restored.energy(held), sewn.energy(held));
+  }
+  EXPECT_TRUE(ended);
+  EXPECT_FALSE(sewn.accept_rest_shape(held, kOnset));
+  // The width ends within two steps (twice the speed of 1 / 100 of the start's excess) of that at which threads lock.
+  EXPECT_NEAR(sewn.max_strain(held), kOnset, 2 * kStep * kHeld);
+  EXPECT_NEAR(sewn.widening().fraction, kHeld / (1 + kOnset) - 1, 2 * kStep);
+  EXPECT_EQ(free.widening().fraction, 0);
+  EXPECT_NEAR(free.max_strain(held), kHeld - 1, 1e-12);
+}
+
+TEST(SewnMembranes, MakeUpForTheTimeInWhichTheyWereStopped) {
+  mesh::Sheet sheet = flat_sheet();
+  sheet.sewn = true;
+  Positions held = sheet.rest;
+  for (Vec3& x : sheet.rest) x.x() *= 2;
+  for (Vec3& x : held) x.x() *= 2;
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
+  for (const double progress : {0.2, 0.4, 0.6, 0.8, 1.0}) {
+    sewn.interpolate_rest_shape(progress);
+    sewn.accept_rest_shape(held, progress < 0.5 ? 0.1 : 10);
+    if (progress == 0.4) {
+      EXPECT_NEAR(sewn.widening().fraction, 0.8, 1e-12);
+    }
+  }
+  EXPECT_EQ(sewn.widening().fraction, 0);
+  EXPECT_NEAR(sewn.max_strain(held), 1, 1e-12);
 }
 
 TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {

@@ -107,7 +107,8 @@ class StretchLimit final : public Force {
     Vec3 place = Vec3::Zero();  ///< position of the piece [m]
   };
   Worst worst(std::span<const Vec3> x) const;
-  double limit() const { return stretch_; }  ///< of the extension; infinite: none
+  double limit() const { return stretch_; }                 ///< of the extension; infinite: none
+  double onset() const { return Lock::kOnset * stretch_; }  ///< extension at which threads begin to lock
 
  private:
   static constexpr std::size_t kMaxCorners = 4, kMaxThreadCorners = 3;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive.hpp"
+
 namespace weft::forces {
 
 namespace {
@@ -76,13 +78,64 @@ void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& e
   element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
 }
 
+double TriangleMembrane::progress_of(const Start& start, double progress) const {
+  const double since = progress - accepted_progress_;
+  return progress - std::max(0.0, start.is_stopped ? start.lag + since : start.lag - since);
+}
+
 void TriangleMembrane::interpolate_rest_shape(double progress) {
+  progress_ = progress;
   for (std::size_t e = 0; e < starts_.size(); ++e) {
-    const auto& [inverse, excess] = starts_[e];
-    const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - progress) * excess;
-    set_rest_shape(progress == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
+    const double own = progress_of(starts_[e], progress);
+    const Eigen::Matrix2d &inverse = starts_[e].inverse,
+                          stretch = Eigen::Matrix2d::Identity() + (1 - own) * starts_[e].excess;
+    set_rest_shape(own == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
   }
   if (!starts_.empty()) pack();
+}
+
+bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_extension) {
+  if (accepted_progress_ == 1) return false;
+  for (std::size_t e = 0; e < starts_.size(); ++e) {
+    Start& start = starts_[e];
+    start.lag = progress_ - progress_of(start, progress_);
+    const Gradient s = gradient(elements_[e], x);
+    start.is_stopped = std::max(s.u.norm(), s.v.norm()) > 1 + max_extension;
+  }
+  accepted_progress_ = progress_;
+  return progress_ == 1;
+}
+
+TriangleMembrane::Widening TriangleMembrane::widening() const {
+  Widening widest;
+  for (std::size_t e = 0; e < starts_.size(); ++e) {
+    if (starts_[e].lag == 0) continue;
+    const Eigen::Matrix2d excess = (1 - accepted_progress_ + starts_[e].lag) * starts_[e].excess;
+    const double fraction = std::max(excess(0, 0), excess(1, 1));
+    if (fraction > widest.fraction) widest = {fraction, elements_[e].particles};
+  }
+  return widest;
+}
+
+template <class Archive>
+void TriangleMembrane::serialize_rest_shape(Archive& archive, double progress) {
+  for (Start& start : starts_) {
+    archive.value(start.lag);
+    archive.value(start.is_stopped);
+    require(start.lag >= 0 && start.lag <= 1, "a progress of sewing");
+  }
+  accepted_progress_ = progress;
+}
+
+template void TriangleMembrane::serialize_rest_shape(ByteWriter&, double);
+template void TriangleMembrane::serialize_rest_shape(ByteReader&, double);
+
+void TriangleMembrane::copy_rest_state(const TriangleMembrane& other) {
+  for (std::size_t e = 0; e < starts_.size(); ++e) {
+    starts_[e].lag = other.starts_[e].lag;
+    starts_[e].is_stopped = other.starts_[e].is_stopped;
+  }
+  accepted_progress_ = other.accepted_progress_;
 }
 
 void TriangleMembrane::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {

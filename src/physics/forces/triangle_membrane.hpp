@@ -39,8 +39,25 @@ class TriangleMembrane : public Membrane {
   /// For sewn sheets: interpolates the rest shape of each triangle between its shape at the start (progress 0; the
   /// start has no stress) and that in the pattern (progress 1). The deformation from the pattern to the start has a
   /// right stretch tensor U in the axes of weft and warp; this function interpolates linearly between U and the
-  /// identity.
+  /// identity. A triangle that accept_rest_shape() has stopped keeps its shape; one that was
+  /// stopped before makes up for it at twice the speed.
   void interpolate_rest_shape(double progress);
+  /// For sewn sheets, after each step: stops the triangles whose threads are extended by more than
+  /// `max_extension` with corners at x [m], until the next call. So cloth that is sewn too narrow
+  /// for a body stays as wide as it must be. Returns whether the progress has become 1 in this step.
+  bool accept_rest_shape(std::span<const Vec3> x, double max_extension);
+  /// The triangle whose shape is wider than in the pattern by the largest fraction of its width.
+  struct Widening {
+    double fraction = 0;  ///< 0 if all triangles have their shape in the pattern
+    std::array<Index, 3> corners{};
+  };
+  Widening widening() const;
+  /// Saves or restores which triangles were stopped. Call interpolate_rest_shape(`progress`), with
+  /// the progress of the last accepted step, after restoring.
+  template <class Archive>
+  void serialize_rest_shape(Archive& archive, double progress);
+  /// As serialize_rest_shape(), from the same sheet elsewhere.
+  void copy_rest_state(const TriangleMembrane& other);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
@@ -85,8 +102,12 @@ class TriangleMembrane : public Membrane {
   /// interpolate_rest_shape).
   struct Start {
     Eigen::Matrix2d inverse, excess;
+    double lag = 0;           // by which the progress of this triangle lags at the last accepted step
+    bool is_stopped = false;  // until the next accepted step
   };
+  double progress_of(const Start& start, double progress) const;
   std::vector<Start> starts_;
+  double progress_ = 0, accepted_progress_ = 0;  // the last one, and that of the last accepted step
   std::vector<Triangles> packs_;
   Ranges ranges_;  // of packs
 };

@@ -313,9 +313,15 @@ bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
   return true;
 }
 
-void ClothSystem::accept(std::span<const Vec3> x) {
-  for (Sewing& sewing : sewing_)
+std::vector<ClothSystem::Widening> ClothSystem::accept(std::span<const Vec3> x) {
+  std::vector<Widening> widened;
+  for (Sewing& sewing : sewing_) {
     if (!sewing.tearing_seams.empty()) sewing.ties->accept(x);
+    if (sewing.limit == nullptr || !sewing.membrane->accept_rest_shape(x, sewing.limit->onset())) continue;
+    const auto [fraction, corners] = sewing.membrane->widening();
+    if (fraction > 0) widened.push_back({sewing.cloth, fraction, (x[corners[0]] + x[corners[1]] + x[corners[2]]) / 3});
+  }
+  return widened;
 }
 
 std::vector<AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) const {
@@ -329,10 +335,12 @@ std::vector<AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) 
   return loads;
 }
 
-void ClothSystem::copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths) {
+void ClothSystem::copy_sewing_from(const ClothSystem& there, std::span<const std::size_t> cloths) {
   for (const Sewing& before : there.sewing_) {
-    if (before.tearing_seams.empty()) continue;
-    std::ranges::find(sewing_, cloths[before.cloth], &Sewing::cloth)->ties->copy_state_from(*before.ties);
+    Sewing& sewing = *std::ranges::find(sewing_, cloths[before.cloth], &Sewing::cloth);
+    sewing.membrane->copy_rest_state(*before.membrane);
+    sewing.set_progress(before.progress);
+    if (!before.tearing_seams.empty()) sewing.ties->copy_state_from(*before.ties);
   }
 }
 
@@ -349,6 +357,7 @@ void ClothSystem::serialize(Archive& archive) {
     archive.value(sewing.progress);
     if (sewing.ties != nullptr) archive.value(sewing.time);
     if (sewing.ties != nullptr) sewing.ties->serialize(archive);
+    sewing.membrane->serialize_rest_shape(archive, sewing.progress);
     if constexpr (!Archive::kReads) continue;
     require(sewing.progress >= 0 && sewing.progress <= 1, "a progress of sewing");
     sewing.set_progress(sewing.progress);

@@ -104,13 +104,21 @@ class ClothSystem {
   /// changed.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
+  /// Cloth that was sewn wider than its pattern, because its threads would have locked.
+  struct Widening {
+    std::size_t cloth;  ///< number of the cloth
+    double fraction;    ///< by which its widest triangle is wider than in the pattern
+    Vec3 place;         ///< of this triangle
+  };
   /// Accepts a step that ends with particles at x [m]: updates which ties of tearable seams hold,
-  /// and tears overloaded ones.
-  void accept(std::span<const Vec3> x);
+  /// tears overloaded ones, and stops the sewing of triangles whose threads lock. Returns the cloths
+  /// whose sewing ended with this step, if they were widened.
+  std::vector<Widening> accept(std::span<const Vec3> x);
   /// The load of each seam that can tear.
   std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
-  /// Copies which ties of seams hold or are torn. `cloths[k]`: number, in this object, of cloth k of `there`.
-  void copy_seams_from(const ClothSystem& there, std::span<const std::size_t> cloths);
+  /// Copies the state of sewing, and which ties of seams hold or are torn. `cloths[k]`: number, in this object, of
+  /// cloth k of `there`.
+  void copy_sewing_from(const ClothSystem& there, std::span<const std::size_t> cloths);
 
   /// Saves or restores rope lengths, the progress of sewing, torn seams, and enclosed air.
   template <class Archive>

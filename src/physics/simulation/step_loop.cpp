@@ -16,6 +16,8 @@ namespace {
 
 // A cloth is reported again only if its stretch is at least this multiple of the last reported one.
 constexpr double kReportAgainRatio = 1.5;
+// Cloth that is sewn wider than its pattern by less is not reported.
+constexpr double kMinReportedWidening = 0.01;
 
 }  // namespace
 
@@ -65,7 +67,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
   if (collisions_ && before.collisions_) collisions_->copy_state_from(*before.collisions_, cloths);
   cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
   attachments_.copy_state_from(before.attachments_, cloths);
-  cloth_.copy_seams_from(before.cloth_, cloths);
+  cloth_.copy_sewing_from(before.cloth_, cloths);
   next_ = progress_.now;
 }
 
@@ -236,7 +238,14 @@ void StepLoop::accept(double h, FrameReport& report) {
   for (const std::string& text : attachments_.accept(next_.particles()))
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
   cloth_.finish_step(step_end_ - start_);
-  cloth_.accept(next_.particles());
+  for (const ClothSystem::Widening& wide : cloth_.accept(next_.particles())) {
+    if (wide.fraction < kMinReportedWidening) continue;
+    report.warnings.push_back(
+        fmt::format("frame {}: '{}' is too narrow for what it surrounds: near ({:.4g}, {:.4g}, {:.4g}) m it is sewn up "
+                    "to {:.0f} % wider than its pattern; a larger `scale` or `fit` prevents this",
+                    report.frame, model_.cloths[wide.cloth].name, wide.place.x(), wide.place.y(), wide.place.z(),
+                    100 * wide.fraction));
+  }
   if (collisions_) collisions_->accept();
   std::swap(progress_.now, next_);
   progress_.longest *= numerics.steps.largest_factor;
