@@ -75,17 +75,51 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
   const Wearer wearer = round_wearer();
   const Measures own = measure(wearer);
   Pattern pattern;
-  pattern.measures = {*own.chest / 1.1, *own.waist / 1.3, *own.hip / 0.9, {}};
-  EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(1.3, 1)).norm(), 1e-12);
+  pattern.measures = {*own.chest / 1.1, *own.waist / 1.3, *own.hip / 0.9, {}, {}};
+  EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.3, 1)).norm(), 1e-12);
   // Heights are compared at the neck: a head of any size leaves the garment where it is.
   const double height = wearer.neck / kNeckHeightRatio / 1.2;
-  pattern.measures = {{}, {}, *own.hip / 0.9, height};
-  EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(0.9, 1.2)).norm(), 1e-12);
-  pattern.measures = {{}, {}, {}, height};
-  EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(1.2, 1.2)).norm(), 1e-12);
+  pattern.measures = {{}, {}, *own.hip / 0.9, {}, height};
+  EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(0.9, 1.2)).norm(), 1e-12);
+  pattern.measures = {{}, {}, {}, {}, height};
+  EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.2, 1.2)).norm(), 1e-12);
   pattern.measures = {};
   support::expect_error(ExitCode::scene_invalid, "cloth.c.fit: expected a pattern that names the measures",
-                        [&] { fit_factors(pattern, wearer, "cloth.c"); });
+                        [&] { fit(pattern, wearer, "cloth.c"); });
+}
+
+// Arms like tubes, 0.3 m around where the chest is: as thick as those of a figure with a short trunk.
+TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
+  constexpr double kGirth = 0.3, kLength = 0.6;
+  constexpr int kAround = 64, kAlong = 61;
+  Wearer wearer = round_wearer();
+  for (const double side : {1.0, -1.0}) {
+    const auto first = static_cast<Index>(wearer.skin.size());
+    for (int j = 0; j < kAlong; ++j)
+      for (int i = 0; i < kAround; ++i) {
+        const double angle = 2 * std::numbers::pi * i / kAround, radius = kGirth / (2 * std::numbers::pi);
+        wearer.skin.emplace_back(side * (0.2 + kLength * j / (kAlong - 1)), radius * std::cos(angle),
+                                 1.4 + radius * std::sin(angle));
+      }
+    for (int j = 0; j + 1 < kAlong; ++j)
+      for (int i = 0; i < kAround; ++i) {
+        const Index a = first + j * kAround + i, b = first + j * kAround + (i + 1) % kAround;
+        wearer.triangles.push_back({a, b, a + kAround});
+        wearer.triangles.push_back({b, b + kAround, a + kAround});
+      }
+    wearer.regions.resize(wearer.skin.size(), side > 0 ? Region::left_arm : Region::right_arm);
+    (side > 0 ? wearer.left_arm : wearer.right_arm) =
+        Limb{Vec3(side * 0.2, 0, 1.4), Vec3(side * 0.45, 0, 1.4), Vec3(side * 0.7, 0, 1.4)};
+  }
+  EXPECT_NEAR(*measure(wearer).arm, kGirth, 1e-3 * kGirth);  // a polygon of 64 corners is shorter by 0.04 %
+  Pattern pattern;
+  pattern.measures = {*measure(wearer).chest, {}, {}, *measure(wearer).arm / 1.5, 1.7};
+  const Fit thick = fit(pattern, wearer, "cloth.c");
+  EXPECT_LT((thick.factors - Vec2(1.5, 1.5)).norm(), 1e-12);
+  EXPECT_NEAR(kNeckHeightRatio * 1.7 * thick.factors.y() + thick.rise, wearer.neck, 1e-12);
+  pattern.measures.arm = 1;
+  EXPECT_NEAR(fit(pattern, wearer, "cloth.c").factors.x(), 1, 1e-12);
+  EXPECT_NEAR(fit(pattern, wearer, "cloth.c").rise, 0, 1e-12);
 }
 
 // If hips are hardly wider than the waist of a garment, the garment falls to the feet, unless it also hangs from the

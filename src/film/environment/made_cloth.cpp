@@ -85,21 +85,23 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   const garment::Wearer* wearer = pattern.has_bent_panels() ? &wearers.of(cloth, where) : nullptr;
   const garment::Wearer* fitted = cloth.fit ? &wearers.of(cloth, where) : nullptr;
   Vec2 factors(cloth.scale, cloth.scale);
+  double rise = 0;
   if (fitted != nullptr) {
     const garment::Wearer& body = *fitted;
-    const Vec2 fit = garment::fit_factors(pattern, body, where);
+    const garment::Fit fit = garment::fit(pattern, body, where);
     const garment::Measures own = garment::measure(body);
     made.details.fitted = fmt::format(
         "{:.3g} times as wide and {:.3g} times as long as drawn; its wearer has {:.2f} m around the chest, {:.2f} "
-        "around "
-        "the waist, {:.2f} around the hips, and is {:.2f} m tall",
-        fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
-    factors = factors.cwiseProduct(fit);
+        "around the waist, {:.2f} around the hips, {}and is {:.2f} m tall",
+        fit.factors.x(), fit.factors.y(), *own.chest, *own.waist, *own.hip,
+        own.arm ? fmt::format("{:.2f} around the arms, ", *own.arm) : "", *own.height);
+    factors = factors.cwiseProduct(fit.factors);
+    rise = cloth.scale * fit.rise;
     if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, body);
         !warning.empty() && cloth.pins.empty())
       made.details.warnings.push_back(fmt::format("{}: {}", where, warning));
   }
-  pattern.scale_by(factors);
+  pattern.scale_by(factors, rise);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
   // Bent panels lie around the wearer in the scene; others are drawn with z up.
   std::vector<Vec3> upright = garment.sheet.rest;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -15,9 +16,9 @@ namespace {
 // a leg.
 constexpr double kHipHeightRatio = 0.52;
 // Heights above the hip joints, as fractions of the distance from hip joints to neck: lower end of
-// the hips, lowest waist, highest waist, and armpits. Above the armpits, sections include the
+// the hips, lowest waist, highest waist, and highest armpits. Above the armpits, sections include the
 // shoulders.
-constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
+constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kHighestArmpit = 0.75;
 // Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
 // Maximum change of the girth per height at the waist: 2π, as of a cone whose surface is inclined by 45 degrees.
@@ -25,6 +26,36 @@ constexpr double kMaxGirthSlope = 2 * std::numbers::pi;
 // Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at a ratio of 1.05
 // the garment slides down, at 1.16 it stays).
 constexpr double kMinHipToWaistRatio = 1.1;
+
+// Height of the armpits: the lowest vertex at which skin of an arm joins skin of the trunk; infinite if there is none.
+double armpit_height(const Wearer& wearer) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const auto& triangle : wearer.triangles) {
+    const auto is_arm = [&](Index v) {
+      return wearer.regions[v] == Region::left_arm || wearer.regions[v] == Region::right_arm;
+    };
+    const auto is_trunk = [&](Index v) { return wearer.regions[v] == Region::trunk; };
+    if (std::ranges::any_of(triangle, is_arm) && std::ranges::any_of(triangle, is_trunk))
+      for (const Index v : triangle) lowest = std::min(lowest, wearer.skin[v].z());
+  }
+  return lowest;
+}
+
+// Largest girth of the upper arms, without the quarter next to the shoulder, where Tube has no sections of its own.
+// Absent if joints or skin of an arm are.
+std::optional<double> arm_girth(const Wearer& wearer) {
+  double largest = 0;
+  for (const bool left : {true, false}) {
+    const std::optional<Limb>& limb = left ? wearer.left_arm : wearer.right_arm;
+    const Region region = left ? Region::left_arm : Region::right_arm;
+    if (!limb || std::ranges::find(wearer.regions, region) == wearer.regions.end()) return std::nullopt;
+    const Limb& joints = *limb;
+    const Tube arm(wearer, left ? Around::left_arm : Around::right_arm);
+    for (double s = -(joints[1] - joints[0]).norm(); s <= 0; s += kSpacing)
+      largest = std::max(largest, arm.girth(s, 0));
+  }
+  return largest;
+}
 
 }  // namespace
 
@@ -50,22 +81,28 @@ Measures measure(const Wearer& wearer) {
     for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
     return largest;
   };
-  return {max_girth(waist, at(kArmpits)), girth(waist), max_girth(at(kLowestHip), waist), height};
+  const double armpits = std::clamp(armpit_height(wearer), std::max(waist, at(kHighestWaist)), at(kHighestArmpit));
+  return {max_girth(waist, armpits), girth(waist), max_girth(at(kLowestHip), waist), arm_girth(wearer), height};
 }
 
-Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where) {
+Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) {
   const Measures& drawn = pattern.measures;
-  if (!drawn.chest && !drawn.waist && !drawn.hip && !drawn.height)
+  if (!drawn.chest && !drawn.waist && !drawn.hip && !drawn.arm && !drawn.height)
     throw Error(ExitCode::scene_invalid,
                 "{}.fit: expected a pattern that names the measures it is drawn for, as [measures] with chest, waist, "
-                "hip or height, got none in {}",
+                "hip, arm or height, got none in {}",
                 where, pattern.file.string());
   const Measures own = measure(wearer);
-  double across = 0, up = 1;
-  for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip})
-    if (drawn.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
-  if (drawn.height) up = wearer.neck / (kNeckHeightRatio * *drawn.height);
-  return {across > 0 ? across : up, up};
+  double across = 0, up = 1, rise = 0;
+  for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm})
+    if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
+  if (drawn.height) {
+    const double neck = kNeckHeightRatio * *drawn.height;
+    up = wearer.neck / neck;
+    if (drawn.arm && own.arm) up = std::max(up, *own.arm / *drawn.arm);
+    rise = wearer.neck - up * neck;
+  }
+  return {{across > 0 ? across : up, up}, rise};
 }
 
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {

@@ -11,19 +11,29 @@ namespace weft::garment {
 /// Measures a wearer in its pose. Girths are those of convex sections of the body without the arms.
 /// Waist: the narrowest section between the heights kLowestWaist and kHighestWaist (fit.cpp);
 /// sections whose girth changes fast with height are excluded, except the lowest one. Chest: the
-/// widest section from the waist to the armpits. Hip: the widest section from kLowestHip to the
-/// waist. Height: that of the crown, rounded down to 1 cm. Throws Error(scene_invalid) if the body
-/// without the arms has no skin.
+/// widest section from the waist to the armpits (the lowest place where skin of an arm joins the
+/// trunk, at most kHighestArmpit). Hip: the widest section from kLowestHip to the waist. Arm: the
+/// widest section of both upper arms; absent if joints or skin of an arm are. Height: that of the
+/// crown, rounded down to 1 cm. Throws Error(scene_invalid) if the body without the arms has no
+/// skin.
 Measures measure(const Wearer& wearer);
 
-/// Factors (x: across, y: up) on the lengths of a pattern. Across: the largest ratio wearer's girth
+/// How a pattern is changed for a wearer; for Pattern::scale_by().
+struct Fit {
+  Vec2 factors{1, 1};  ///< on lengths of the pattern, across and up
+  double rise = 0;     ///< of start positions that were multiplied by `factors` [m]
+};
+
+/// Factors on the lengths of a pattern. Across: the largest ratio wearer's girth
 /// / drawn girth among the girths that the pattern states, so that the garment is nowhere tighter
 /// than drawn. Up: wearer's neck height / neck height of the drawn body (kNeckHeightRatio of its
-/// height); 1 if the pattern states no height. Neck heights are compared, since the height of the
+/// height), or the ratio of the arms if that is larger, since armholes are drawn along the body; 1 if
+/// the pattern states no height. Neck heights are compared, since the height of the
 /// head varies much between bodies. If the pattern states only a height, both factors are the ratio
-/// of neck heights. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
+/// of neck heights. The rise puts the neck of the drawn body, multiplied by the factor up, at the
+/// height of the wearer's. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
 /// pattern states no measures.
-Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where);
+Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
 /// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the
 /// waist girth of the garment after scaling by `factors`: the garment would slide down. Otherwise

@@ -399,6 +399,9 @@ const scene::Table& pattern_rules() {
           .by_default("not given")
           .number("hip", &Measures::hip, scene::above(0, 100), "m", "largest girth below the waist")
           .by_default("not given")
+          .number("arm", &Measures::arm, scene::above(0, 100), "m",
+                  "largest girth of the upper arms; sleeves and armholes give way to thicker arms")
+          .by_default("not given")
           .number("height", &Measures::height, scene::above(0, 100), "m",
                   "height from the floor to the top of the head")
           .by_default("not given")
@@ -418,10 +421,11 @@ const scene::Table& pattern_rules() {
   return kTable;
 }
 
-void Pattern::scale_by(const Vec2& factors) {
+void Pattern::scale_by(const Vec2& factors, double rise) {
   depth *= factors.x();
   for (Panel& panel : panels) {
-    if (panel.position) *panel.position = panel.position->cwiseProduct(factors);
+    const bool on_arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
+    if (panel.position) *panel.position = panel.position->cwiseProduct(factors) + Vec2(0, on_arm ? 0 : rise);
     for (PanelEdge& edge : panel.edges)
       for (Curve& curve : edge.curves)
         for (Vec2& p : curve.control) p = p.cwiseProduct(factors);

@@ -95,7 +95,7 @@ struct Hem {
 
 /// Measures of a body: girths, and the height from floor to crown [m].
 struct Measures {
-  std::optional<double> chest, waist, hip, height;
+  std::optional<double> chest, waist, hip, arm, height;
 };
 
 struct Pattern {
@@ -113,8 +113,8 @@ struct Pattern {
   /// Whether panels start bent around parts of the wearer; otherwise they start flat.
   bool has_bent_panels() const;
   /// Multiplies outlines and start positions by `factors` (across and up the drawings), and `depth` by the factor
-  /// across. All other members keep their values.
-  void scale_by(const Vec2& factors);
+  /// across. Start positions around parts other than arms then rise by `rise` [m]. All other members keep their values.
+  void scale_by(const Vec2& factors, double rise = 0);
   /// Indices of the panel and of its edge for a name "panel.edge" of a checked pattern. Throws Error(internal) if the
   /// pattern has no such edge.
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
