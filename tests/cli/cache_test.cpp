@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "cli/cached_run.hpp"
 #include "cli/video_probe.hpp"
@@ -151,6 +153,28 @@ TEST_F(CachedRun, ChangedLooksGoOnAndDressWhatWasKept) {
   // A complete cache can also be extended.
   expect_well(with_looks({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "time.duration=0.88"}));
   EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), kFrames + 2u);
+}
+
+TEST_F(CachedRun, StoredFramesGetTheAngleOfALensForTheSizeOfTheRunThatGoesOn) {
+  const auto simulate = [&](const Arguments& more) {
+    Arguments arguments{"simulate",   "s.toml",
+                        "--cache",    "c",
+                        "--quality",  "draft",
+                        "--progress", "none",
+                        "--set",      "camera=[{name='v',position=[1,-2,1],target=[0,0,0],focal_length=50}]"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_weft(arguments, folder_);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  };
+  simulate({"--size", "64x36", "--frames", ":8"});
+  simulate({"--size", "36x64", "--frames", ":3", "--resume"});
+  simulate({"--size", "36x64", "--resume"});
+  // The longer side of the picture, which sees 36 mm, is upright now.
+  const double angle = 360 / std::numbers::pi * std::atan(36.0 / (2 * 50));
+  const cache::Reader reader(folder_ / "c");
+  EXPECT_EQ(reader.frames().size(), static_cast<std::size_t>(kFrames));
+  for (const int frame : reader.frames())
+    EXPECT_NEAR(reader.snapshot(frame)->cameras[0].field_of_view, angle, 1e-9) << frame;
 }
 
 TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {

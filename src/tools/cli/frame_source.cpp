@@ -1,5 +1,6 @@
 #include "tools/cli/frame_source.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/error.hpp"
@@ -8,6 +9,21 @@
 #include "tools/cli/enclosed.hpp"
 
 namespace weft::cli {
+namespace {
+
+/// Whether the angle of a camera depends on the size of the picture, which the hash of the scene does not contain.
+bool has_lens(const scene::Scene& scene) {
+  return std::ranges::any_of(scene.cameras,
+                             [](const scene::Camera& camera) { return scene::has_focal_length(camera); });
+}
+
+bool has_same_lenses(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {
+  return std::ranges::equal(a.cameras, b.cameras, [](const frame::Camera& one, const frame::Camera& other) {
+    return one.field_of_view == other.field_of_view && one.aperture == other.aperture;
+  });
+}
+
+}  // namespace
 
 SceneSource::SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress)
     : scene_(scene), store_(store), stop_(stop), progress_(progress) {
@@ -27,10 +43,12 @@ MadeFrame SceneSource::next() {
 
 MadeFrame SceneSource::read_stored() {
   cache::CachedFrame cached = store_.earlier().read(next_);
-  const bool fresh = cached.scene_hash != scene_.hash;
-  if (fresh) {
+  bool fresh = cached.scene_hash != scene_.hash;
+  if (fresh || has_lens(scene_)) {
     if (!simulation_) prepare_simulation();
-    cached.snapshot = simulation_->with_looks(*cached.snapshot);
+    frame::SnapshotPtr now = simulation_->with_looks(*cached.snapshot);
+    fresh = fresh || !has_same_lenses(*now, *cached.snapshot);
+    if (fresh) cached.snapshot = std::move(now);
   }
   return {std::move(cached.snapshot), std::move(cached.report), fresh};
 }
