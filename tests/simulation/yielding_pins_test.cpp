@@ -341,5 +341,24 @@ TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
   EXPECT_NE(corner[0].find("; pin 0 holds the particles that both select"), std::string::npos) << corner[0];
 }
 
+TEST(Doubts, NamePinsThatFollowBodiesFartherApartThanTheClothIs) {
+  const auto of = [](const std::string& rise) {
+    return production::find_warnings(support::scene_of_text(
+        hanging(1, "follow = 'above'",
+                "[[cloth.pin]]\nlow = [0, 0]\nhigh = [1, 0]\nfollow = 'below'\n"
+                "[[obstacle]]\nname = 'below'\nshape = 'box'\nsize = [0.4, 0.02, 0.02]\nposition = [0, 0, 0.37]\n"
+                "[[obstacle]]\nname = 'above'\nshape = 'box'\nsize = [0.4, 0.02, 0.02]\ninterpolation = 'linear'\n"
+                "keys = [{ time = 0, position = [0, 0, 0.83] }, { time = 1, position = [0, 0, " +
+                    rise + "] }]\n")));
+  };
+  const auto apart = of("1.02");  // 0.19 m higher than at the start, as in the test above
+  ASSERT_EQ(apart.size(), 1u);
+  EXPECT_EQ(
+      apart[0],
+      "cloth.sheet.pin.1: stretches the cloth between it and pin 0 beyond its max_stretch from 0.22 s on, by 47.5 % "
+      "at 1 s");
+  EXPECT_TRUE(of("0.86").empty()) << "by 7.5 %";
+}
+
 }  // namespace
 }  // namespace weft::simulation

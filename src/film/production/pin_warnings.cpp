@@ -217,7 +217,7 @@ std::vector<std::string> find_far_pins(const scene::Scene& scene, const environm
 
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
-  if (!any_pin(scene, has_keys)) return found;
+  if (!has_moving_pins(scene)) return found;
   const MovingPins moving(environment);
   struct Stretch {
     double from = 0, max_ratio = 0, at = 0;  // `from`, `at`: times [s]; `max_ratio`: length / length at rest
@@ -230,7 +230,8 @@ std::vector<std::string> find_stretches(const scene::Scene& scene, const environ
     for (std::size_t b = 1; b < regions.size(); ++b)
       for (std::size_t a = 0; a < b; ++a) {
         const std::size_t cloth = moving.pins.info(a).cloth;
-        const bool apart = moving.is_moved(scene, a) || moving.is_moved(scene, b);
+        const bool by_bodies = moving.pin(scene, a).follow != moving.pin(scene, b).follow;
+        const bool apart = by_bodies || moving.is_moved(scene, a) || moving.is_moved(scene, b);
         if (cloth != moving.pins.info(b).cloth || !apart) continue;
         const double limit = scene.cloths[cloth].material.max_stretch, ratio = stretch_between(regions[a], regions[b]);
         if (limit == 0 || ratio <= 1 + limit) continue;

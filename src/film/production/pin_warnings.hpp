@@ -20,8 +20,8 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment);
 
 /// One warning for each pair of pins on a rectangular cloth that move farther apart than `max_stretch` of the cloth
-/// between them allows. Only for pins without a `strength`, at least one of them key-framed, and for `max_stretch`
-/// above 0.
+/// between them allows. Only for pins without a `strength` of which at least one is key-framed, or which do not follow
+/// the same body, and for `max_stretch` above 0.
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment);
 
 /// One warning for each pin that follows a body if all sampled particles of the pin (at most 41)
