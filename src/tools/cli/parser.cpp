@@ -113,7 +113,7 @@ void Parser::add_thumbnail() {
       "  weft thumbnail scenes/*.toml -o stills --size 320x180\n"
       "  weft thumbnail dress.toml --start -o start.png\n"
       "\nWith --frame N, a scene is simulated up to frame N, and a computed camera shows what has happened until\n"
-      "then, that of the film all frames. A cache of all frames gives the picture of the film.\n"
+      "then, that of the film all frames. A cache of all frames gives the picture of the film, without motion blur.\n"
       "\nIf a scene fails, the others are still drawn; the exit code is that of the first scene that failed.");
 }
 
@@ -149,8 +149,8 @@ void Parser::add_join() {
       "  weft join first.mp4 second.mp4 -o band.mp4\n"
       "  weft encode band -o band.mov\n"
       "\nEach part stores which frames of which scene it holds. If frames are missing, the command ends with exit\n"
-      "code 9. Pictures become the video that weft render would make of them, byte for byte; videos are not\n"
-      "encoded again.\n"
+      "code 9. Pictures become the video that weft render would make, byte for byte unless they have 16 bits per\n"
+      "channel; videos are not encoded again.\n"
       "encode is another name of join.");
 }
 
