@@ -80,6 +80,24 @@ TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
   EXPECT_EQ(accuracy.scene_setting_run()->setting.tolerance, 3e-4);
 }
 
+TEST(AccuracyPlan, SolvesNothingLessExactlyThanTheScene) {
+  constexpr double kScene = 5e-9;  // below 1e-8, where the division by ten ends
+  AccuracyPlan plan;
+  plan.integrators = {Integrator::bdf2};
+  plan.steps = {1};
+  plan.tolerances.emplace();
+  plan.meshes = {1};
+  int references = 0;
+  const auto check = [&](const bench::Run& run, double) {
+    EXPECT_LE(run.setting.newton_tolerance, kScene);
+    if (run.setting.step < 0.01) ++references;
+  };
+  const Accuracy accuracy =
+      measure_accuracy(tiny_sheet({fmt::format("solver.newton_tolerance={}", kScene)}), check, plan);
+  EXPECT_GT(references, 0);
+  EXPECT_FALSE(runs_of_axis(accuracy, Axis::mesh).empty());
+}
+
 TEST(AccuracyPlan, IsRefusedWhereItDoesNotSuitTheScene) {
   AccuracyPlan few;
   few.starts = 2;

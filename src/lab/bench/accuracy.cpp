@@ -28,7 +28,8 @@ constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
 // more steps than a run with the shortest fixed step.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
-// newton_tolerance falls by decades from the scene's value down to this minimum.
+// newton_tolerance falls by decades from the scene's value down to this minimum. If the scene's value is smaller, all
+// runs have it.
 constexpr double kMinNewtonTolerance = 1e-8, kDecade = 0.1;
 // newton_tolerance of the runs of Axis::mesh, relative to the scene's.
 constexpr double kMeshNewtonRatio = 1e-2;
@@ -54,6 +55,11 @@ struct Sample {
   Errors spread{};     // see Run::spread
   Work work;           // see Run::work
 };
+
+// `ratio` times a newton_tolerance, if that is not below kMinNewtonTolerance. Never larger than `tolerance`.
+double tighter_newton_tolerance(double tolerance, double ratio) {
+  return std::min(tolerance, std::max(kMinNewtonTolerance, ratio * tolerance));
+}
 
 Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_t>& same = {}) {
   return a.contact ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
@@ -240,7 +246,7 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const double order = expected_order({.setting = twice});
   for (Errors change{};;) {
     Run tighter{.setting = twice};
-    tighter.setting.newton_tolerance = std::max(kMinNewtonTolerance, kDecade * twice.newton_tolerance);
+    tighter.setting.newton_tolerance = tighter_newton_tolerance(twice.newton_tolerance, kDecade);
     const SamplePtr sample = run(tighter, coarse);
     // Accept a failure only if an earlier division has given a change to return.
     if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
@@ -326,7 +332,7 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
       if (before.step_decides) break;
     }
     if (setting.newton_tolerance <= kMinNewtonTolerance) break;
-    setting.newton_tolerance = std::max(kMinNewtonTolerance, kDecade * setting.newton_tolerance);
+    setting.newton_tolerance = tighter_newton_tolerance(setting.newton_tolerance, kDecade);
   }
   const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
   for (std::size_t k = 0; k < runs.size(); ++k)
@@ -402,7 +408,7 @@ void Campaign::measure_meshes() {
   for (const double refinement : all) {
     if (!run_error::can_refine(scene_, refinement)) continue;
     Run tried{.axis = Axis::mesh, .setting = as_in_scene(result_.reference.setting.integrator, 0.5 * scene_step_)};
-    tried.setting.newton_tolerance = std::max(kMinNewtonTolerance, kMeshNewtonRatio * tried.setting.newton_tolerance);
+    tried.setting.newton_tolerance = tighter_newton_tolerance(tried.setting.newton_tolerance, kMeshNewtonRatio);
     tried.setting.refinement = refinement;
     const auto twice = by_refinement.find(2 * refinement);
     const SamplePtr against = twice == by_refinement.end() ? nullptr : twice->second;
