@@ -136,6 +136,23 @@ TEST(Engine, AGuessThatMeetsTheFloorIsPushedApart) {
   EXPECT_EQ(kept, above);
 }
 
+// The sheet falls by 1.4 mm to below the floor, and is pushed up. The ceiling sinks by as much, so it is near the sheet
+// only after the push.
+TEST(Engine, WhatAGuessIsPushedToIsFoundNear) {
+  Sheet sheet(3, 0.001, 0.0042);
+  std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});
+  for (const bool reuse : {true, false}) {
+    EngineParameters parameters;
+    parameters.search.reuse = reuse;
+    Engine engine = sheet.engine(parameters);
+    std::vector<Vec3> guess = sheet.falling(0.0014);
+    for (std::size_t v = guess.size() - 4; v < guess.size(); ++v) guess[v].z() = 0.0028;
+    EXPECT_TRUE(engine.begin_step(sheet.x, guess, movable, kEngineStep));
+    EXPECT_EQ(engine.proximities(), 32) << (reuse ? "with reuse" : "without reuse");
+  }
+}
+
 // If the predicted end runs into the floor, its contacts exist before the first solve.
 TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
   Sheet sheet(3, 0.05);

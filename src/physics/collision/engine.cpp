@@ -172,6 +172,8 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
 // separates two triangles on the trajectory, their features are searched at the start, where each
 // is still on its own side.
 void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  // If separate_guess() has moved x_t1, features that are near there may be missing from the pairs.
+  if (!candidates_.lists_near(x_t1)) collect(x_t0, x_t1);
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)
     for (std::size_t k = 0; k < 3; ++k) {
