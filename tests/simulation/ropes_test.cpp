@@ -7,6 +7,7 @@
 #include "film/environment/environment.hpp"
 #include "film/production/plan.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "physics/simulation/step_loop.hpp"
 #include "physics/simulation/step_problem.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
@@ -85,6 +86,20 @@ TEST(RopeRuns, HaveTheBendingStiffnessOfTheirLengthInTheMatrix) {
   const std::vector<Mat3> before = blocks_at(0, used), after = blocks_at(1, used);
   EXPECT_NE(before, after);
   EXPECT_EQ(after, blocks_at(1, fresh));
+}
+
+// Putting on a layer replaces the step loop. If the first step of the new loop fails, its state is the one that is
+// shown and saved.
+TEST(RopeRuns, HaveTheLengthOfTheirTimeOnceALayerIsPutOn) {
+  const model::Model model =
+      environment::Environment(
+          support::scene_of_text("[[rope]]\nname = \"line\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 8\n"
+                                 "keys = [{ time = 0, length = 1 }, { time = 1, length = 0.5 }]\n"))
+          .model;
+  const StepLoop inner(model, 1);
+  StepLoop both(model, 1);
+  both.copy_state_from(inner, std::vector<std::size_t>{0});
+  EXPECT_NEAR(both.cloth().max_strain(both.progress().now.particles()), 1, 1e-9);
 }
 
 TEST(RopeRuns, BearWhatIsTiedToThem) {

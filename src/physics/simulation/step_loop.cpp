@@ -44,6 +44,7 @@ StepLoop::StepLoop(const model::Model& model, double start)
   }
   if (!attachments_.empty()) problem_.use_attachments(attachments_);
   cloth_.inflate(start - start_, now.particles());
+  step_end_ = start;
   next_ = now;
 }
 
@@ -68,6 +69,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
   cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
   attachments_.copy_state_from(before.attachments_, cloths);
   cloth_.copy_sewing_from(before.cloth_, cloths);
+  cloth_.sew(step_end_ - start_);
   next_ = progress_.now;
 }
 

@@ -170,7 +170,7 @@ class StepLoop {
   Attachments attachments_;
   model::Weather weather_;
   Vec3 gravity_;         // in the current step [m/s²]
-  double step_end_ = 0;  // time at which the current step ends [s]
+  double step_end_ = 0;  // time at which the current step ends; before the first step, time of its start [s]
 };
 
 }  // namespace weft::simulation
