@@ -111,6 +111,20 @@ TEST(SewnMembranes, MakeUpForTheTimeInWhichTheyWereStopped) {
   EXPECT_NEAR(sewn.max_strain(held), 1, 1e-12);
 }
 
+// The start is half as long along weft as the pattern, and something holds it at the length of the pattern.
+TEST(SewnMembranes, AreNotStoppedBeforeTheyAreAsWideAsTheirPattern) {
+  mesh::Sheet sheet = flat_sheet();
+  sheet.sewn = true;
+  const Positions held = sheet.rest;
+  for (Vec3& x : sheet.rest) x.x() *= 0.5;
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
+  for (const double progress : {0.2, 0.4, 0.6, 0.8, 1.0}) {
+    sewn.interpolate_rest_shape(progress);
+    EXPECT_NEAR(sewn.max_strain(held), 1 / (0.5 + 0.5 * progress) - 1, 1e-12);
+    sewn.accept_rest_shape(held, 0.1);
+  }
+}
+
 TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
   mesh::Sheet sheet = flat_sheet();
   sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0, 0});

@@ -99,8 +99,11 @@ bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_ext
   for (std::size_t e = 0; e < starts_.size(); ++e) {
     Start& start = starts_[e];
     start.lag = progress_ - progress_of(start, progress_);
+    // Sewing shortens only threads that are longer at the start than in the pattern. It releases the others.
     const Gradient s = gradient(elements_[e], x);
-    start.is_stopped = std::max(s.u.norm(), s.v.norm()) > 1 + max_extension;
+    const double longest = 1 + max_extension;
+    start.is_stopped =
+        (s.u.norm() > longest && start.excess(0, 0) > 0) || (s.v.norm() > longest && start.excess(1, 1) > 0);
   }
   accepted_progress_ = progress_;
   return progress_ == 1;

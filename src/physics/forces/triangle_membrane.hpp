@@ -44,7 +44,9 @@ class TriangleMembrane : public Membrane {
   void interpolate_rest_shape(double progress);
   /// For sewn sheets, after each step: stops the triangles whose threads are extended by more than
   /// `max_extension` with corners at x [m], until the next call. So cloth that is sewn too narrow
-  /// for a body stays as wide as it must be. Returns whether the progress has become 1 in this step.
+  /// for a body stays as wide as it must be. Threads that are shorter at the start than in the
+  /// pattern do not count, because further sewing releases them. Returns whether the progress has
+  /// become 1 in this step.
   bool accept_rest_shape(std::span<const Vec3> x, double max_extension);
   /// The triangle whose shape is wider than in the pattern by the largest fraction of its width.
   struct Widening {
