@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "physics/mesh/mesh.hpp"
@@ -69,6 +70,22 @@ TEST(RigidFrame, RefusesWhatEnclosesNothing) {
   Mesh open = make_box(Vec3(1, 1, 1), 0, 8);
   open.topology.triangles.pop_back();
   EXPECT_THROW(frame_of(open), std::invalid_argument);
+}
+
+// One side of a cube faces inward. Without a refusal, its volume would be a third of that of the cube.
+TEST(RigidFrame, RefusesTrianglesThatFaceDifferentWays) {
+  Mesh cube = make_box(Vec3(1, 1, 1), 0, 8);
+  const std::vector<Vec3>& x = cube.positions;
+  const auto first = static_cast<std::size_t>(cube.topology.triangles.front()[0]);
+  int turned = 0;
+  for (Triangle& t : cube.topology.triangles) {
+    const auto is_opposite = [&](Index v) { return x[static_cast<std::size_t>(v)].z() == -x[first].z(); };
+    if (!std::ranges::all_of(t, is_opposite)) continue;
+    std::swap(t[0], t[1]);
+    ++turned;
+  }
+  ASSERT_GT(turned, 0);
+  EXPECT_THROW(frame_of(cube), std::invalid_argument);
 }
 
 TEST(RigidFrame, IsMadeOfAllClosedShapes) {

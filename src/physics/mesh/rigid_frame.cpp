@@ -1,7 +1,6 @@
 #include "physics/mesh/rigid_frame.hpp"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -26,9 +25,10 @@ void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, Moments& momen
   moments.second += volume / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
 }
 
-bool is_closed(std::span<const Triangle> triangles) {
-  const EdgeSet edges = collect_edges(triangles);
-  return std::ranges::all_of(edges.edges, [](const Edge& edge) { return edge.triangles[1] >= 0; });
+// Whether the surface has no border and its triangles face the same way. Otherwise, the Moments depend on the origin.
+bool is_closed(std::span<const Triangle> triangles, std::size_t vertex_count) {
+  const TopologyReport report = inspect(triangles, vertex_count);
+  return report.degenerate.empty() && report.border.empty() && report.misoriented.empty();
 }
 
 }  // namespace
@@ -38,7 +38,8 @@ Vec3 RigidFrame::corner(std::size_t k) {
 }
 
 RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
-  if (triangles.empty() || !is_closed(triangles)) throw std::invalid_argument("a closed surface");
+  if (triangles.empty() || !is_closed(triangles, vertices.size()))
+    throw std::invalid_argument("a closed surface whose triangles face the same way");
   Moments moments;
   const Vec3 origin =
       vertices[static_cast<std::size_t>(triangles.front()[0])];  // near the body, to keep rounding errors small
