@@ -29,8 +29,8 @@ constexpr double kDefaultUnitsPerMetre = 100;  // if the file states no unit: ce
 // at this height above the floor [m].
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the bodies for which patterns of GarmentCode and of its predecessor are drawn [m].
-constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .height = 1.72};
-constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .height = 1.66};
+constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .arm = {}, .height = 1.72};
+constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .arm = {}, .height = 1.66};
 // A file counts as one of the predecessor if it has the predecessor's format of curves, or if its lowest point, in
 // heights of the file, is below kMinLowestPanel [m]. The limit is negative, since flat trousers of GarmentCode may end
 // below the floor.
