@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "film/garment/fit.hpp"
+#include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::environment {
@@ -51,6 +53,22 @@ TEST_F(WearerBodies, HaveArmsIfTheirRigLacksHands) {
     ASSERT_TRUE(arm.has_value()) << side;
     EXPECT_LT(((*arm)[1] - Vec3(side * 0.5, 0, 0.1)).norm(), 1e-6);
     EXPECT_LT(((*arm)[2] - Vec3(side * 0.7, 0, 0.1)).norm(), 1e-6);
+  }
+}
+
+// The patterns of scenes/patterns are drawn for a body like the mannequin: 1.75 m tall, 0.88 m around the chest and
+// 0.68 m around the waist. Sections are 10 mm apart, and the skin of the mannequin is stated to 1 cm.
+TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
+  const scene::Scene scene = support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.03\nheight = 1.75\nstance = 'rest'\n");
+  Wearers wearers(scene);
+  const garment::Wearer& model = wearers.of("model", "here");
+  for (const char* name : {"tshirt", "shirt", "jacket", "dress", "skirt", "trousers"}) {
+    const std::string file = std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml";
+    const garment::Fit fit = garment::fit(garment::load_pattern(file, "here"), model, "here");
+    EXPECT_NEAR(fit.factors.x(), 1, 0.06) << name;
+    EXPECT_NEAR(fit.factors.y(), 1, 0.02) << name;
+    EXPECT_NEAR(fit.rise, 0, 1e-12) << name;
   }
 }
 

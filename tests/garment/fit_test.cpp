@@ -122,6 +122,20 @@ TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").rise, 0, 1e-12);
 }
 
+// The waist of the round body is at 1.1 m. A skirt hangs there, whatever the height of the neck.
+TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
+  Wearer wearer = round_wearer();
+  wearer.neck = 1.40;
+  Pattern pattern;
+  pattern.measures = {{}, 0.68, {}, {}, 1.75};
+  const Fit high = fit(pattern, wearer, "cloth.c");
+  wearer.neck = 1.46;
+  const Fit low = fit(pattern, wearer, "cloth.c");
+  EXPECT_NEAR(high.factors.y(), low.factors.y(), 0.011 / 1.1);  // sections are 10 mm apart
+  EXPECT_NEAR(low.factors.y(), 1.1 / (0.63 * 1.75), 0.02);
+  EXPECT_EQ(low.rise, 0);
+}
+
 // If hips are hardly wider than the waist of a garment, the garment falls to the feet, unless it also hangs from the
 // shoulders.
 TEST(Fit, TellsOfHipsThatHoldNothingUp) {

@@ -15,6 +15,9 @@ namespace {
 // Height of the hip joints as a fraction of the body height, for a wearer that lacks the joints of
 // a leg.
 constexpr double kHipHeightRatio = 0.52;
+// Height of the mannequin's waist as a fraction of its height. The bodies for which patterns are
+// drawn are assumed to have the same ratio.
+constexpr double kWaistHeightRatio = 0.63;
 // Heights above the hip joints, as fractions of the distance from hip joints to neck: lower end of
 // the hips, lowest waist, highest waist, and highest armpits. Above the armpits, sections include the
 // shoulders.
@@ -57,32 +60,50 @@ std::optional<double> arm_girth(const Wearer& wearer) {
   return largest;
 }
 
-}  // namespace
+// The body without the arms.
+struct Trunk {
+  Tube tube;
+  double hips, neck;  // heights of the joints [m]
 
-Measures measure(const Wearer& wearer) {
-  const Tube torso(wearer, Around::torso);
-  const double height = torso.high();
-  double hips = kHipHeightRatio * height;
-  if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
-  const auto at = [&](double fraction) { return hips + fraction * (wearer.neck - hips); };
-  const auto girth = [&](double s) { return torso.girth(s, 0); };
-  // Where the girth changes faster than kMaxGirthSlope with height, the skin is too inclined to
-  // hold a waistband. A body part can end there, such as the ball between chest and hips of a
-  // puppet.
-  const auto is_upright = [&](double s) {
-    return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
-           kMaxGirthSlope * kSpacing;
-  };
-  double waist = at(kLowestWaist);
-  for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
-    if (girth(s) < girth(waist) && is_upright(s)) waist = s;
-  const auto max_girth = [&](double low, double high) {
+  explicit Trunk(const Wearer& wearer) : tube(wearer, Around::torso), neck(wearer.neck) {
+    hips = kHipHeightRatio * tube.high();
+    if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
+  }
+  double at(double fraction) const { return hips + fraction * (neck - hips); }
+  double girth(double s) const { return tube.girth(s, 0); }
+  double max_girth(double low, double high) const {
     double largest = 0;
     for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
     return largest;
-  };
-  const double armpits = std::clamp(armpit_height(wearer), std::max(waist, at(kHighestWaist)), at(kHighestArmpit));
-  return {max_girth(waist, armpits), girth(waist), max_girth(at(kLowestHip), waist), arm_girth(wearer), height};
+  }
+  // Height of the waist. Where the girth changes faster than kMaxGirthSlope with height, the skin is too inclined to
+  // hold a waistband. A body part can end there, such as the ball between chest and hips of a puppet.
+  double waist() const {
+    const auto is_upright = [&](double s) {
+      return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
+             kMaxGirthSlope * kSpacing;
+    };
+    double waist = at(kLowestWaist);
+    for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
+      if (girth(s) < girth(waist) && is_upright(s)) waist = s;
+    return waist;
+  }
+};
+
+// Whether a garment hangs from the waist, as skirts and trousers do.
+bool hangs_from_waist(const Measures& drawn) {
+  return drawn.waist && !drawn.chest;
+}
+
+}  // namespace
+
+Measures measure(const Wearer& wearer) {
+  const Trunk trunk(wearer);
+  const double waist = trunk.waist();
+  const double armpits =
+      std::clamp(armpit_height(wearer), std::max(waist, trunk.at(kHighestWaist)), trunk.at(kHighestArmpit));
+  return {trunk.max_girth(waist, armpits), trunk.girth(waist), trunk.max_girth(trunk.at(kLowestHip), waist),
+          arm_girth(wearer), trunk.tube.high()};
 }
 
 Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) {
@@ -96,7 +117,9 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
   double across = 0, up = 1, rise = 0;
   for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm})
     if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
-  if (drawn.height) {
+  if (drawn.height && hangs_from_waist(drawn)) {
+    up = Trunk(wearer).waist() / (kWaistHeightRatio * *drawn.height);
+  } else if (drawn.height) {
     const double neck = kNeckHeightRatio * *drawn.height;
     up = wearer.neck / neck;
     if (drawn.arm && own.arm) up = std::max(up, *own.arm / *drawn.arm);
@@ -107,7 +130,7 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
 
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
   const Measures& drawn = pattern.measures;
-  if (!drawn.waist || drawn.chest) return {};
+  if (!hangs_from_waist(drawn)) return {};
   const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
   if (hips >= kMinHipToWaistRatio * waist) return {};
   return fmt::format(

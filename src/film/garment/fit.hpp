@@ -27,8 +27,9 @@ struct Fit {
 /// Factors on the lengths of a pattern. Across: the largest ratio wearer's girth
 /// / drawn girth among the girths that the pattern states, so that the garment is nowhere tighter
 /// than drawn. Up: wearer's neck height / neck height of the drawn body (kNeckHeightRatio of its
-/// height), or the ratio of the arms if that is larger, since armholes are drawn along the body; 1 if
-/// the pattern states no height. Neck heights are compared, since the height of the
+/// height), or the ratio of the arms if that is larger, since armholes are drawn along the body. For
+/// garments that hang from the waist (that state a waist, but no chest): the ratio of the heights of
+/// the waists. 1 if the pattern states no height. Neck heights are compared, since the height of the
 /// head varies much between bodies. If the pattern states only a height, both factors are the ratio
 /// of neck heights. The rise puts the neck of the drawn body, multiplied by the factor up, at the
 /// height of the wearer's. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
