@@ -124,6 +124,22 @@ TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
   }
 }
 
+TEST(Paint, AroundASingleTileIsAHoleIfThePictureCutsHoles) {
+  for (const Quality quality : {Quality::draft, Quality::final}) {
+    auto snapshot = painted_square(frame::ObjectKind::cloth, texture(1, 1, {kRedPixel}), Alpha::cutout);
+    auto& paint = const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.paint;
+    paint.texture_from_uv << 4, 0, 0, 0, 4, 0;  // the tile is the lower left quarter
+    paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
+    add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 3, 0), -Vec3::UnitY(), Vec3::UnitX(), 4)
+        .appearance.color = Vec3(0.7, 0.7, 0.7);
+    const image::Image image = Renderer(painted_settings(quality)).draw(snapshot);
+    EXPECT_TRUE(shows(image, 0.33, 0.67, kRedPixel));
+    EXPECT_LT(image.pixel(kPaintedSide * 2 / 3, kPaintedSide / 3)[0],
+              image.pixel(kPaintedSide * 2 / 3, kPaintedSide / 3)[1] + 30)
+        << "the grey wall";
+  }
+}
+
 TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
   const std::array<std::uint8_t, 4> veil{180, 20, 20, 128};
   auto snapshot = painted_square(frame::ObjectKind::cloth, texture(1, 1, {veil}), Alpha::cutout);

@@ -85,7 +85,7 @@ void paint_rows(TableBuilder<Painted>& rows) {
       .number("image_rotation", &Painted::image_rotation, within(-360, 360), "degrees",
               "rotation of the picture, counter-clockwise about that corner")
       .plain(Type::boolean, "image_repeat", &Painted::image_repeat,
-             "whether the tiles repeat; false: one tile, with `color` around it")
+             "whether the tiles repeat; false: one tile, with `color` around it, or a hole if `cutout` is true")
       .plain(Type::boolean, "cutout", &Painted::cutout,
              "true: transparent parts of the picture are holes, as in lace; false: they show `color`");
 }

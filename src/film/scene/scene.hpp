@@ -78,7 +78,7 @@ struct Paint {
   double image_width = 0.2;                    ///< width of one tile along weft [m]; the height keeps the proportions
   Vec2 image_offset{0, 0};                     ///< position of the lower left corner of a tile along weft and warp [m]
   double image_rotation = 0;                   ///< rotation about that corner, counter-clockwise [degrees]
-  bool image_repeat = true;                    ///< false: one tile, with `color` around it
+  bool image_repeat = true;                    ///< false: one tile, with `color` around it, or a hole if `cutout`
   bool cutout = false;                         ///< true: transparent parts are holes; false: they show `color`
 };
 
