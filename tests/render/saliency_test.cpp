@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
+#include "core/memory.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -40,6 +42,14 @@ TEST(Saliency, CoverageIsTheShareOfThePictureThatShowsCloth) {
   EXPECT_NEAR(judge(snapshot).coverage, 4.0 / 32, 1e-12);
   add_upright(snapshot, kCloth, {-4, 0, 0}, 1);  // half of it is outside the picture
   EXPECT_NEAR(judge(snapshot).coverage, 6.0 / 32, 1e-12);
+}
+
+TEST(Saliency, OfAVeryWidePictureNeedsLittleMemory) {
+  frame::FrameSnapshot snapshot = seen_from_before();
+  add_upright(snapshot, kCloth, {0, 0, 0}, 1);
+  const std::int64_t before = peak_memory_bytes();
+  EXPECT_NEAR(saliency_of(snapshot, nullptr, 0.1, "", 16384).coverage, 0.5 * 2 / (4.0 * 16384), 1e-8);
+  EXPECT_LT(peak_memory_bytes() - before, 100'000'000);
 }
 
 TEST(Saliency, ClothBehindSomethingOrBehindTheCameraDoesNotCount) {

@@ -13,6 +13,8 @@ namespace {
 
 // Number of rows of the grid on which occlusion is computed.
 constexpr int kRows = 72;
+// Limit on the number of its columns, which bounds its memory (42 MB); reached by pictures 910 times as wide as high.
+constexpr int kMaxColumns = 65536;
 // Value of v in Saliency::motion at which the result is 1/2 [√(area of the cloth) per second].
 constexpr double kHalfScoreRate = 0.5;
 
@@ -21,7 +23,7 @@ class CoverageGrid {
  public:
   CoverageGrid(const View& view, double aspect)
       : view_(view),
-        columns_(std::max(1, static_cast<int>(std::lround(kRows * aspect)))),
+        columns_(static_cast<int>(std::clamp<long>(std::lround(kRows * aspect), 1, kMaxColumns))),
         nearness_(static_cast<std::size_t>(columns_ * kRows), 0),
         cloth_(nearness_.size(), 0) {}
 
