@@ -100,6 +100,21 @@ TEST(Coat, AndMetalAreNoneInClay) {
   EXPECT_EQ(draw(shiny).rgb, draw(plain).rgb);
 }
 
+TEST(FloorColor, IsThatOfClayInClay) {
+  const auto on_floor = [](frame::Stage::Look look, const Vec3& color) {
+    frame::FrameSnapshot snapshot = ball(0, 0, 0.6);
+    auto stage = std::make_shared<frame::Stage>();
+    stage->look = look;
+    snapshot.stage = stage;
+    add_floor(snapshot).appearance.color = color;
+    snapshot.cameras = {camera_at(Vec3(0, -3, 1), Vec3::Zero(), 50)};
+    return draw(snapshot).rgb;
+  };
+  const Vec3 red(0.8, 0.1, 0.1), gray(0.8, 0.8, 0.8);
+  EXPECT_NE(on_floor(frame::Stage::Look::studio, red), on_floor(frame::Stage::Look::studio, gray));
+  EXPECT_EQ(on_floor(frame::Stage::Look::clay, red), on_floor(frame::Stage::Look::clay, gray));
+}
+
 TEST(Look, OfOneBodyLeavesThatOfOthers) {
   // Two balls side by side; only the right one is metal.
   const auto pair = [](double metal) {

@@ -363,7 +363,7 @@ Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::
   plan.up = up_of(snapshot);
   plan.subjects = subject_bounds(snapshot);
   plan.surroundings = surroundings_bounds(snapshot);
-  plan.floor = find_floor(snapshot, plan.up);
+  plan.floor = find_floor(snapshot, plan.up, style_of(plan.stage).plain);
   plan.view = make_view(camera, upright, settings.aspect(), plan.subjects, plan.floor);
   plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
   plan.lighting = make_lighting(plan.stage, plan.up, plan.floor, plan.lights);

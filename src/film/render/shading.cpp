@@ -72,8 +72,8 @@ struct Grid {
   }
 };
 
-/// Replaces colours, roughness and finish of an appearance with those of clay, without picture,
-/// threads, hem, metal and coat.
+}  // namespace
+
 frame::Appearance clay(const frame::Appearance& look) {
   frame::Appearance plain = look;
   plain.color = Vec3(0.74, 0.72, 0.69);
@@ -86,8 +86,6 @@ frame::Appearance clay(const frame::Appearance& look) {
   plain.hem = 0;
   return plain;
 }
-
-}  // namespace
 
 double opacity_of(const frame::Surface& surface) {
   constexpr double kFirst = 0.5, kSlope = 1.25;  // chiffon, whose `sheer` is 0.9, stops half of the light

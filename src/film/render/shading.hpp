@@ -105,6 +105,10 @@ double opacity_of(const frame::Surface& surface);
 /// has Alpha::over_color.
 bool is_skin(const frame::Surface& surface);
 
+/// Replaces colours, roughness and finish of an appearance with those of clay, without picture,
+/// threads, hem, metal and coat.
+frame::Appearance clay(const frame::Appearance& look);
+
 /// `plain`: clay in place of the colours of the surface.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "film/image/color.hpp"
+#include "film/render/shading.hpp"
 
 namespace weft::render {
 namespace {
@@ -34,12 +35,13 @@ Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, con
 
 }  // namespace
 
-std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up) {
+std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up, bool plain) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     const auto& positions = snapshot.states[i].positions;
     if (!surface.visible || !surface.infinite_floor || positions.empty()) continue;
     Floor floor{positions.front(), up, surface.appearance};
+    if (plain) floor.look.color = clay(surface.appearance).color;
     for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
       const auto& [a, b, c] = surface.triangles[t];
       const Vec3 normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);

@@ -20,8 +20,8 @@ struct Floor {
   Eigen::Matrix<double, 2, 4> picture_from_world = Eigen::Matrix<double, 2, 4>::Zero();
 };
 
-/// The first visible infinite floor, if there is one.
-std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up);
+/// The first visible infinite floor, if there is one. `plain`: in the colour of clay.
+std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up, bool plain = false);
 
 /// A camera with its matrices.
 struct View {
