@@ -91,6 +91,23 @@ TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) 
   EXPECT_EQ(nothing_left.err, "note: p/{frame:05}.png is complete already: frames 0:21\n");
 }
 
+TEST_F(Completeness, ResumeOfACompleteOutputSaysWhichReportsAreMissing) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  const Arguments run{"run", "s.toml", "-o", "a.mp4", "--resume"}, render{"render", "c", "-o", "b.mp4", "--resume"};
+  for (const Arguments& command : {run, render}) {
+    expect_well(command);
+    Arguments with = command;
+    with.insert(with.end(), {"--stats", "a.json"});
+    const Outcome again = weft(with);
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_TRUE(contains(again.err, "note: a.json is not written, since nothing is made again")) << again.err;
+    EXPECT_FALSE(fs::exists(folder_ / "a.json"));
+  }
+  expect_well({"run", "s.toml", "-o", "c.mp4", "--stats", "c.json"});
+  EXPECT_EQ(weft({"run", "s.toml", "-o", "c.mp4", "--stats", "c.json", "--resume"}).err,
+            "note: c.mp4 is complete already: frames 0:21\n");
+}
+
 TEST_F(Completeness, LayersAreThoseOfOneRunAfterAResumeAndInParts) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"render", "c", "-o", "whole/{frame:05}.exr", "--frames", ":9"});

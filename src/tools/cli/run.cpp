@@ -337,6 +337,22 @@ void Session::try_side_file(const Write& write) {
   }
 }
 
+// Says which reports a command with --resume does not make because its output is complete already. Statistics of the
+// same scene count as made: the run that completed the output has written them.
+void note_missing_reports(const FilmPlan& plan, const RunOptions& options) {
+  std::vector<std::string> missing;
+  const std::string hash = fmt::format("{:016x}", plan.scene.scene_hash);
+  if (!options.stats.empty() && value_or(read_json_or_null(options.stats), "scene_hash", std::string()) != hash)
+    missing.push_back(fmt::format("{} is not written", options.stats.string()));
+  std::error_code ignored;
+  if (!options.log_json.empty() && !fs::exists(options.log_json, ignored))
+    missing.push_back(options.log_json == "-" ? "no event is logged" : options.log_json + " is not written");
+  if (options.error || options.mesh_error) missing.emplace_back("the error is not estimated");
+  if (missing.empty()) return;
+  log::info(fmt::format("note: {}, since nothing is made again; --overwrite instead of --resume makes everything again",
+                        fmt::join(missing, ", ")));
+}
+
 // A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures, the folder is named after the
 // scene, so that runs of different scenes can write to one folder of pictures at the same time.
 fs::path working_cache(const OutputTarget& target, const std::string& scene) {
@@ -386,6 +402,7 @@ ExitCode run(const RunOptions& options) {
       is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
     if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed while it removed this cache
     log::info(fmt::format("note: {} is complete already: frames {}", plan.target.text, plan.wanted.text()));
+    note_missing_reports(plan, options);
     return ExitCode::ok;
   }
   if (!options.resume) paths.check_absent(overwrite);
@@ -440,7 +457,10 @@ ExitCode render(const RenderOptions& options) {
     if (count > 0)
       log::info(fmt::format("note: {} is {}: frames {}", plan.target.text, whole ? "complete already" : "there in part",
                             frames_text({plan.drawn.frames.begin(), plan.drawn.frames.end()})));
-    if (whole) return ExitCode::ok;
+    if (whole) {
+      note_missing_reports(plan, options);
+      return ExitCode::ok;
+    }
   }
   PathLedger paths;
   paths.reads_folder(options.common.scene, "the cache");
