@@ -83,6 +83,21 @@ TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
   EXPECT_NE(partly.out.find("--array=0\n"), std::string::npos) << "only what is missing: " << partly.out;
 }
 
+TEST_F(Farms, SubmitOnlyTheReportIfOnlyTheReportFailed) {
+  ASSERT_EQ(submit().exit_code, 0);
+  ASSERT_TRUE(do_tasks().empty()) << log("simulate_0");
+  support::write_bytes(folder_ / "a b/farm/log/report.code", "6   \n");
+  const Outcome again = submit();
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_FALSE(contains(again.err, "all runs are done")) << again.err;
+  EXPECT_TRUE(contains(again.out, "hand_in report report --time=10\n")) << again.out;
+  EXPECT_FALSE(contains(again.out, "hand_in simulate")) << again.out;
+  EXPECT_TRUE(do_tasks().empty()) << log("report");
+  EXPECT_TRUE(contains(submit().err, "all runs are done"));
+  fs::remove(folder_ / "a b/table.csv");
+  EXPECT_FALSE(contains(submit().err, "all runs are done"));
+}
+
 // The simulation goes on with another look, and writes statistics of the changed scene; pictures of the former scene
 // stay.
 TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {

@@ -125,7 +125,7 @@ class Farm {
       plan_.part = std::max(plan_.part, (job.drawn.count() + 999) / 1000);
       if (!job.twin && !job.is_done()) plan_.submitted.push_back(i);
     }
-    if (plan_.submitted.empty()) {
+    if (plan_.submitted.empty() && is_reported()) {
       log::info(fmt::format("{}: all runs are done", folder_.string()));
       return ExitCode::ok;
     }
@@ -137,8 +137,11 @@ class Farm {
     if (submission.exit_code != 0)
       throw Error(ExitCode::output_failed, "{}: ended with {}; weft farm cancel {} cancels the submitted jobs",
                   (folder_ / "farm/submit.sh").string(), submission.exit_code, folder_.string());
-    log::info(fmt::format("{}: {} of {} runs submitted; weft farm status {} reports their progress", folder_.string(),
-                          plan_.submitted.size(), plan_.jobs.size(), folder_.string()));
+    if (plan_.submitted.empty())
+      log::info(fmt::format("{}: all runs are done; the report on them is submitted", folder_.string()));
+    else
+      log::info(fmt::format("{}: {} of {} runs submitted; weft farm status {} reports their progress", folder_.string(),
+                            plan_.submitted.size(), plan_.jobs.size(), folder_.string()));
     return ExitCode::ok;
   }
 
@@ -223,6 +226,17 @@ class Farm {
     return lines;
   }
 
+  /// Whether the report on all runs is there. The task that makes it fails if it finds a run that is not done.
+  bool is_reported() const {
+    std::error_code none;
+    for (const char* file : {"table.csv", "table.md", "page/index.html"})
+      if (!fs::is_regular_file(folder_ / file, none)) return false;
+    const fs::path file = folder_ / "farm/log/report.code";  // absent if `weft sweep` has made the report
+    std::string code;
+    std::istringstream(read_start(file, 16)) >> code;
+    return code == "0" || !fs::exists(file, none);
+  }
+
   // Estimates the resources from trials of the first and the last submitted run, which usually have the smallest and
   // the largest values of the sweep.
   void find_needs() {
@@ -230,7 +244,10 @@ class Farm {
     plan_.needs.memory = options_.memory.value_or(0);
     if (options_.minutes && options_.memory) return;
     double simulate = 0, picture = 0, peak = 0;
-    for (const std::size_t i : {plan_.submitted.front(), plan_.submitted.back()}) {
+    const bool only_reports = plan_.submitted.empty();
+    const std::size_t first = only_reports ? 0 : plan_.submitted.front();
+    const std::size_t last = only_reports ? 0 : plan_.submitted.back();
+    for (const std::size_t i : {first, last}) {
       SceneOptions scene = options_.sweep.pictures;
       scene.scene = options_.sweep.scene;
       scene.overrides = plan_.jobs[i].overrides();
@@ -244,7 +261,7 @@ class Farm {
       simulate = std::max(simulate, estimate.simulate_total());
       picture = std::max(picture, estimate.draw);
       peak = std::max(peak, static_cast<double>(estimate.peak));
-      if (plan_.submitted.size() == 1) break;
+      if (first == last) break;
     }
     const auto minutes = [](double seconds) { return kMinTaskMinutes + static_cast<int>(kTimeFactor * seconds / 60); };
     if (!options_.minutes) plan_.needs.simulate_minutes = minutes(simulate);

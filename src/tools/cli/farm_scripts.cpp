@@ -160,7 +160,8 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
                      run, plan.needs.draw_minutes, plan.parts(run) - 1, run - base);
     }
   }
-  fmt::format_to(out, "hand_in report report --time={} --dependency=\"afterany$joins\"\n", plan.needs.draw_minutes);
+  if (!plan.submitted.empty()) after = " --dependency=\"afterany$joins\"";
+  fmt::format_to(out, "hand_in report report --time={}{}\n", plan.needs.draw_minutes, after);
   return text;
 }
 
@@ -183,7 +184,7 @@ std::string task_list(const FarmOptions& options, const FarmPlan& plan) {
     add(fmt::format("join_{}", run), parts, fmt::format("join {}", run));
     joins += (joins.empty() ? "" : " ") + fmt::format("join_{}", run);
   }
-  add("report", joins, "report");
+  add("report", plan.submitted.empty() && !plan.archive.empty() ? "unpack" : joins, "report");
   return text;
 }
 

@@ -21,7 +21,7 @@ struct Needs {
 /// join the parts.
 struct FarmPlan {
   std::vector<SweepJob> jobs;          ///< all runs of the sweep
-  std::vector<std::size_t> submitted;  ///< indices of the jobs that are not done yet, ascending
+  std::vector<std::size_t> submitted;  ///< indices of the jobs that are not done yet, ascending; none: only the report
   int part = 50;                       ///< number of frames per drawing task
   std::string archive;  ///< fingerprint of the program archive that tasks unpack; empty: tasks run this program
   Needs needs;
