@@ -105,7 +105,14 @@ TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   ASSERT_TRUE(do_tasks().empty()) << log("simulate_0");
   support::write_bytes(folder_ / "s.toml",
                        support::read_bytes(folder_ / "s.toml") + "\nlook = { color = \"#000000\" }\n");
-  ASSERT_EQ(submit().exit_code, 0);
+  const Outcome changed = submit();
+  ASSERT_EQ(changed.exit_code, 0);
+  EXPECT_TRUE(contains(changed.err, "warning: a b/radius=0.1/frames and 1 more folders: expected")) << changed.err;
+  const Outcome refused = with_failing_slurm(
+      "submit s.toml -o 'a b' --set obstacle.ball.radius=0.1,0.11 --size 64x36 --quality draft --frames 0:19:2 "
+      "--part 4 --set time.duration=0.8 --memory 100 --time 10");
+  EXPECT_EQ(refused.exit_code, 6);
+  EXPECT_TRUE(contains(refused.err, "which drawing tasks do not replace")) << refused.err;
   const std::string task = "WEFT_PAUSE=0 sh '" + (folder_ / "a b/farm/task.sh").string() + "'";
   for (const char* run : {"0", "1"})
     EXPECT_EQ(std::system((task + " simulate " + run).c_str()), 0) << log("simulate_0");

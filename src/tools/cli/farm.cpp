@@ -129,6 +129,7 @@ class Farm {
       log::info(fmt::format("{}: all runs are done", folder_.string()));
       return ExitCode::ok;
     }
+    check_pictures();
     find_needs();
     write();
     if (options_.dry_run) return ExitCode::ok;
@@ -235,6 +236,31 @@ class Farm {
     std::string code;
     std::istringstream(read_start(file, 16)) >> code;
     return code == "0" || !fs::exists(file, none);
+  }
+
+  /// Looks for pictures that are not of the present scene, such as after a change of a colour: drawing tasks replace no
+  /// files, and would all fail. Throws Error(output_failed) if there are some; a dry run only warns.
+  void check_pictures() const {
+    std::vector<std::string> folders;
+    for (const std::size_t i : plan_.submitted) {
+      const SweepJob& job = plan_.jobs[i];
+      const fs::path pictures = job.folder / "frames";
+      const std::string hash = fmt::format("{:016x}", job.scene_hash);
+      const std::vector<fs::path> files = FramePattern((pictures / "").string(), 5, ".png").names(job.drawn);
+      std::error_code none;
+      if (std::ranges::any_of(files, [&](const fs::path& file) {
+            return fs::is_regular_file(file, none) && scene_hash_of(file) != hash;
+          }))
+        folders.push_back(pictures.string());
+    }
+    if (folders.empty()) return;
+    const std::string others = folders.size() == 1 ? "" : fmt::format(" and {} more folders", folders.size() - 1);
+    const std::string text = fmt::format(
+        "{}{}: expected pictures of the scene as it is now, got others, which drawing tasks do not replace; remove "
+        "each of these folders",
+        folders.front(), others);
+    if (!options_.dry_run) throw Error(ExitCode::output_failed, "{}", text);
+    log::warn(text);
   }
 
   // Estimates the resources from trials of the first and the last submitted run, which usually have the smallest and
