@@ -29,6 +29,18 @@ TEST_F(FindRuns, VideoIsFoundBesideMovedStatistics) {
   EXPECT_EQ(found(), "b: b.mp4\nmoved/stats: b.mp4 stats.json\n");
 }
 
+// As with `weft review .`, whose files are listed as "./b.mp4".
+TEST_F(FindRuns, StatisticsNameTheirVideoAndPicturesAlsoInAFolderGivenWithADot) {
+  write("in/b.mp4");
+  write("in/statistics.json", statistics("b.mp4"));
+  write("in/p/0.png");
+  write("in/p/1.png");
+  write("in/pictures.json", statistics("in/p/{frame}.png"));
+  const std::string runs = "pictures: pictures.json 0.png 1.png\nstatistics: b.mp4 statistics.json\n";
+  EXPECT_EQ(found("in"), runs);
+  for (const char* folder : {"./in", "in/.", "in/", "in/../in"}) EXPECT_EQ(found(folder), runs) << folder;
+}
+
 TEST_F(FindRuns, EffectiveSceneOfTheVideoIsPreferredToThatOfTheScene) {
   write("a.mp4");
   write("a.json", statistics("a.mp4"));
@@ -52,7 +64,7 @@ TEST_F(FindRuns, PicturesNamedByNumbersAloneAreNamedAsTheirFolder) {
   write("p/0.png");
   write("p/1.png");
   EXPECT_EQ(found(), "p: 0.png 1.png\n");
-  EXPECT_EQ(found("p"), "p: 0.png 1.png\n");
+  for (const char* folder : {"p", "p/", "p/."}) EXPECT_EQ(found(folder), "p: 0.png 1.png\n") << folder;
 }
 
 TEST_F(FindRuns, OfASweepAreInItsOrderAndHaveItsValues) {

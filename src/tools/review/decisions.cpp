@@ -76,7 +76,7 @@ Json Decisions::of(RunFiles& run) {
   std::vector<std::pair<fs::path, std::string>> places;
   // Pictures such as band/00000.png are the run "band". A page that was made for the folder band/ alone calls this run
   // "band" too, and its review.json is in band/.
-  if (!run.pictures.empty() && run.pictures.front().parent_path() == run.folder / name)
+  if (!run.pictures.empty() && run.pictures.front().parent_path().lexically_relative(run.folder) == name)
     places.emplace_back(name, name.filename().string());
   std::string key = name.filename().string();
   for (fs::path below = name.parent_path();; below = below.parent_path()) {

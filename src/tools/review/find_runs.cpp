@@ -25,7 +25,15 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-// All regular files below the folder, sorted by path. Skips hidden files and folders, and review
+// The path without ".", or "." alone if nothing else is left. Keeps "..", since the folder before it may be a link.
+fs::path without_dots(const fs::path& path) {
+  fs::path plain;
+  for (const fs::path& part : path)
+    if (part != ".") plain /= part;
+  return plain.empty() ? fs::path(".") : plain;
+}
+
+// All regular files below the folder, without_dots() and sorted by path. Skips hidden files and folders, and review
 // pages. Skips links, since the page would publish their targets.
 std::vector<fs::path> list_files(const fs::path& folder) {
   std::error_code error;
@@ -38,7 +46,7 @@ std::vector<fs::path> list_files(const fs::path& folder) {
     if (entry->is_directory(ignored)) {
       if (is_hidden(entry->path()) || is_review_page(entry->path())) entry.disable_recursion_pending();
     } else if (fs::is_regular_file(entry->symlink_status(ignored)) && !is_hidden(entry->path())) {
-      files.push_back(entry->path());
+      files.push_back(without_dots(entry->path()));
     }
   }
   if (error) throw Error(ExitCode::asset_unreadable, "{}: cannot be listed: {}", folder.string(), error.message());
@@ -105,7 +113,7 @@ Json set_of(const Json& run) {
 // Composes runs from the files below one folder.
 class Search {
  public:
-  explicit Search(const fs::path& folder) : folder_(folder) {
+  explicit Search(const fs::path& folder) : folder_(without_dots(folder)) {
     for (const fs::path& file : list_files(folder)) {
       const std::string ending = file.extension().string();
       if (ending == ".mp4") videos_.insert(file);
@@ -207,7 +215,7 @@ class Search {
     for (auto part = output.begin(); part != output.end(); ++part) {
       fs::path file = beside;
       for (auto rest = part; rest != output.end(); ++rest) file /= rest->relative_path();
-      if (take(run, file.lexically_normal())) return;
+      if (take(run, without_dots(file)) || take(run, file.lexically_normal())) return;
     }
     if (take(run, fs::path(run.stats).replace_extension(".mp4"))) return;
     const fs::path other = beside / output.filename();
@@ -245,7 +253,9 @@ class Search {
     name.resize(name.size() - 2);
     while (!name.empty() && std::string_view("_-./").find(name.back()) != std::string_view::npos) name.pop_back();
     RunFiles run;
-    run.name = name.empty() ? fs::absolute(folder_).lexically_normal().filename().string() : name;
+    // "p" for the folders p, p/ and, if it is the working folder, for "."
+    const fs::path folder = (fs::absolute(folder_) / "").lexically_normal().parent_path();
+    run.name = name.empty() ? folder.filename().string() : name;
     run.pictures = files;
     runs_.push_back(std::move(run));
   }
