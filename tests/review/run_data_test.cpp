@@ -82,6 +82,21 @@ TEST_F(RunData, PicturesOfAVideoAreTheWrittenFrames) {
   expect_times({1, 2, 3, 25});
 }
 
+// As in a farm, whose simulation writes the statistics of all frames, and whose other tasks draw a part of them.
+TEST_F(RunData, VideoOfAPartOfTheFramesTellsWhichItShows) {
+  video::Settings settings;
+  settings.width = 64;
+  settings.height = 36;
+  settings.metadata["frames"] = "1:6:2";
+  video::Encoder encoder(folder_ / "a.mp4", settings);
+  for (int frame = 1; frame < 6; frame += 2) encoder.add(picture(frame));
+  encoder.finish();
+  write("a.json", R"({"scene": "s", "output": "cache", "fps": 50, "frames": [
+    {"frame": 0, "written": true}, {"frame": 1, "written": true}, {"frame": 2, "written": true},
+    {"frame": 3, "written": true}, {"frame": 4, "written": true}, {"frame": 5, "written": true}]})");
+  expect_times({1, 2, 3, 25});
+}
+
 TEST_F(RunData, NumberedPicturesTellTheirFrames) {
   write("f_008.png");
   write("f_004.png");

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <set>
+#include <sstream>
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
 #include "core/json.hpp"
 #include "core/toml.hpp"
+#include "film/video/decoder.hpp"
 
 namespace weft::review {
 namespace {
@@ -79,6 +82,30 @@ Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
   return effective;
 }
 
+/// Frames of a scene, from `begin` to before `end`.
+struct Frames {
+  long long begin = 0, end = 0, step = 1;
+
+  bool contains(long long frame) const { return frame >= begin && frame < end && (frame - begin) % step == 0; }
+};
+
+/// The frames that a video shows, by its metadata, such as 0:19:2; nullopt if they do not say it, or cannot be read.
+std::optional<Frames> frames_of(const std::filesystem::path& file) {
+  try {
+    const video::Decoder decoder(file);
+    const auto entry = decoder.metadata().find("frames");
+    if (entry == decoder.metadata().end()) return std::nullopt;
+    Frames frames;
+    std::istringstream text(entry->second);
+    char colon = 0;
+    if (!(text >> frames.begin >> colon >> frames.end)) return std::nullopt;
+    if (text >> colon && !(text >> frames.step)) return std::nullopt;
+    return frames.begin >= 0 && frames.step > 0 ? std::optional(frames) : std::nullopt;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 double number_or_zero(const Json& object, const char* key) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : 0;
@@ -128,10 +155,13 @@ PictureTimes picture_times(const RunFiles& run) {
   if (!run.pictures.empty()) {
     for (const auto& picture : run.pictures) shown.push_back(picture_number(picture));
   } else if (!run.stats.empty()) {
+    // The statistics may be those of `weft simulate`, and the video that of a part of its frames, as in a farm.
+    const std::optional<Frames> drawn = run.video.empty() ? std::nullopt : frames_of(run.video);
     for (const Json& frame : run.stats_json["frames"]) {
       if (frame.value("written", Json(true)) == true) {
         constexpr double kMaxFrameNumber = 1e9;  // limit for damaged files
-        shown.push_back(static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMaxFrameNumber)));
+        const auto number = static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMaxFrameNumber));
+        if (!drawn || drawn->contains(number)) shown.push_back(number);
       }
     }
   }

@@ -24,8 +24,8 @@ struct PictureTimes {
 };
 
 /// Takes `first`, `step` and `count` from the names of the numbered pictures. If there are none,
-/// takes them from the written frames of the statistics. `fps` is the frame rate in the statistics
-/// divided by `step`; 0 if there are no statistics.
+/// takes them from the written frames of the statistics, without those that the metadata of the video
+/// exclude. `fps` is the frame rate in the statistics divided by `step`; 0 if there are no statistics.
 PictureTimes picture_times(const RunFiles& run);
 
 /// Each value of an effective scene by its path, as in --set: {"cloth.band.material.stretch":
