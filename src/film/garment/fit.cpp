@@ -44,20 +44,21 @@ double armpit_height(const Wearer& wearer) {
   return lowest;
 }
 
-// Largest girth of the upper arms, without the quarter next to the shoulder, where Tube has no sections of its own.
-// Absent if joints or skin of an arm are.
+// Girth of the upper arms: that of the narrowest section in their middle, as other sections may contain skin of the
+// shoulder, of a bent forearm, or of something in the hand. Absent if joints or skin of an arm are.
 std::optional<double> arm_girth(const Wearer& wearer) {
-  double largest = 0;
+  constexpr double kBegin = 0.3, kEnd = 0.7;  // fractions of the upper arm
+  double narrowest = std::numeric_limits<double>::infinity();
   for (const bool left : {true, false}) {
     const std::optional<Limb>& limb = left ? wearer.left_arm : wearer.right_arm;
     const Region region = left ? Region::left_arm : Region::right_arm;
     if (!limb || std::ranges::find(wearer.regions, region) == wearer.regions.end()) return std::nullopt;
-    const Limb& joints = *limb;
+    const double length = ((*limb)[1] - (*limb)[0]).norm();
     const Tube arm(wearer, left ? Around::left_arm : Around::right_arm);
-    for (double s = -(joints[1] - joints[0]).norm(); s <= 0; s += kSpacing)
-      largest = std::max(largest, arm.girth(s, 0));
+    for (double s = -kEnd * length; s <= -kBegin * length; s += kSpacing)
+      narrowest = std::min(narrowest, arm.girth(s, 0));
   }
-  return largest;
+  return narrowest;
 }
 
 // The body without the arms.

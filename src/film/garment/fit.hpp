@@ -13,7 +13,7 @@ namespace weft::garment {
 /// sections whose girth changes fast with height are excluded, except the lowest one. Chest: the
 /// widest section from the waist to the armpits (the lowest place where skin of an arm joins the
 /// trunk, at most kHighestArmpit). Hip: the widest section from kLowestHip to the waist. Arm: the
-/// widest section of both upper arms; absent if joints or skin of an arm are. Height: that of the
+/// narrowest section in the middle of both upper arms; absent if joints or skin of an arm are. Height: that of the
 /// crown, rounded down to 1 cm. Throws Error(scene_invalid) if the body without the arms has no
 /// skin.
 Measures measure(const Wearer& wearer);

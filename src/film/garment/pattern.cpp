@@ -400,7 +400,7 @@ const scene::Table& pattern_rules() {
           .number("hip", &Measures::hip, scene::above(0, 100), "m", "largest girth below the waist")
           .by_default("not given")
           .number("arm", &Measures::arm, scene::above(0, 100), "m",
-                  "largest girth of the upper arms; sleeves and armholes give way to thicker arms")
+                  "girth of the upper arms in their middle; sleeves and armholes give way to thicker arms")
           .by_default("not given")
           .number("height", &Measures::height, scene::above(0, 100), "m",
                   "height from the floor to the top of the head")
