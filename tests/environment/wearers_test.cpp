@@ -60,7 +60,8 @@ TEST_F(WearerBodies, HaveArmsIfTheirRigLacksHands) {
 // 0.68 m around the waist. Sections are 10 mm apart, and the skin of the mannequin is stated to 1 cm.
 TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
   const scene::Scene scene = support::scene_of_text(
-      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.03\nheight = 1.75\nstance = 'rest'\n");
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.03\nheight = 1.75\nstance = 'rest'\nblend "
+      "= 1\n");
   Wearers wearers(scene);
   const garment::Wearer& model = wearers.of("model", "here");
   for (const char* name : {"tshirt", "shirt", "jacket", "dress", "skirt", "trousers"}) {
