@@ -12,8 +12,6 @@ namespace {
 
 // If the nearest point is closer than this [m], rounding determines the direction of the line to it.
 constexpr double kMinDirectionLength = 1e-10;
-// A face counts as facing a direction if the cosine between its normal and that direction exceeds this.
-constexpr double kMinFacingCosine = 0.5;
 // Scale of the offset from a point to the start of its ray [m], and length of the ray [m].
 constexpr double kRayOffset = 1e-7;
 constexpr double kRayLength = 1e3;

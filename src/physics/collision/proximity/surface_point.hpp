@@ -13,6 +13,9 @@
 
 namespace weft::collision {
 
+/// A face counts as facing a direction if the cosine between its normal and that direction exceeds this.
+inline constexpr double kMinFacingCosine = 0.5;
+
 /// The point of a surface nearest to p.
 struct SurfacePoint {
   Triangle face{};

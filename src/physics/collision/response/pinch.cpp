@@ -95,8 +95,24 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
                              .height >
                0;
   });
+  for (auto& [key, origin] : around)
+    if (!origins_.contains(key)) origin.faces = faces_reaching(key, origin, surfaces, x);
   origins_ = std::move(around);
   list_particles();
+}
+
+// The faces that a neighbour crosses itself and that face the way out of the triangle beside it; that triangle's own
+// if there are none. On a round limb, each neighbour then returns its own way: the faces that reached the first
+// triangle, in an armpit, are far from the chest and face another way.
+std::vector<Triangle> PinchedPairs::faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
+                                                   std::span<const Vec3> x) const {
+  const auto& [a, b, c] = key.cloth;
+  const Vec3 out = outward((x[a] + x[b] + x[c]) / 3, beside.faces, x);
+  std::vector<Triangle> faces = faces_near(key, surfaces, x);
+  std::erase_if(faces, [&](const Triangle& face) {
+    return face_normal(face, x).dot(out) <= kMinFacingCosine || find_separating_plane({key.cloth, face}, x, x);
+  });
+  return faces.empty() ? beside.faces : faces;
 }
 
 std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x,

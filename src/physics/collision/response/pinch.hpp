@@ -37,7 +37,7 @@ class PinchedPairs {
   /// How the limb reached the cloth.
   struct Origin {
     int side = 0;  ///< +1: the cloth was outside the limb; −1: inside, or behind an open surface; 0: not recorded
-    std::vector<Triangle> faces;  ///< faces of the limb that reached the cloth
+    std::vector<Triangle> faces;  ///< faces of the limb that reached the triangle or, failing that, a neighbour
   };
 
   /// Two points for a contact that pushes a particle, or a point of a cloth triangle, back to its
@@ -112,6 +112,8 @@ class PinchedPairs {
     return [this, limb](const Triangle& face) { return limb_of_[face[0]] == limb; };
   }
   std::vector<Triangle> faces_near(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
+  std::vector<Triangle> faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
+                                       std::span<const Vec3> x) const;
   bool is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
   bool is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces, std::span<const Vec3> x) const;
 
