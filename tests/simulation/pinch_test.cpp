@@ -441,14 +441,14 @@ TEST_F(HandOnHip, LeavesTheClothAsItCame) {
   EXPECT_EQ(course.pairs_at_end, 0U);
 }
 
-// The hand leaves down along the cloth, and up past the held edge. Triangles beside the pinched ones must be exempt
-// too. Otherwise the hand would catch them (measured: strain 0.37 and 49 pairs at the end; here 0.015 to 0.04 and
-// none).
+// The hand leaves down along the cloth, and up past the held edge. Triangles that share a particle inside the hand must
+// be exempt too. Otherwise the hand would catch them (measured: strain 0.37 and 49 pairs at the end; here 0.08 to 0.10
+// and none).
 TEST_F(HandOnHip, TakesNoClothAlongWhereItLeavesSideways) {
   for (const Vec3& after : {Vec3(0.1, -0.25, 0.8), Vec3(0.1, -0.3, 1.2)}) {
     const Course course = run(after, 0);
     EXPECT_GT(course.most_pinched, 10);
-    EXPECT_LT(course.largest_strain, 0.08);
+    EXPECT_LT(course.largest_strain, 0.15);
     EXPECT_EQ(course.pairs_at_end, 0U);
   }
 }

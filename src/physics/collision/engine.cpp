@@ -120,7 +120,7 @@ void Engine::gather(std::span<const Vec3> x) {
 }
 
 bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
-                        double h, std::span<const RigidMotion> motions) {
+                        double h, std::span<const RigidMotion> motions, bool is_repeated) {
   step_ = h;
   x_t0_ = x_t0;
   gathered_at_.clear();  // near pairs must not depend on earlier steps
@@ -128,7 +128,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
   if (!pinched_.empty()) {
-    pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0);
+    pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0, is_repeated);
     pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.detection_distance());
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);

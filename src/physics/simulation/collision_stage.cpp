@@ -214,7 +214,7 @@ std::string CollisionStage::describe(const collision::CornerPair& pair, const Sy
 }
 
 bool CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
-                                SystemState& next) {
+                                SystemState& next, bool is_repeated) {
   place_bodies(t, now);
   movable_.assign(now.x.size(), collision::kFixed);
   obstructed_pins_.clear();
@@ -237,7 +237,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
                       std::uint8_t{collision::kFixed});
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) motions_[model_.cloths.size() + b] = motion_of(bodies_[b], t, h);
-  return engine_.begin_step(now.x, next.x, movable_, h, motions_);
+  return engine_.begin_step(now.x, next.x, movable_, h, motions_, is_repeated);
 }
 
 bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemState& now) const {

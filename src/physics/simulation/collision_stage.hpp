@@ -61,9 +61,9 @@ class CollisionStage {
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of
   /// `next`: held ones at their targets, others with unchanged velocity. Finds contacts for `now` and this prediction.
   /// With springs, if surfaces would touch on the predicted trajectories, moves particles of `next` apart. Returns
-  /// whether any was moved.
+  /// whether any was moved. `is_repeated`: whether a longer step that contains this one was rejected.
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
-                  SystemState& next);
+                  SystemState& next, bool is_repeated = false);
 
   /// The search for contacts assumes that vertices move on straight lines. Returns whether an obstacle near cloth turns
   /// so far between t and t + h [s] that its vertices may deviate from such lines by more than

@@ -55,7 +55,7 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   Start start = Start::unchanged_velocity;
   if (collisions_) {
     const Stopwatch watch(report.collide);
-    if (collisions_->begin_step(t, h, held_, progress_.now, next_)) start = Start::next;
+    if (collisions_->begin_step(t, h, held_, progress_.now, next_, attempt.rejections > 0)) start = Start::next;
   }
   // Forces that change with time are those of the time of the stage (integrator::Stepper), which follows from method()
   // and thus from the contacts. Held particles, contacts and attachments have their positions at the end of the step.

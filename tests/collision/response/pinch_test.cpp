@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "collision/hierarchy/test_motions.hpp"
 #include "physics/collision/response/pinch_report.hpp"
 #include "physics/mesh/shapes.hpp"
@@ -128,6 +131,56 @@ TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
     pinched_.renew(cloth, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), pinched) << z;
   }
+}
+
+// Two corners of the cloth are in the lower box, one is outside. Triangles that only share the outer one keep their
+// planes: else cloth under tension would be pulled in, ring after ring.
+TEST_F(PinchedTriangle, TakesNothingInBesideACornerThatIsOnItsSide) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  const Triangle face = with(1).b;
+  for (const Index corner : {0, 1, 2}) EXPECT_TRUE(pinched_.exempts({{corner, corner, corner}, face})) << corner;
+  move_cloth_to(0.09);
+  x_[0].z() = 0.11;
+  pinched_.renew(scene_.triangles, broad_phase_, x_);
+  EXPECT_TRUE(pinched_.exempts({scene_.triangles[0], face}));
+  EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
+  for (const Index corner : {1, 2}) EXPECT_TRUE(pinched_.exempts({{corner, corner, corner}, face})) << corner;
+  pinched_.renew(scene_.triangles, broad_phase_, x_, true);  // the step was rejected
+  EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
+  pinched_.renew(scene_.triangles, broad_phase_, x_);
+  EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
+  pinched_.add(with(1));  // it had no room in this step either
+  EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
+}
+
+// A ball of 0.1 m reached one triangle of cloth at its top. The next one crosses it where it is inclined by 40 degrees,
+// and leaves it there.
+TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
+  const auto at = [](double degrees, double radius, double y) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return Vec3(radius * std::sin(angle), y, radius * std::cos(angle));
+  };
+  testing::MovingScene scene;
+  std::vector<Vec3> x{at(-5, 0.09, 0), at(5, 0.09, 0.01), at(30, 0.09, 0), at(50, 0.11, 0.01)};
+  const std::vector<Triangle> cloth{{0, 1, 2}, {1, 2, 3}};
+  scene.add({x, cloth});
+  const mesh::Mesh ball = mesh::make_sphere(0.1, 48);
+  scene.add({ball.positions, {ball.topology.triangles.begin(), ball.topology.triangles.end()}});
+  x.insert(x.end(), ball.positions.begin(), ball.positions.end());
+  const std::vector<Surface> surfaces = scene.surfaces();
+  const BroadPhase broad_phase(surfaces, x);
+  std::vector<std::size_t> body_of(4, 0);
+  body_of.resize(x.size(), 1);
+  const std::vector<Index> limb_of(x.size(), 0);
+  PinchedPairs pinched(4, body_of, limb_of);
+  const Triangle top = nearest_point(Vec3(0, 0, 0.1), surfaces[1].triangles, x).face;
+  pinched.add(PinchedPairs::Key{cloth[0], 1, 0}, {1, {top}});
+  pinched.renew(scene.triangles, broad_phase, x);
+  ASSERT_EQ(pinched.size(), 2U);
+  EXPECT_EQ(pinched.origins().at({cloth[0], 1, 0}).faces, std::vector<Triangle>{top});
+  for (const Triangle& face : pinched.origins().at({cloth[1], 1, 0}).faces)
+    EXPECT_GT(face_normal(face, x).dot(at(40, 1, 0)), std::cos(0.3));  // it crosses within 15 degrees of there
 }
 
 // All corners of the cloth are outside the lower box; a corner of the box pierces the cloth.

@@ -53,7 +53,11 @@ bool PinchedPairs::are_pinched(const std::array<Index, 4>& vertices) const {
 void PinchedPairs::add(const CornerPair& pair) {
   const Key of_pair = key(pair);
   origins_[of_pair].faces.push_back(pair.b);
-  for (Index particle : pair.a) particles_.try_emplace({particle, of_pair.body, of_pair.limb});
+  for (Index particle : pair.a) {
+    const Corner corner{particle, of_pair.body, of_pair.limb};
+    particles_.try_emplace(corner);
+    returned_.erase(corner);
+  }
 }
 
 void PinchedPairs::list_particles() {
@@ -78,7 +82,8 @@ void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3
   list_particles();
 }
 
-void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x) {
+void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
+                         bool is_repeated) {
   std::map<Key, Origin> around = origins_;
   for (const Triangle& cloth : triangles) {
     if (cloth[0] >= first_obstacle_) break;
@@ -99,6 +104,13 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
     if (!origins_.contains(key)) origin.faces = faces_reaching(key, origin, surfaces, x);
   origins_ = std::move(around);
   list_particles();
+  returned_.clear();
+  if (is_repeated) return;
+  for (const auto& [corner, origin] : particles_) {
+    const auto& [particle, body, limb] = corner;
+    const double height = nearest_point(x[particle], surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb)).height;
+    if (origin.side * height > 0) returned_.insert(corner);
+  }
 }
 
 // The faces that a neighbour crosses itself and that face the way out of the triangle beside it; that triangle's own

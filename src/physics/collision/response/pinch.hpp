@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,7 +23,9 @@ namespace weft::collision {
 /// plane is required. renew() removes a triangle from the set if it is apart from the limb and back
 /// on its original side of the limb. Neighbours of a triangle of the set (triangles that share a
 /// particle with it) are exempt from its limb, too, so that a limb that moves along the cloth does
-/// not drag the cloth with it. renew() adds a neighbour to the set if it meets the limb or is on
+/// not drag the cloth with it. But if that particle is on its own side, they keep their planes:
+/// otherwise, a limb that comes nearer would take in the cloth around, ring after ring. renew() adds
+/// a neighbour to the set if it meets the limb or is on
 /// its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it, and
 /// rests on the other. If the first limb retreats, the cloth returns to its original side of it.
 class PinchedPairs {
@@ -58,9 +61,12 @@ class PinchedPairs {
     return pair.a[0] < first_obstacle_ && pair.b[0] >= first_obstacle_;
   }
   bool exempts(const CornerPair& pair) const {
-    return !origins_.empty() && is_cloth_and_obstacle(pair) && std::ranges::any_of(pair.a, [&](Index particle) {
-      return particles_.contains({particle, body_of(pair.b[0]), limb_of_[pair.b[0]]});
-    });
+    if (origins_.empty() || !is_cloth_and_obstacle(pair)) return false;
+    const Key of_pair = key(pair);
+    return origins_.contains(of_pair) || std::ranges::any_of(pair.a, [&](Index particle) {
+             const Corner corner{particle, of_pair.body, of_pair.limb};
+             return particles_.contains(corner) && !returned_.contains(corner);
+           });
   }
   /// Whether one of these vertices is a corner of an exempted triangle, and another one belongs to
   /// the limb from which this triangle is exempt.
@@ -82,8 +88,11 @@ class PinchedPairs {
 
   /// Removes triangles that, at x [m], are apart from their limb and back on their side. Adds
   /// triangles that share a particle with one of the set, unless they are apart from its limb and
-  /// on its side. `triangles`: of all surfaces, cloth first.
-  void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
+  /// on its side. `triangles`: of all surfaces, cloth first. `is_repeated`: whether the step was
+  /// rejected before; then neighbours are exempt whatever the side of their particle, as keeping
+  /// them apart may have stretched the cloth.
+  void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
+             bool is_repeated = false);
 
   /// Finds how pinched cloth returns to its side at x [m]. Pairs each corner of an exempted
   /// triangle whose height is below `max_height` [m] with the nearest point of the limb. (Height:
@@ -106,6 +115,13 @@ class PinchedPairs {
   void serialize(Archive& archive);
 
  private:
+  struct Corner {
+    Index particle;
+    std::size_t body;
+    Index limb;
+    friend auto operator<=>(const Corner&, const Corner&) = default;
+  };
+
   void list_particles();
   Key key(const CornerPair& pair) const { return {pair.a, body_of(pair.b[0]), limb_of_[pair.b[0]]}; }
   CountsFace belongs_to_limb(Index limb) const {
@@ -121,13 +137,8 @@ class PinchedPairs {
   std::span<const std::size_t> body_of_;
   std::span<const Index> limb_of_;
   std::map<Key, Origin> origins_;
-  struct Corner {
-    Index particle;
-    std::size_t body;
-    Index limb;
-    friend auto operator<=>(const Corner&, const Corner&) = default;
-  };
   std::map<Corner, Origin> particles_;  // corners of the exempted triangles
+  std::set<Corner> returned_;           // those that were on their own side at the last renew()
 };
 
 }  // namespace weft::collision
