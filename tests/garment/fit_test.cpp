@@ -122,6 +122,22 @@ TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").rise, 0, 1e-12);
 }
 
+// The outline of a panel can itself be at the height at which it is worn; the panel then states no position.
+TEST(Fit, RaisesFlatPanelsWithoutAPositionToo) {
+  Pattern pattern;
+  pattern.panels.resize(2);
+  pattern.panels[1].position = Vec2(0.1, 1);
+  pattern.scale_by(Vec2(2, 1.5), -0.5);
+  ASSERT_TRUE(pattern.panels[0].position.has_value());
+  EXPECT_LT((*pattern.panels[0].position - Vec2(0, -0.5)).norm(), 1e-12);
+  EXPECT_LT((*pattern.panels[1].position - Vec2(0.2, 1)).norm(), 1e-12);
+  // Seams place bent panels that state no position.
+  pattern.panels[0].position.reset();
+  pattern.panels[1].around = Around::torso;
+  pattern.scale_by(Vec2(2, 1.5), -0.5);
+  EXPECT_FALSE(pattern.panels[0].position.has_value());
+}
+
 // The waist of the round body is at 1.1 m. A skirt hangs there, whatever the height of the neck.
 TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
   Wearer wearer = round_wearer();

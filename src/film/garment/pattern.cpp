@@ -423,7 +423,9 @@ const scene::Table& pattern_rules() {
 
 void Pattern::scale_by(const Vec2& factors, double rise) {
   depth *= factors.x();
+  const bool flat = !has_bent_panels();
   for (Panel& panel : panels) {
+    if (flat && rise != 0 && !panel.position) panel.position = Vec2(0, 0);  // where such a panel starts
     const bool on_arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
     if (panel.position) *panel.position = panel.position->cwiseProduct(factors) + Vec2(0, on_arm ? 0 : rise);
     for (PanelEdge& edge : panel.edges)
