@@ -122,6 +122,23 @@ TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").rise, 0, 1e-12);
 }
 
+// A figure of paper: each arm is one rectangle, whose sections are lines.
+TEST(Fit, MeasuresNoFlatArms) {
+  Wearer wearer = round_wearer();
+  for (const double side : {1.0, -1.0}) {
+    const auto first = static_cast<Index>(wearer.skin.size());
+    for (const double along : {0.2, 0.8})
+      for (const double up : {1.37, 1.43}) wearer.skin.emplace_back(side * along, 0, up);
+    wearer.triangles.push_back({first, first + 2, first + 1});
+    wearer.triangles.push_back({first + 1, first + 2, first + 3});
+    wearer.regions.resize(wearer.skin.size(), side > 0 ? Region::left_arm : Region::right_arm);
+    (side > 0 ? wearer.left_arm : wearer.right_arm) =
+        Limb{Vec3(side * 0.2, 0, 1.4), Vec3(side * 0.45, 0, 1.4), Vec3(side * 0.7, 0, 1.4)};
+  }
+  EXPECT_FALSE(measure(wearer).arm.has_value());
+  EXPECT_EQ(*measure(wearer).chest, *measure(round_wearer()).chest);
+}
+
 // The outline of a panel can itself be at the height at which it is worn; the panel then states no position.
 TEST(Fit, RaisesFlatPanelsWithoutAPositionToo) {
   Pattern pattern;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "core/error.hpp"
 
@@ -44,19 +45,27 @@ double armpit_height(const Wearer& wearer) {
   return lowest;
 }
 
+// The tube around a part; absent if the part lacks joints, or skin that has sections.
+std::optional<Tube> find_tube(const Wearer& wearer, Around part) {
+  try {
+    return Tube(wearer, part);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 // Girth of the upper arms: that of the narrowest section in their middle, as other sections may contain skin of the
-// shoulder, of a bent forearm, or of something in the hand. Absent if joints or skin of an arm are.
+// shoulder, of a bent forearm, or of something in the hand. Absent if an arm lacks joints, or skin that has sections.
 std::optional<double> arm_girth(const Wearer& wearer) {
   constexpr double kBegin = 0.3, kEnd = 0.7;  // fractions of the upper arm
   double narrowest = std::numeric_limits<double>::infinity();
   for (const bool left : {true, false}) {
     const std::optional<Limb>& limb = left ? wearer.left_arm : wearer.right_arm;
-    const Region region = left ? Region::left_arm : Region::right_arm;
-    if (!limb || std::ranges::find(wearer.regions, region) == wearer.regions.end()) return std::nullopt;
+    const std::optional<Tube> arm = find_tube(wearer, left ? Around::left_arm : Around::right_arm);
+    if (!limb || !arm) return std::nullopt;
     const double length = ((*limb)[1] - (*limb)[0]).norm();
-    const Tube arm(wearer, left ? Around::left_arm : Around::right_arm);
     for (double s = -kEnd * length; s <= -kBegin * length; s += kSpacing)
-      narrowest = std::min(narrowest, arm.girth(s, 0));
+      narrowest = std::min(narrowest, arm->girth(s, 0));
   }
   return narrowest;
 }

@@ -13,9 +13,9 @@ namespace weft::garment {
 /// sections whose girth changes fast with height are excluded, except the lowest one. Chest: the
 /// widest section from the waist to the armpits (the lowest place where skin of an arm joins the
 /// trunk, at most kHighestArmpit). Hip: the widest section from kLowestHip to the waist. Arm: the
-/// narrowest section in the middle of both upper arms; absent if joints or skin of an arm are. Height: that of the
-/// crown, rounded down to 1 cm. Throws Error(scene_invalid) if the body without the arms has no
-/// skin.
+/// narrowest section in the middle of both upper arms; absent if an arm lacks joints, or skin that
+/// has sections, as flat arms do. Height: that of the crown, rounded down to 1 cm. Throws
+/// Error(scene_invalid) if the body without the arms has no skin.
 Measures measure(const Wearer& wearer);
 
 /// How a pattern is changed for a wearer; for Pattern::scale_by().
