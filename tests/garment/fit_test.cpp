@@ -169,6 +169,18 @@ TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
   EXPECT_EQ(low.rise, 0);
 }
 
+// The hip joints of the round body are at 0.9 m.
+TEST(Fit, RefusesAWearerThatDoesNotStand) {
+  Wearer wearer = round_wearer();
+  wearer.neck = 0.85;
+  Pattern pattern;
+  pattern.measures.chest = 0.88;
+  support::expect_error(ExitCode::scene_invalid,
+                        "cloth.c.fit: expected a wearer that stands upright, got one with its neck 0.85 m and its hips "
+                        "0.90 m",
+                        [&] { fit(pattern, wearer, "cloth.c"); });
+}
+
 // If hips are hardly wider than the waist of a garment, the garment falls to the feet, unless it also hangs from the
 // shoulders.
 TEST(Fit, TellsOfHipsThatHoldNothingUp) {

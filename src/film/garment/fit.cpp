@@ -123,12 +123,18 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 "{}.fit: expected a pattern that names the measures it is drawn for, as [measures] with chest, waist, "
                 "hip, arm or height, got none in {}",
                 where, pattern.file.string());
+  const Trunk trunk(wearer);
+  if (!(trunk.neck > trunk.hips))
+    throw Error(ExitCode::scene_invalid,
+                "{}.fit: expected a wearer that stands upright, got one with its neck {:.2f} m and its hips {:.2f} m "
+                "above its lowest point; turn it, or leave out fit",
+                where, trunk.neck, trunk.hips);
   const Measures own = measure(wearer);
   double across = 0, up = 1, rise = 0;
   for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm})
     if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
   if (drawn.height && hangs_from_waist(drawn)) {
-    up = Trunk(wearer).waist() / (kWaistHeightRatio * *drawn.height);
+    up = trunk.waist() / (kWaistHeightRatio * *drawn.height);
   } else if (drawn.height) {
     const double neck = kNeckHeightRatio * *drawn.height;
     up = wearer.neck / neck;

@@ -8,8 +8,8 @@
 
 namespace weft::garment {
 
-/// Measures a wearer in its pose. Girths are those of convex sections of the body without the arms.
-/// Waist: the narrowest section between the heights kLowestWaist and kHighestWaist (fit.cpp);
+/// Measures a wearer in its pose; its neck must be above its hip joints. Girths are those of convex sections of the
+/// body without the arms. Waist: the narrowest section between the heights kLowestWaist and kHighestWaist (fit.cpp);
 /// sections whose girth changes fast with height are excluded, except the lowest one. Chest: the
 /// widest section from the waist to the armpits (the lowest place where skin of an arm joins the
 /// trunk, at most kHighestArmpit). Hip: the widest section from kLowestHip to the waist. Arm: the
@@ -33,7 +33,7 @@ struct Fit {
 /// head varies much between bodies. If the pattern states only a height, both factors are the ratio
 /// of neck heights. The rise puts the neck of the drawn body, multiplied by the factor up, at the
 /// height of the wearer's. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
-/// pattern states no measures.
+/// pattern states no measures, or if the wearer's neck is not above its hip joints.
 Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
 /// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the
