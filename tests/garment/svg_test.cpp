@@ -129,6 +129,24 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   refused("odd", "text: expected edge: and a name of letters");
 }
 
+// Illustrator places texts by transforms, without x and y.
+TEST_F(Drawings, TextsWithoutCoordinatesStandAtTheirOrigin) {
+  const auto load_with = [&](const std::string& texts) {
+    support::write_bytes(folder_ / "d.svg",
+                         "<svg width='1000mm' viewBox='0 0 1000 1000'><g id='p'><rect width='200' height='300'/>" +
+                             texts + "</g></svg>");
+    return load_svg_panel(folder_ / "d.svg", "p");
+  };
+  const DrawnPanel panel = load_with(
+      "<text transform='matrix(1 0 0 1 190 150)'>edge: side</text>"
+      "<text x='90'><tspan y='290'>edge: hem</tspan></text>"
+      "<text transform='translate(100 300)'>origin</text>");
+  EXPECT_EQ(panel.names, (std::vector<std::string>{"1", "side", "hem", "4"}));
+  EXPECT_LT((panel.outline[0].start() - Vec2(-0.1, 0.3)).norm(), 1e-12);
+  support::expect_error(ExitCode::asset_unreadable, "x and y where a label stands",
+                        [&] { load_with("<text><textPath>edge: hem</textPath></text>"); });
+}
+
 TEST_F(Drawings, SeamAllowancesOfAnyShapeDoNotCount) {
   const std::string allowance = "x='-1' y='-1' width='4' height='5'";
   for (const std::string& sa :

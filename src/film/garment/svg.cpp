@@ -358,12 +358,15 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   std::string first, name, more;
   stream >> first;
   if (first != "origin" && !first.starts_with("edge:")) return;
-  pugi::xml_node at = node;
-  if (!at.attribute("x")) at = node.child("tspan");
-  const auto x = parse_numbers(at.attribute("x").value()), y = parse_numbers(at.attribute("y").value());
-  if (!x || !y || x->empty() || y->empty())
+  const auto coordinate = [&](const char* key) {
+    const pugi::xml_attribute own = node.attribute(key);
+    return parse_numbers((own ? own : node.child("tspan").attribute(key)).value());
+  };
+  const auto x = coordinate("x"), y = coordinate("y");
+  if (!x || !y || node.child("textPath"))
     drawing.refuse(node, "expected x and y where a label stands, got something else");
-  const Vec2 place = sheet.to_metres(at) * Vec2(x->front(), y->front());
+  // An absent coordinate is 0 (SVG 1.1, section 10.4): Illustrator places texts by their transforms alone.
+  const Vec2 place = sheet.to_metres(node) * Vec2(x->empty() ? 0 : x->front(), y->empty() ? 0 : y->front());
   if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got infinite or undefined ones");
   if (first == "origin") {
     group.origin = place;
