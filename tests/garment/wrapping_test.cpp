@@ -296,7 +296,7 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
   expect(panel + "[[panel]]\nname = 'b'\nmirror_of = 'a'\nid = 'c'\n",
          "panel.b.mirror_of: expected an outline of its own or of another panel, got both");
   expect("[[panel]]\nname = 'a'\naround = 'left_leg'\nposition = [0, 0]\npath = 'M 0 0 L 0.3 0 L 0 0.2 Z'\n",
-         "expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
+         "p.toml: panel a: expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
 }
 
 // Garments as in the gallery. Seams decide on which side a hood lies; otherwise 16 pairs of triangles would cross.

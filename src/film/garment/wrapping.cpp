@@ -11,6 +11,7 @@
 #include <set>
 #include <unordered_map>
 
+#include "core/error.hpp"
 #include "film/garment/least_squares_positions.hpp"
 #include "physics/mesh/geometry.hpp"
 
@@ -44,10 +45,15 @@ Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) 
 
 class PanelPlacer {
  public:
-  PanelPlacer(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer)
+  /// `refuse` receives the description of a mistake and must throw.
+  PanelPlacer(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer,
+              const std::function<void(const std::string&)>& refuse)
       : pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
-    for (const Panel& panel : pattern.panels)
-      if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
+    for (const Panel& panel : pattern.panels) try {
+        if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
+      } catch (const Error& error) {
+        refuse(fmt::format("panel {}: {}", panel.name, error.what()));
+      }
   }
 
   /// Sets the positions of all panels: first those that the pattern states, then the others from
@@ -285,7 +291,7 @@ bool are_drawn_from_same_side(const Panel& a, const Panel& b) {
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer,
                                            const std::function<void(const std::string&)>& refuse) {
-  PanelPlacer placer(pattern, meshes, wearer);
+  PanelPlacer placer(pattern, meshes, wearer, refuse);
   if (const Panel* unplaced = placer.find_positions())
     refuse(
         fmt::format("panel {}: expected a position, or a seam to a panel that has one, got neither", unplaced->name));
