@@ -49,6 +49,18 @@ TEST_F(Drawings, LengthsAreThoseOfTheSheet) {
                  {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
 }
 
+TEST_F(Drawings, AreNotStretched) {
+  const auto sheet = [](const std::string& width, const std::string& ratio) {
+    return "<svg width='" + width + "' height='297mm' viewBox='0 0 210 297' preserveAspectRatio='" + ratio +
+           "'><path id='p' d='M10 20h100v50z'/></svg>";
+  };
+  const std::vector<Vec2> corners{{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}};
+  expect_corners(sheet("420mm", "xMinYMin meet"), corners);
+  expect_corners(sheet("210mm", "none"), corners);
+  expect_refused(sheet("420mm", "none"), "preserveAspectRatio: expected meet");
+  expect_refused(sheet("420mm", "xMidYMid slice"), "got \"xMidYMid slice\"");
+}
+
 TEST_F(Drawings, TransformsOfElementAndGroupsApply) {
   const std::string head = "<svg width='1000mm' viewBox='0 0 1000 1000'>";
   expect_corners(head +

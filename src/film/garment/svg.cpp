@@ -186,8 +186,19 @@ double metres_per_unit(const Drawing& drawing) {
   check_view_box(drawing, root, box);
   if (!width) drawing.refuse(root, "width: expected the size of the sheet, such as 210mm, beside a viewBox, got none");
   double unit = *width / (*box)[2];
-  // If the height is given too, the smaller of the two units applies, as in browsers.
-  if (const auto height = parse_length(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
+  // If the height is given too, the smaller of the two units applies, as in browsers, unless preserveAspectRatio says
+  // otherwise.
+  if (const auto height = parse_length(root.attribute("height").value())) {
+    constexpr double kMaxDifference = 1e-3;  // relative; of rounded sizes
+    const double up = *height / (*box)[3];
+    const std::string_view ratio = root.attribute("preserveAspectRatio").value();
+    const bool meets = ratio.find("none") == std::string_view::npos && ratio.find("slice") == std::string_view::npos;
+    if (!meets && std::abs(up / unit - 1) > kMaxDifference)
+      drawing.refuse(root, fmt::format("preserveAspectRatio: expected meet, as width and height give different scales, "
+                                       "got \"{}\"",
+                                       ratio.substr(0, 40)));
+    unit = std::min(unit, up);
+  }
   return unit;
 }
 
