@@ -181,6 +181,18 @@ TEST(Fit, RefusesAWearerThatDoesNotStand) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
+// Sections are 10 mm apart: a body of 1.7 km would have 170,000.
+TEST(Fit, RefusesABodyInMillimetres) {
+  Wearer wearer = round_wearer();
+  for (Vec3& x : wearer.skin) x *= 1000;
+  wearer.neck *= 1000;
+  Pattern pattern;
+  pattern.measures.chest = 0.88;
+  support::expect_error(ExitCode::scene_invalid,
+                        "cloth.c.fit: expected at most 100 m along torso of the wearer, got 1700 m; scale",
+                        [&] { fit(pattern, wearer, "cloth.c"); });
+}
+
 // If hips are hardly wider than the waist of a garment, the garment falls to the feet, unless it also hangs from the
 // shoulders.
 TEST(Fit, TellsOfHipsThatHoldNothingUp) {

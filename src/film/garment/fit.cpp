@@ -123,7 +123,13 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 "{}.fit: expected a pattern that names the measures it is drawn for, as [measures] with chest, waist, "
                 "hip, arm or height, got none in {}",
                 where, pattern.file.string());
-  const Trunk trunk(wearer);
+  const Trunk trunk = [&] {
+    try {
+      return Trunk(wearer);
+    } catch (const Error& error) {
+      throw Error(error.code(), "{}.fit: {}", where, error.what());
+    }
+  }();
   if (!(trunk.neck > trunk.hips))
     throw Error(ExitCode::scene_invalid,
                 "{}.fit: expected a wearer that stands upright, got one with its neck {:.2f} m and its hips {:.2f} m "

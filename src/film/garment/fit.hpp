@@ -15,7 +15,7 @@ namespace weft::garment {
 /// trunk, at most kHighestArmpit). Hip: the widest section from kLowestHip to the waist. Arm: the
 /// narrowest section in the middle of both upper arms; absent if an arm lacks joints, or skin that
 /// has sections, as flat arms do. Height: that of the crown, rounded down to 1 cm. Throws
-/// Error(scene_invalid) if the body without the arms has no skin.
+/// Error(scene_invalid) if Tube refuses the body without the arms.
 Measures measure(const Wearer& wearer);
 
 /// How a pattern is changed for a wearer; for Pattern::scale_by().
@@ -33,7 +33,8 @@ struct Fit {
 /// head varies much between bodies. If the pattern states only a height, both factors are the ratio
 /// of neck heights. The rise puts the neck of the drawn body, multiplied by the factor up, at the
 /// height of the wearer's. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
-/// pattern states no measures, or if the wearer's neck is not above its hip joints.
+/// pattern states no measures, if the wearer's neck is not above its hip joints, or if Tube refuses the
+/// body without the arms.
 Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
 /// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the

@@ -20,6 +20,8 @@ constexpr double kWristExtension = 0.3;
 constexpr double kHeadFraction = 0.6;
 // Dome of the head's tube: height of its end above the crown [m], and ratio of its narrowest section to the widest.
 constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
+// Maximum length of a tube [m]: that of a body in millimetres would have 170,000 sections.
+constexpr double kMaxLength = 100;
 // Minimum number of crossings of triangle sides with the plane of a section (a side shared by two
 // triangles counts twice); with fewer, there is no section.
 constexpr std::size_t kMinSectionPoints = 6;
@@ -129,6 +131,11 @@ Tube::Tube(const Wearer& wearer, Around part) {
                     Vec3(joints[0].x(), joints[0].y(), wearer.neck)};
     axis.first = floor;
   }
+  if (!(axis.length() <= kMaxLength))
+    throw Error(ExitCode::scene_invalid,
+                "expected at most {:g} m along {} of the wearer, got {:.4g} m; scale of its character says how many "
+                "metres a unit of its file has",
+                kMaxLength, name, axis.length());
 
   // Select the skin that the tube goes around.
   std::vector<mesh::Triangle> skin;

@@ -51,7 +51,8 @@ Around mirrored(Around part);
 /// negative below. The length increases counter-clockwise, seen from the trunk or from above.
 class Tube {
  public:
-  /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part.
+  /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part, or if the tube would be
+  /// longer than kMaxLength (wearer.cpp).
   Tube(const Wearer& wearer, Around part);
 
   /// Girth [m] of the section at s, moved outward by `outward` [m]. Beyond the ends of the tube, the end sections
