@@ -155,6 +155,18 @@ TEST(Fit, RaisesFlatPanelsWithoutAPositionToo) {
   EXPECT_FALSE(pattern.panels[0].position.has_value());
 }
 
+// What is across in the drawing of a panel that lies on its side is up on the wearer.
+TEST(Fit, ScalesPanelsThatTurnAsTheyAreWorn) {
+  Pattern pattern;
+  Panel& panel = pattern.panels.emplace_back();
+  panel.rotation = 90;
+  panel.edges.push_back({"side", {straight(Vec2(0, 0), Vec2(1, 2))}});
+  pattern.scale_by(Vec2(2, 3));
+  EXPECT_LT((pattern.panels[0].edges[0].curves[0].end() - Vec2(3, 4)).norm(), 1e-12);
+  pattern.scale_by(Vec2(2, 2));
+  EXPECT_LT((pattern.panels[0].edges[0].curves[0].end() - Vec2(6, 8)).norm(), 1e-12);
+}
+
 // The waist of the round body is at 1.1 m. A skirt hangs there, whatever the height of the neck.
 TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
   Wearer wearer = round_wearer();

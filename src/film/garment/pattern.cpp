@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -428,9 +429,12 @@ void Pattern::scale_by(const Vec2& factors, double rise) {
     if (flat && rise != 0 && !panel.position) panel.position = Vec2(0, 0);  // where such a panel starts
     const bool on_arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
     if (panel.position) *panel.position = panel.position->cwiseProduct(factors) + Vec2(0, on_arm ? 0 : rise);
+    const Eigen::Rotation2Dd turn(panel.rotation * std::numbers::pi / 180);
+    const bool turns = panel.rotation != 0 && factors.x() != factors.y();
     for (PanelEdge& edge : panel.edges)
       for (Curve& curve : edge.curves)
-        for (Vec2& p : curve.control) p = p.cwiseProduct(factors);
+        for (Vec2& p : curve.control)
+          p = turns ? Vec2(turn.inverse() * Vec2((turn * p).cwiseProduct(factors))) : Vec2(p.cwiseProduct(factors));
   }
 }
 

@@ -112,9 +112,10 @@ struct Pattern {
 
   /// Whether panels start bent around parts of the wearer; otherwise they start flat.
   bool has_bent_panels() const;
-  /// Multiplies outlines and start positions by `factors` (across and up the drawings), and `depth` by the factor
-  /// across. Start positions of flat panels and of panels around parts other than arms then rise by `rise` [m]. A bent
-  /// panel without a position follows the panels to which it is sewn. All other members keep their values.
+  /// Multiplies outlines and start positions by `factors` (across and up, as the panels start: after `rotation`), and
+  /// `depth` by the factor across. Start positions of flat panels and of panels around parts other than arms then rise
+  /// by `rise` [m]. A bent panel without a position follows the panels to which it is sewn. All other members keep
+  /// their values.
   void scale_by(const Vec2& factors, double rise = 0);
   /// Indices of the panel and of its edge for a name "panel.edge" of a checked pattern. Throws Error(internal) if the
   /// pattern has no such edge.
