@@ -49,11 +49,13 @@ class PanelPlacer {
   PanelPlacer(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer,
               const std::function<void(const std::string&)>& refuse)
       : pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
-    for (const Panel& panel : pattern.panels) try {
+    for (const Panel& panel : pattern.panels) {
+      try {
         if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
       } catch (const Error& error) {
         refuse(fmt::format("panel {}: {}", panel.name, error.what()));
       }
+    }
   }
 
   /// Sets the positions of all panels: first those that the pattern states, then the others from
