@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "film/environment/environment.hpp"
 #include "motion/rotation.hpp"
@@ -142,6 +143,28 @@ follow = "man.head"
   }
   EXPECT_GT(max_displacement, 0.5);
   EXPECT_LT(max_change, 1e-3);
+}
+
+// The followed part came after the settings of the scene and collided.
+TEST(Parent, ThatIsAPartOfACharacterStaysOutOfContact) {
+  const std::string man = R"(
+[[character]]
+name = "man"
+source = "mannequin"
+edge_length = 0.05
+part = [{ name = "hands", collide = false }]
+)";
+  const std::string bag = R"(
+[[obstacle]]
+name = "bag"
+shape = "sphere"
+radius = 0.1
+position = [0.6, 0, 0.7]
+follow = "man.left_hand"
+)";
+  const Environment alone(support::scene_of_text(man)), with_bag(support::scene_of_text(man + bag));
+  ASSERT_FALSE(alone.bodies[0].passed_through.empty());
+  EXPECT_EQ(with_bag.bodies[1].passed_through, alone.bodies[0].passed_through);
 }
 
 }  // namespace

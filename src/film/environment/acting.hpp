@@ -25,6 +25,7 @@ struct Part {
   bool collide = true;
   std::optional<double> friction;  ///< coefficient; absent: that of the body
   double thickness = 0;            ///< of padding [m]
+  bool only_followed = false;      ///< the scene has no settings for it, so that its `collide` counts for nothing
 
   /// Whether the part becomes a contact patch (model::Patch).
   bool is_patch() const { return friction || thickness > 0; }

@@ -86,12 +86,14 @@ std::vector<Part> parts_of(const Cast& cast, const scene::SkeletonMotion& acting
                     "collide, write [[character.part]] name = \"hands\"",
                     cast.where));
   }
+  const std::size_t settings = wanted.size();
   for (const FollowerPoints& pin : following)
     if (!pin.part.empty() && std::ranges::find(wanted, pin.part, &scene::BodyPart::name) == wanted.end())
       wanted.push_back(part_named(pin.part));
   std::vector<Part> parts;
   for (const scene::BodyPart& part : wanted)
-    parts.push_back({part.name, finder.find(part, "part." + part.name), part.collide, part.friction, part.thickness});
+    parts.push_back({part.name, finder.find(part, "part." + part.name), part.collide, part.friction, part.thickness,
+                     parts.size() >= settings});
   return parts;
 }
 

@@ -73,7 +73,7 @@ void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);
   for (const Part& part : details.parts)
     for (std::size_t v = 0; v < collides.size(); ++v)
-      if (part.vertices[v] != 0) collides[v] = part.collide;
+      if (part.vertices[v] != 0 && !part.only_followed) collides[v] = part.collide;
   for (const mesh::Triangle& t : body.mesh.topology.triangles) {
     const bool left_out = collides[t[0]] + collides[t[1]] + collides[t[2]] < 2;
     details.passed_through.push_back(left_out);
