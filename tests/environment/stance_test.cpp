@@ -45,5 +45,30 @@ TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
   EXPECT_EQ(count_key_frames(scene, character).bytes, actor.keys.bytes());
 }
 
+// The pose was that at the end of the clip, 1 m above its start.
+TEST_F(Stance, WithRaisedArmsHasThePoseOfTheRoundInWhichTheClipStarts) {
+  std::string text = support::rod_file();
+  const std::string along = "10;3;1.0,1.0,0.0";
+  text.replace(text.find(along), along.size(), "10;3;0.0,2.0,0.0");  // up
+  support::write_bytes(folder_ / "rod.x", text);
+  scene::Scene scene;
+  scene.time.duration = 2;
+  scene::Character& character = scene.characters.emplace_back();
+  character.name = "rod";
+  character.start = 1.5;
+  character.dressing = 0.5;
+  character.blend = 0.5;
+  scene::CharacterFile file;
+  file.path = folder_ / "rod.x";
+  file.clip = "Wave";
+  file.loop = true;
+  file.stance_arms = 45;
+  character.source = file;
+  const Actor actor = make_actor(scene, character);
+  double top = 0;
+  for (const Vec3& x : actor.mesh.positions) top = std::max(top, x.z());
+  EXPECT_NEAR(top, 2.5, 1e-5) << "half of the second round";
+}
+
 }  // namespace
 }  // namespace weft::environment

@@ -308,14 +308,14 @@ void check_size(const Cast&, const scene::Mannequin&, Body&) {}
 template <class Source>
 character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
                                       const character::Clip& clip) {
-  std::optional<character::Pose> stance;
-  if (source.stance == scene::Stance::rest && body.clip) stance = character::rest_pose(body.character);
+  character::Playing playing{cast.timing(), source.loop, source.crossfade, {}};
+  if (source.stance == scene::Stance::rest && body.clip) playing.stance = character::rest_pose(body.character);
   if (source.stance_arms) {
-    if (!stance) stance = character::pose_at(body.character, clip, cast.settings.start);
+    const character::Pose stance = character::Performance(body.character, clip, playing, cast.up()).at(cast.begin());
     const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
-    stance = character::raise_arms({body.character, joints}, *stance, *source.stance_arms, cast.up());
+    playing.stance = character::raise_arms({body.character, joints}, stance, *source.stance_arms, cast.up());
   }
-  return {body.character, clip, {cast.timing(), source.loop, source.crossfade, std::move(stance)}, cast.up()};
+  return {body.character, clip, playing, cast.up()};
 }
 
 template <class Source>
