@@ -156,7 +156,7 @@ character::Clip retarget_motion(const Cast& cast, const scene::SkeletonMotion& a
         fmt::format("{}: motion file {}: nothing that moves {}", cast.where, file, fmt::join(still, ", ")));
   put_on_floor(cast, body);
   const character::Rig from{motion.character, theirs}, to{body.character, ours};
-  const double their_leg = leg_length(from), size = their_leg > 0 ? leg_length(to) / their_leg : 1;
+  const double size = std::min(leg_length(from), leg_length(to)) > 0 ? leg_length(to) / leg_length(from) : 1;
   const character::Clip clip =
       travel(cast, acting, from, choose_clip(cast, acting.clip, motion.character.clips, file), size, body.warnings);
   character::Retargeted result = character::retarget(to, from, clip, cast.up());

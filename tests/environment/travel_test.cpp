@@ -1,0 +1,48 @@
+// The travel of a motion whose skeleton has legs, on a body without legs.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "film/environment/acting.hpp"
+#include "support/small_character.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+class TravelOfAMotion : public support::TestFolder {};
+
+/// Hips and spine that stand still, with a left leg.
+std::string one_leg() {
+  const std::string turns = "CHANNELS 3 Zrotation Yrotation Xrotation\n",
+                    zeros = "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n";
+  return "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation "
+         "Xrotation\nJOINT Spine\n{\nOFFSET 0 5 0\n" +
+         turns + "End Site\n{\nOFFSET 0 5 0\n}\n}\nJOINT LeftUpperLeg\n{\nOFFSET 1 0 0\n" + turns +
+         "JOINT LeftLowerLeg\n{\nOFFSET 0 -4 0\n" + turns + "JOINT LeftFoot\n{\nOFFSET 0 -4 0\n" + turns +
+         "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + zeros + zeros;
+}
+
+// The ratio of the lengths of legs was 0, and the speed of the clip infinite.
+TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
+  support::write_bytes(folder_ / "rod.x", support::rod_file());
+  support::write_bytes(folder_ / "stand.bvh", one_leg());
+  scene::Scene scene;
+  scene.time.duration = 2;
+  scene::Character& character = scene.characters.emplace_back();
+  character.name = "rod";
+  scene::CharacterFile file;
+  file.path = folder_ / "rod.x";
+  file.motion = folder_ / "stand.bvh";
+  file.travel = {scene::Travel::Kind::speed, 1.5};
+  character.source = file;
+  const Actor actor = make_actor(scene, character);
+  std::vector<Vec3> start(actor.mesh.positions.size()), end(start.size());
+  actor.keys.at(0, start);
+  actor.keys.at(1, end);
+  EXPECT_NEAR((end[0] - start[0]).norm(), 1.5, 1e-3);
+}
+
+}  // namespace
+}  // namespace weft::environment
