@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 #include "film/character/joints.hpp"
 #include "film/character/mannequin.hpp"
@@ -90,6 +92,26 @@ TEST(Parts, BelongToWhateverHoldsHalf) {
   body.first_influence = {0, 1, 3, 5};
   const std::vector<Index> nodes = find_joints(body);
   EXPECT_EQ(vertices_of(body, nodes, joints_of_part("LeftHand")), (VertexMask{0, 1, 0}));
+}
+
+// A follower far away made the body larger, and with it the skin that the next follower follows.
+TEST(Parts, FollowersFollowTheSameSkinWhateverElseFollows) {
+  const Character body = make_mannequin({.edge_length = 0.05});
+  const Pose rest = rest_pose(body);
+  const VertexMask all(body.mesh.positions.size(), 1);
+  const Vec3 cape(0.15, 0.1, 1.4), balloon(0, 0, 30);
+  Character alone = body, beside = body;
+  add_followers(alone, rest, all, std::span(&cape, 1));
+  add_followers(beside, rest, all, std::span(&balloon, 1));
+  add_followers(beside, rest, all, std::span(&cape, 1));
+  const auto weights_of_last = [](const Character& followed) {
+    std::map<Index, double> weights;
+    const std::size_t last = followed.mesh.positions.size() - 1;
+    for (Index i = followed.first_influence[last]; i < followed.first_influence[last + 1]; ++i)
+      weights[followed.influences[i].bone] = followed.influences[i].weight;
+    return weights;
+  };
+  EXPECT_EQ(weights_of_last(beside), weights_of_last(alone));
 }
 
 TEST(Parts, LimbsAreArmsAndLegsAndTheRestIsTrunk) {

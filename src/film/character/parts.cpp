@@ -123,7 +123,7 @@ void add_followers(Character& character, const Pose& pose, const VertexMask& par
   skin(character, pose, skinned);
   const std::vector<Affine> globals = global_transforms(character, pose);
   Box3 box;
-  for (const Vec3& x : skinned) box.extend(x);
+  for (std::size_t v = 0; v < part.size(); ++v) box.extend(skinned[v]);
   for (const Vec3& place : places) {
     double nearest_sq = std::numeric_limits<double>::infinity();
     for (std::size_t v = 0; v < part.size(); ++v)

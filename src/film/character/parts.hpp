@@ -39,7 +39,8 @@ VertexMask vertices_of_material(const Character& character, Index material);
 
 /// Appends vertices, which belong to no face, at the positions `places` [m] in the pose `pose`.
 /// Their bone weights are weighted means over the nearby skin of `part`, within a radius that grows
-/// with the distance from this skin. `part` must contain a vertex.
+/// with the distance from this skin and the size of the body. `part` must contain a vertex; it has
+/// no entries for vertices that earlier calls have appended.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
 /// Whether at least three chains of nodes below one of the hands influence skin, so that its thumb and fingers move
