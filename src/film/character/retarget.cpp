@@ -228,6 +228,7 @@ class Retargeter {
       if (joint_of_[n] >= 0) {
         const Quat turned = frame.turned[static_cast<std::size_t>(joint_of_[n])];
         local.rotation = (to_placement(parent).rotation.conjugate() * turned).normalized();
+        if (parent.linear().determinant() < 0) local.rotation.vec().head<2>() *= -1;  // to_placement() mirrors z
         if (joint_of_[n] == 0) local.position = parent.inverse() * frame.hips;
       }
       if (locals != nullptr) locals->push_back(local);
