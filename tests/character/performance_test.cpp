@@ -86,6 +86,22 @@ TEST(Performance, FromRestStandsInTheRestPoseAndStartsTheClipThere) {
       << "the clip, shifted from (5, 0) to the rest";
 }
 
+// Only the first node that travels went on; the others began each round where they had begun the first.
+TEST(Performance, TakesAlongAllNodesThatTravel) {
+  Slider slider;
+  slider.body.nodes = {{"scene", -1, Affine::Identity()}, {"hips", 0, Affine::Identity()}};
+  slider.body.nodes.push_back({"spine", 1, Affine::Identity()});
+  slider.body.nodes.push_back({"foot", 0, Affine::Identity()});
+  const Channel travel = slider.clip.channels[0];
+  slider.clip.channels.assign(3, travel);
+  for (Index n = 1; n <= 3; ++n) slider.clip.channels[static_cast<std::size_t>(n - 1)].node = n;
+  const Performance performance(slider.body, slider.clip, {.timing = {}, .loop = true}, Vec3::UnitZ());
+  const auto place = [&](double t, std::size_t node) -> Vec3 { return performance.at(t).nodes[node].position; };
+  for (const std::size_t node : {std::size_t{1}, std::size_t{3}})
+    EXPECT_LT((place(4.5, node) - Vec3(12, 1, 0.2)).norm(), 1e-12) << node;
+  EXPECT_LT((place(4.5, 2) - Vec3(6, 1, 0.2)).norm(), 1e-12) << "the hips carry it";
+}
+
 TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   Slider slider;
   Affine turned = Affine::Identity();

@@ -77,6 +77,41 @@ TEST_F(Travel, TakesTheWayOfTheClipOutFirst) {
     EXPECT_LT((hips(once.clip, t) - hips(twice.clip, t)).norm(), 0.05) << t;
 }
 
+// Rigs for animators have feet that are not below the hips. These stayed behind.
+TEST_F(Travel, TakesAlongWhatTravelsBesideTheHips) {
+  const Index hip_node = joints_[joint_index(Joint::hips)];
+  Character body = body_;
+  body.nodes.push_back({"lantern", -1, Affine::Identity()});
+  Clip walk = walk_;
+  Channel beside;
+  beside.node = static_cast<Index>(body.nodes.size() - 1);
+  for (const Channel& channel : walk_.channels)
+    if (channel.node == hip_node) beside.position = channel.position;
+  ASSERT_FALSE(beside.position.times.empty());
+  walk.channels.push_back(beside);
+  const Rig rig{body, joints_};
+  for (const Clip& clip : {in_place(rig, walk, kUp), at_speed(rig, walk, 0.5, kUp).clip})
+    for (const double t : {0.0, 1.5, walk.duration}) {
+      const Pose pose = pose_at(body, clip, t);
+      EXPECT_LT((pose.nodes.back().position - pose.nodes[hip_node].position).norm(), 1e-9) << t;
+    }
+}
+
+// A clip on the spot moves a node of the head only. The head went without the body.
+TEST_F(Travel, MovesTheHipsIfOnlyNodesBelowThemTravel) {
+  Clip standing_clip = walk_;
+  for (Channel& channel : standing_clip.channels) {
+    for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
+    for (Vec3& place : channel.position.values) place = channel.position.values.front();
+  }
+  const Index head = joints_[joint_index(Joint::head)];
+  const Vec3 neck = body_.nodes[head].local.translation();
+  for (Channel& channel : standing_clip.channels)
+    if (channel.node == head) channel.position = {{0, standing_clip.duration}, {neck, neck + Vec3(0, 0, 0.01)}};
+  const Clip clip = at_speed(rig_, standing_clip, 0.5, kUp).clip;
+  EXPECT_NEAR((hips(clip, standing_clip.duration) - hips(clip, 0)).norm(), 0.5 * standing_clip.duration, 1e-3);
+}
+
 TEST_F(Travel, GoesAheadWhereNoFeetTell) {
   Clip standing_clip = walk_;
   for (Channel& channel : standing_clip.channels) {

@@ -17,7 +17,7 @@ double clip_time(const Timing& timing, double t) {
 
 Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
     : character_(character), clip_(clip), playing_(playing), up_(up) {
-  root_ = traveling_node(clip);
+  roots_ = traveling_nodes(character, clip);
   const double fade = std::min(playing.crossfade, clip.duration / 2);
   playing_.crossfade = fade;
   period_ = clip.duration - fade;
@@ -26,15 +26,15 @@ Performance::Performance(const Character& character, const Clip& clip, const Pla
   if (playing.stance) shift_ = displacement_between(at_clip_time(playing.timing.start), *playing.stance);
 }
 
-Affine Performance::parent_of_root(const Pose& pose) const {
-  const Index parent = character_.nodes[root_].parent;
+Affine Performance::parent_of(Index node, const Pose& pose) const {
+  const Index parent = character_.nodes[node].parent;
   return parent < 0 ? Affine::Identity() : global_transforms(character_, pose)[parent];
 }
 
 Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
-  if (root_ < 0) return Vec3::Zero();
-  const auto node = static_cast<std::size_t>(root_);
-  const Affine parent_a = parent_of_root(a), parent_b = parent_of_root(b);
+  if (roots_.empty()) return Vec3::Zero();
+  const Index node = roots_.front();
+  const Affine parent_a = parent_of(node, a), parent_b = parent_of(node, b);
   // The last two terms are exactly 0 if the nodes above the root do not move.
   const Vec3 whole = parent_a.linear() * (b.nodes[node].position - a.nodes[node].position) +
                      (parent_b.linear() - parent_a.linear()) * b.nodes[node].position +
@@ -43,9 +43,10 @@ Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
 }
 
 void Performance::translate(Pose& pose, const Vec3& by) const {
-  if (root_ < 0) return;
-  const Vec3 local = parent_of_root(pose).linear().inverse() * by;
-  if (local.allFinite()) pose.nodes[root_].position += local;  // else a node above the root has scale 0
+  for (const Index node : roots_) {
+    const Vec3 local = parent_of(node, pose).linear().inverse() * by;
+    if (local.allFinite()) pose.nodes[node].position += local;  // else a node above has scale 0
+  }
 }
 
 Pose Performance::at_clip_time(double t) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "film/character/character.hpp"
 #include "film/character/pose.hpp"
@@ -46,22 +47,22 @@ class Performance {
 
  private:
   Pose at_clip_time(double t) const;
-  /// Global transform of the parent of `root_` in a pose. Requires that `root_` exists.
-  Affine parent_of_root(const Pose& pose) const;
+  /// Global transform of the parent of a node in a pose.
+  Affine parent_of(Index node, const Pose& pose) const;
   /// Translates a pose by the vector `by` in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
-  /// Horizontal displacement of `root_` from pose a to pose b, in the world [m]; zero if there is
-  /// no root.
+  /// Horizontal displacement of the first of `roots_` from pose a to pose b, in the world [m]; zero
+  /// if there is none.
   Vec3 displacement_between(const Pose& a, const Pose& b) const;
 
   const Character& character_;
   const Clip& clip_;
   Playing playing_;
   Vec3 up_;
-  Index root_ = -1;       // traveling_node() of the clip; -1: none
-  double period_ = 0;     // clip time from the start of a round to the start of the next [s]
-  Vec3 travel_{0, 0, 0};  // horizontal displacement of the body in a round [m]
-  Vec3 shift_{0, 0, 0};   // horizontal displacement that moves the start of the clip to the position of `stance` [m]
+  std::vector<Index> roots_;  // traveling_nodes() of the clip
+  double period_ = 0;         // clip time from the start of a round to the start of the next [s]
+  Vec3 travel_{0, 0, 0};      // horizontal displacement of the body in a round [m]
+  Vec3 shift_{0, 0, 0};  // horizontal displacement that moves the start of the clip to the position of `stance` [m]
 };
 
 /// Mean rate of the keys of the channel with the most keys: (keys - 1) / duration [1/s]; 0 if the

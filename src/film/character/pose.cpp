@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "core/parallel.hpp"
 
@@ -97,12 +98,19 @@ std::vector<double> key_times(const Clip& clip) {
   return distinct;
 }
 
-Index traveling_node(const Clip& clip) {
-  Index uppermost = -1;
+std::vector<Index> traveling_nodes(const Character& character, const Clip& clip, Index also) {
+  std::vector<std::uint8_t> travels(character.nodes.size(), 0);
+  if (also >= 0) travels[also] = 1;
   for (const Channel& channel : clip.channels) {
     const std::vector<Vec3>& places = channel.position.values;
-    const bool travels = std::ranges::any_of(places, [&](const Vec3& x) { return x != places.front(); });
-    if (travels && (uppermost < 0 || channel.node < uppermost)) uppermost = channel.node;
+    if (std::ranges::any_of(places, [&](const Vec3& x) { return x != places.front(); })) travels[channel.node] = 1;
+  }
+  std::vector<Index> uppermost;
+  for (std::size_t n = 0; n < travels.size(); ++n) {
+    const Index parent = character.nodes[n].parent;
+    const bool is_carried = parent >= 0 && travels[parent] != 0;
+    if (travels[n] != 0 && !is_carried) uppermost.push_back(static_cast<Index>(n));
+    if (is_carried) travels[n] = 1;
   }
   return uppermost;
 }

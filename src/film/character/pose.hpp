@@ -42,8 +42,10 @@ Pose pose_at(const Character& character, const Clip& clip, double t);
 /// Distinct times >= 0 of all rotation and position keys of a clip, ascending; always includes 0.
 std::vector<double> key_times(const Clip& clip);
 
-/// The first node whose position changes in a clip, in the order of nodes (parents first); -1 if there is none.
-Index traveling_node(const Clip& clip);
+/// The nodes whose position changes in a clip, without those below another such node, in the order of nodes (parents
+/// first). Rigs may have several: the hips, and feet that are not below them. `also`: a node that counts even if its
+/// position does not change; -1: none.
+std::vector<Index> traveling_nodes(const Character& character, const Clip& clip, Index also = -1);
 
 /// Interpolates from `a` (weight 0) to `b` (weight 1): positions and stretches linearly, rotations along the shortest
 /// arc.

@@ -25,7 +25,9 @@ class Path {
  public:
   Path(const Rig& rig, const Clip& clip, const Vec3& up)
       : rig_(rig), skeleton_(rig), clip_(clip), up_(up), times_(key_times(clip)) {
-    const Index hips = rig.joints[joint_index(Joint::hips)], middle = hips >= 0 ? hips : traveling_node(clip);
+    const std::vector<Index> moved = moved_nodes(rig, clip);
+    const Index hips = rig.joints[joint_index(Joint::hips)];
+    const Index middle = hips >= 0 || moved.empty() ? hips : moved.front();
     for (const double t : times_) {
       const Pose pose = pose_at(rig.character, clip, t);
       postures_.push_back(skeleton_.at(pose));
@@ -34,24 +36,15 @@ class Path {
     }
   }
 
-  /// The clip, translated by a displacement at each key.
-  Clip translate(const std::vector<Vec3>& by) const {
-    Index node = traveling_node(clip_);
-    if (node < 0) node = rig_.joints[joint_index(Joint::hips)];
-    if (node < 0) return clip_;
-    const Index parent = rig_.character.nodes[node].parent;
-    Curve<Vec3> position;
-    for (std::size_t k = 0; k < times_.size(); ++k) {
-      const Pose pose = pose_at(rig_.character, clip_, times_[k]);
-      Mat3 to_world = Mat3::Identity();
-      if (parent >= 0) to_world = global_transforms(rig_.character, pose)[parent].linear();
-      position.times.push_back(times_[k]);
-      position.values.emplace_back(pose.nodes[node].position + to_world.inverse() * by[k]);
-    }
+  /// The nodes that translate a body: the hips or a node above them, and others that travel.
+  static std::vector<Index> moved_nodes(const Rig& rig, const Clip& clip) {
+    return traveling_nodes(rig.character, clip, rig.joints[joint_index(Joint::hips)]);
+  }
+
+  /// The clip, with `nodes` translated by a displacement at each key.
+  Clip translate(const std::vector<Index>& nodes, const std::vector<Vec3>& by) const {
     Clip result = clip_;
-    auto channel = std::ranges::find(result.channels, node, &Channel::node);
-    if (channel == result.channels.end()) channel = result.channels.insert(channel, {node, {}, {}, {}});
-    channel->position = std::move(position);
+    for (const Index node : nodes) translate_node(node, by, result);
     return result;
   }
 
@@ -85,6 +78,21 @@ class Path {
   }
 
  private:
+  void translate_node(Index node, const std::vector<Vec3>& by, Clip& result) const {
+    const Index parent = rig_.character.nodes[node].parent;
+    Curve<Vec3> position;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const Pose pose = pose_at(rig_.character, clip_, times_[k]);
+      Mat3 to_world = Mat3::Identity();
+      if (parent >= 0) to_world = global_transforms(rig_.character, pose)[parent].linear();
+      position.times.push_back(times_[k]);
+      position.values.emplace_back(pose.nodes[node].position + to_world.inverse() * by[k]);
+    }
+    auto channel = std::ranges::find(result.channels, node, &Channel::node);
+    if (channel == result.channels.end()) channel = result.channels.insert(channel, {node, {}, {}, {}});
+    channel->position = std::move(position);
+  }
+
   Vec3 horizontal(const Vec3& v) const { return v - v.dot(up_) * up_; }
 
   /// Axes of the body: left, ahead (both horizontal), and up.
@@ -166,14 +174,14 @@ class Path {
   const Vec3 up_;
   const std::vector<double> times_;
   std::vector<Posture> postures_;
-  std::vector<Vec3> middles_;  // horizontal positions of the hips, else of traveling_node()
+  std::vector<Vec3> middles_;  // horizontal positions of the hips, else of the first of moved_nodes()
 };
 
 }  // namespace
 
 Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up) {
   const Path path(rig, clip, up);
-  return path.translate(path.displacements_in_place());
+  return path.translate(Path::moved_nodes(rig, clip), path.displacements_in_place());
 }
 
 TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up) {
@@ -181,7 +189,7 @@ TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3
   const Path path(rig, still, up);
   TravelResult result;
   const std::vector<Vec3> by = path.displacements_at_speed(speed, result.feet);
-  result.clip = path.translate(by);
+  result.clip = path.translate(Path::moved_nodes(rig, clip), by);  // `still` may have fewer
   return result;
 }
 
