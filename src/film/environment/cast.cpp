@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/error.hpp"
 #include "core/nearest.hpp"
 #include "film/character/joints.hpp"
@@ -36,7 +38,7 @@ Index named_node(const Cast& cast, const std::string& key, const std::string& na
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source) {
-  std::vector<Index> joints = character::find_joints(character);
+  std::vector<Index> joints = character::find_joints(character), named(joints.size(), -1);
   for (const scene::JointNames& joint : given) {
     const Index number = character::joint_number(joint.name);
     const std::string key = fmt::format("joint.{}", joint.name);
@@ -44,7 +46,14 @@ std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNam
       cast.fail(key + ".name", fmt::format("expected a joint of the body ({}), got \"{}\"{}",
                                            fmt::join(character::joint_names(), ", "), joint.name,
                                            did_you_mean(joint.name, character::joint_names())));
-    if (joint.*name) joints[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
+    if (joint.*name) named[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
+  }
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const bool is_hips = j == character::joint_index(character::Joint::hips);  // every body must have them
+    if (named[j] >= 0)
+      joints[j] = named[j];
+    else if (!is_hips && std::ranges::find(named, joints[j]) != named.end())
+      joints[j] = -1;
   }
   return joints;
 }

@@ -1,0 +1,33 @@
+// Joints that the scene names.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "film/environment/acting.hpp"
+#include "support/small_character.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+class NamedJoints : public support::TestFolder {};
+
+// The node stayed the spine, which has a common name, and the chest held no skin.
+TEST_F(NamedJoints, AreNoOtherJoints) {
+  support::write_bytes(folder_ / "rod.x", support::rod_file());
+  scene::Scene scene;
+  scene::Character& character = scene.characters.emplace_back();
+  character.name = "rod";
+  character.parts.emplace_back().name = "Chest";
+  scene::CharacterFile file;
+  file.path = folder_ / "rod.x";
+  file.joints = {{"Chest", "Spine", std::nullopt}};
+  character.source = file;
+  const Actor actor = make_actor(scene, character);
+  ASSERT_EQ(actor.parts.size(), 1u);
+  EXPECT_EQ(std::ranges::count(actor.parts[0].vertices, 1), 3);
+}
+
+}  // namespace
+}  // namespace weft::environment
