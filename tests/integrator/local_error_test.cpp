@@ -174,6 +174,20 @@ TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
   EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
 }
 
+// The step loop replaces the midpoint rule by BDF2 while contacts act. A resumed run limits its next step as if it had
+// not been interrupted.
+TEST(Bdf2Ratio, SavedHistoryBoundsTheNextStepOfAnotherMethod) {
+  Stepper saved(Method::implicit_midpoint, kAboveRounding), restored(Method::implicit_midpoint, kAboveRounding);
+  saved.set_method(Method::bdf2);
+  saved.return_to({{{Vec3::Zero()}, {Vec3::Zero()}}, 0.01});
+  ByteWriter writer;
+  saved.serialize(writer, 1);
+  ByteReader reader{writer.bytes};
+  restored.serialize(reader, 1);
+  EXPECT_DOUBLE_EQ(restored.longest_step(), 0.02);
+  EXPECT_TRUE(reader.bytes.empty());
+}
+
 // Starts BDF2 with a history that is wrong by kOff while steps grow by the factor r, from y = ω h = 1e-4 to 1e-2.
 // Returns the difference of the last two states relative to kOff: by the BDF2 formula, and by the Stepper.
 struct Growth {

@@ -102,6 +102,7 @@ class Stepper {
   /// Sets the method of the following steps. Single BDF2 steps may exceed longest_step(): a step that is too long for
   /// the history is an Euler step.
   void set_method(Method method) { method_ = method; }
+  Method method() const { return method_; }
 
   /// Where Newton's method starts: at unchanged velocity, or at the state in `next`, to continue an unfinished step or
   /// to solve a step again with other contacts.
@@ -139,13 +140,16 @@ class Stepper {
   /// Forgets the history: the next BDF2 step is an Euler step. For the first step and after discontinuities.
   void restart() { history_.h = 0; }
 
-  /// Saves or restores the history of `particles` particles. Throws std::runtime_error if a restored value is
-  /// impossible.
+  /// Saves or restores the history of `particles` particles and the method, which decides longest_step(). Throws
+  /// std::runtime_error if a restored value is impossible.
   template <class Archive>
   void serialize(Archive& archive, std::size_t particles) {
     archive.value(history_.h);
     if constexpr (Archive::kReads) require(history_.h >= 0 && std::isfinite(history_.h), "a step length");
     if (history_.h == 0) return;
+    archive.value(method_);
+    if constexpr (Archive::kReads)
+      require(method_ >= Method::implicit_euler && method_ <= Method::bdf2, "an integration method");
     serialize_points(archive, history_.before.x, particles);
     serialize_points(archive, history_.before.v, particles);
   }

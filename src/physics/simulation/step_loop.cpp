@@ -308,13 +308,14 @@ StepLoop::Checkpoint StepLoop::checkpoint() {
   ByteWriter parts;
   serialize_parts(parts);
   if (collisions_) collisions_->serialize_events(parts);
-  return {progress_, stepper_.history(), std::move(parts.bytes)};
+  return {progress_, stepper_.history(), stepper_.method(), std::move(parts.bytes)};
 }
 
 void StepLoop::return_to(Checkpoint checkpoint) {
   before_release_.reset();
   progress_ = std::move(checkpoint.progress);
   stepper_.return_to(std::move(checkpoint.history));
+  stepper_.set_method(checkpoint.method);
   ByteReader parts{checkpoint.parts};
   serialize_parts(parts);
   if (collisions_) collisions_->serialize_events(parts);

@@ -60,7 +60,8 @@ class StepLoop {
   struct Checkpoint {
     Progress progress;
     integrator::Stepper::History history;
-    std::string parts;  // serialize_parts(), then CollisionStage::serialize_events()
+    integrator::Method method;  // of the last step
+    std::string parts;          // serialize_parts(), then CollisionStage::serialize_events()
   };
   Checkpoint checkpoint();
   void return_to(Checkpoint checkpoint);
