@@ -13,6 +13,7 @@
 #include "film/assets/mesh_file.hpp"
 #include "film/image/color.hpp"
 #include "film/image/picture.hpp"
+#include "tools/export/gltf.hpp"
 #include "tools/export/normals.hpp"
 
 namespace weft::exporter {
@@ -426,6 +427,17 @@ TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
       }
     }
   }
+}
+
+// The weights alone would be 1 TB.
+TEST_F(Exported, GltfWithTooManyFramesIsRefusedBeforeItsWeightsAreAllocated) {
+  const frame::SnapshotPtr first = snapshot(0);
+  GltfFile gltf(*first);
+  gltf.add(*snapshot(1), 1 / request_.fps);
+  for (int k = 2; k <= 500'000; ++k) gltf.add(*first, k / request_.fps);
+  support::expect_error(ExitCode::output_failed, "would be one of 1e+03 GB; export fewer frames with --frames",
+                        [&] { gltf.write(file("flutter.glb"), "flutter", 1); });
+  EXPECT_FALSE(std::filesystem::exists(file("flutter.glb")));
 }
 
 TEST_F(Exported, GltfMaterialsHaveTheColoursInLinearLight) {

@@ -87,6 +87,13 @@ void append_chunk(std::string& bytes, const char* kind, std::string_view content
   bytes.append(content).append(fillers, filler);
 }
 
+void check_size(const std::filesystem::path& file, std::size_t bytes) {
+  if (bytes > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ExitCode::output_failed,
+                "{}: glTF files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames",
+                file.string(), 1e-9 * static_cast<double>(bytes));
+}
+
 }  // namespace
 
 GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z() > 0.5), frames_{first.frame} {
@@ -344,11 +351,17 @@ void GltfFile::add_cameras(json& animation, double aspect) {
 }
 
 void GltfFile::write(const std::filesystem::path& file, const std::string& animation_name, double aspect) {
+  const auto is_still = [](const Object& object) {
+    return std::ranges::all_of(object.targets, [](const Target& target) { return target.positions < 0; });
+  };
+  // The number of weights is nearly the square of the number of frames: checks their size before they are allocated.
+  const std::size_t targets = std::ranges::all_of(objects_, is_still) ? 0 : times_.size() - 1;
+  check_size(file, bytes_.size() + sizeof(float) * targets * times_.size());
   std::vector<int> moving;
   for (std::size_t o = 0; o < objects_.size(); ++o) {
     json& mesh = document_["meshes"][o];
     document_["nodes"].push_back({{"name", mesh["name"]}, {"mesh", o}});
-    if (std::ranges::all_of(objects_[o].targets, [](const Target& target) { return target.positions < 0; })) continue;
+    if (is_still(objects_[o])) continue;
     add_targets(objects_[o], mesh);
     moving.push_back(static_cast<int>(o));
   }
@@ -367,10 +380,7 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
 
   const std::string text = sorted_json_text(document_);
   const std::size_t max_size = text.size() + bytes_.size() + 64;  // upper bound, with headers and padding
-  if (max_size > std::numeric_limits<std::uint32_t>::max())
-    throw Error(ExitCode::output_failed,
-                "{}: glTF files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames",
-                file.string(), 1e-9 * static_cast<double>(bytes_.size()));
+  check_size(file, max_size);
   std::string whole = "glTF";
   whole.reserve(max_size);
   append_number(whole, 2);
