@@ -154,6 +154,19 @@ TEST_F(Review, RunsOfSeveralFoldersAreNamedWithThem) {
   EXPECT_EQ(data().at("runs").at(1).at("name"), "other/a");
 }
 
+TEST_F(Review, WorkingFolderAmongSeveralFoldersHasItsOwnName) {
+  write("other/a.mp4");
+  Request both = request();
+  both.folders = {".", "../other"};
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_ / "in");
+  const Outcome outcome = write_review(both);
+  fs::current_path(before);
+  EXPECT_EQ(outcome.runs, 2);
+  EXPECT_EQ(data().at("runs").at(0).at("name"), "in/a");
+  EXPECT_EQ(data().at("runs").at(1).at("name"), "other/a");
+}
+
 TEST_F(Review, RunsOfSeveralFoldersHaveTheReferenceOfTheirPath) {
   write("in/x/b.mp4");
   write("other/y/b.mp4");

@@ -253,9 +253,7 @@ class Search {
     name.resize(name.size() - 2);
     while (!name.empty() && std::string_view("_-./").find(name.back()) != std::string_view::npos) name.pop_back();
     RunFiles run;
-    // "p" for the folders p, p/ and, if it is the working folder, for "."
-    const fs::path folder = (fs::absolute(folder_) / "").lexically_normal().parent_path();
-    run.name = name.empty() ? folder.filename().string() : name;
+    run.name = name.empty() ? folder_name(folder_) : name;
     run.pictures = files;
     runs_.push_back(std::move(run));
   }
@@ -295,6 +293,10 @@ bool take_statistics(RunFiles& run) {
 
 std::vector<RunFiles> find_runs(const fs::path& folder) {
   return Search(folder).runs();
+}
+
+std::string folder_name(const fs::path& folder) {
+  return (fs::absolute(folder) / "").lexically_normal().parent_path().filename().string();
 }
 
 long long picture_number(const fs::path& picture) {

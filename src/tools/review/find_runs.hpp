@@ -35,6 +35,9 @@ inline constexpr const char* kSweepName = "sweep.json";
 /// not a folder or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
+/// Name of a folder: "p" for the folders p, p/ and, if it is the working folder, for "."
+std::string folder_name(const std::filesystem::path& folder);
+
 /// Returns whether `run.stats_json` has the form of statistics of a run. If so, removes the values that the page cannot
 /// show, and adds their names to `run.problems`.
 bool take_statistics(RunFiles& run);

@@ -132,8 +132,7 @@ class Page {
     std::vector<RunFiles> runs;
     for (const fs::path& folder : request_.folders) {
       for (RunFiles& run : find_runs(folder)) {
-        if (request_.folders.size() > 1)
-          run.name = (folder.lexically_normal() / "").parent_path().filename().string() + "/" + run.name;
+        if (request_.folders.size() > 1) run.name = folder_name(folder) + "/" + run.name;
         runs.push_back(std::move(run));
       }
     }
