@@ -72,6 +72,24 @@ TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythi
   for (const char* output : {"p", "m", "s.json"}) EXPECT_FALSE(fs::exists(folder_ / output)) << output;
 }
 
+TEST_F(Completeness, FrameBeforeAPartIsCheckedIfTheMotionNeedsIt) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":6"});
+  break_file("c/frame_00002.weft");
+  const Arguments blurred{"render", "c", "-o", kPicturesInP, "--motion-blur", "180", "--frames"};
+  const auto of = [&](const char* frames) {
+    Arguments arguments = blurred;
+    arguments.emplace_back(frames);
+    return arguments;
+  };
+  expect_not_whole(of("3:5"), "frame 3 needs the frame before it, but frame 2 cannot be used: c/frame_00002.weft");
+  fs::remove(folder_ / "c/frame_00002.weft");
+  expect_not_whole(of("3:5"), "frame 3 needs the frame before it, but frame 2 is missing");
+  expect_not_whole({"render", "c", "-o", "p/{frame}.exr", "--frames", "4:5:2"}, "but frame 2 is missing");
+  EXPECT_FALSE(fs::exists(folder_ / "p"));
+  expect_well(of("3:5:2"));
+  expect_well({"render", "c", "-o", "sharp/{frame}.png", "--frames", "3:5"});
+}
+
 TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"render", "c", "-o", "whole/{frame:05}.png", "--meshes", "mw"});

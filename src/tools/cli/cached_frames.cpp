@@ -60,6 +60,18 @@ FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& sele
   return before;
 }
 
+void check_frame_before(const cache::Reader& reader, const FrameRange& frames) {
+  const int before = frames.begin - frames.step;
+  if (before < 0) return;
+  Missing missing;
+  missing.check_frame(reader, before);
+  if (missing.none()) return;
+  throw Error(ExitCode::frames_missing,
+              "{}: the motion in frame {} needs the frame before it, but {}; weft simulate --resume simulates the "
+              "missing frames",
+              reader.folder().string(), frames.begin, missing.text());
+}
+
 void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
   const cache::Reader any(reader.folder(), cache::Looks::any);
   for (const int frame : any.frames()) {

@@ -46,6 +46,8 @@ struct FilmPlan {
   bool blurs = false;  ///< whether pictures may need the previous frame, for motion blur
 
   bool draws() const { return target.kind != Kind::none; }
+  /// Whether the painter needs the previous frame.
+  bool needs_motion() const { return draws() && (settings.layers || blurs); }
 
   /// Plans to make all frames, not only the wanted ones, so that the computed camera does not
   /// depend on --frames.
@@ -122,6 +124,7 @@ FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
   take_output(plan, options);
   const frame::SnapshotPtr first = reader.snapshot(plan.wanted.begin);
   plan.blurs = plan.settings.motion_blur.value_or(first->stage->motion_blur) > 0;
+  if (plan.needs_motion()) check_frame_before(reader, plan.wanted);
   for (const frame::ObjectInfo& object : plan.scene.objects) plan.objects.push_back(object.name);
   return plan;
 }
@@ -219,7 +222,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
     };
   }
   if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());
-  parts.motion = plan.settings.layers || plan.blurs;
+  parts.motion = plan.needs_motion();
   parts.meshes = options_.meshes;
   parts.drawn = plan.drawn.frames;
   const int drawn = plan.draws() ? plan.wanted.count() - static_cast<int>(parts.drawn.size()) : 0;
