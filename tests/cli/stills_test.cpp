@@ -75,6 +75,12 @@ TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
   EXPECT_EQ(about("stills/b.start.png").at("scene"), "b");
 }
 
+// Scenes that cannot be read fail before the first drawing.
+TEST_F(Stills, ExitCodeIsThatOfTheFirstSceneThatFailed) {
+  EXPECT_EQ(weft({"thumbnail", "s.toml", "none.toml", "--frame", "30"}).exit_code, 2);
+  EXPECT_EQ(weft({"thumbnail", "none.toml", "s.toml", "--frame", "30"}).exit_code, 3);
+}
+
 TEST_F(Stills, OfSeveralScenesNoneIsDrawnWhereAPictureWouldBeLost) {
   fs::create_directories(folder_ / "deep");
   fs::copy_file(folder_ / "s.toml", folder_ / "deep/s.toml");

@@ -129,44 +129,52 @@ void draw_thumbnail(const ThumbnailOptions& options) {
 class Batch {
  public:
   explicit Batch(const ThumbnailOptions& options)
-      : options_(options), folder_(options.output.empty() ? "output" : options.output) {
+      : options_(options),
+        folder_(options.output.empty() ? "output" : options.output),
+        codes_(options.scenes.size(), ExitCode::ok) {
     if (!options.output.empty() && !is_folder(options))
       throw Error(ExitCode::usage, "-o: expected a folder for the pictures of {} scenes, got {}", options.scenes.size(),
                   options.output.string());
   }
 
   ExitCode run() {
-    const std::vector<ThumbnailOptions> drawings = plan();
+    const std::vector<Drawing> drawings = plan();
     std::size_t drawn = 0;
-    for (const ThumbnailOptions& drawing : drawings)
-      drawn += attempt(drawing.common.scene, [&] { draw_thumbnail(drawing); });
+    for (const Drawing& drawing : drawings) drawn += attempt(drawing.scene, [&] { draw_thumbnail(drawing.options); });
     log::info(fmt::format("{} of {} pictures are drawn", drawn, options_.scenes.size()));
-    return code_;
+    const auto failed = std::ranges::find_if(codes_, [](ExitCode code) { return code != ExitCode::ok; });
+    return failed == codes_.end() ? ExitCode::ok : *failed;
   }
 
  private:
+  struct Drawing {
+    std::size_t scene;  // index in the list of scenes
+    ThumbnailOptions options;
+  };
+
   /// Checks all scenes and output files before the first drawing. Skips scenes that cannot be read.
-  std::vector<ThumbnailOptions> plan() {
-    std::vector<ThumbnailOptions> drawings;
+  std::vector<Drawing> plan() {
+    std::vector<Drawing> drawings;
     PathLedger paths;
-    for (const std::filesystem::path& scene : options_.scenes) {
+    for (std::size_t i = 0; i < options_.scenes.size(); ++i) {
       ThumbnailOptions scene_options = options_;
-      scene_options.common.scene = scene;
-      attempt(scene, [&] {
+      scene_options.common.scene = options_.scenes[i];
+      attempt(i, [&] {
         const std::unique_ptr<Stills> stills = open_stills(scene_options.common);
         scene_options.output = folder_ / picture_name(scene_options, *stills);
         stills->add_inputs(paths);
-        drawings.push_back(scene_options);
+        drawings.push_back({i, scene_options});
       });
     }
-    for (const ThumbnailOptions& drawing : drawings) paths.writes("-o", drawing.output);
+    for (const Drawing& drawing : drawings) paths.writes("-o", drawing.options.output);
     paths.check_absent(options_.common.overwrite);
     paths.check_writable();
     return drawings;
   }
 
-  /// Returns whether `work` succeeded. Reports a failure and stores the first exit code; rethrows an interruption.
-  bool attempt(const std::filesystem::path& scene, const std::function<void()>& work) {
+  /// Returns whether `work` for a scene succeeded. Reports a failure and stores its exit code; rethrows an
+  /// interruption.
+  bool attempt(std::size_t scene, const std::function<void()>& work) {
     try {
       work();
       return true;
@@ -174,15 +182,16 @@ class Batch {
       const Failure failure = describe_failure(std::current_exception());
       if (failure.code == ExitCode::interrupted) throw;
       report(failure);
-      log::info(fmt::format("{}: no picture, exit code {}", scene.string(), static_cast<int>(failure.code)));
-      if (code_ == ExitCode::ok) code_ = failure.code;
+      log::info(
+          fmt::format("{}: no picture, exit code {}", options_.scenes[scene].string(), static_cast<int>(failure.code)));
+      codes_[scene] = failure.code;
       return false;
     }
   }
 
   const ThumbnailOptions& options_;
   const std::filesystem::path folder_;
-  ExitCode code_ = ExitCode::ok;
+  std::vector<ExitCode> codes_;  // by scene
 };
 
 }  // namespace
