@@ -169,6 +169,14 @@ TEST_F(Completeness, RenderDoesNotGoOnWithPicturesDrawnWithAnOptionThatIsNotGive
   }
 }
 
+TEST_F(Completeness, RenderDoesNotTakeASharpThumbnailForAPictureWithMotionBlur) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--set", "render.motion_blur=180"});
+  expect_well({"thumbnail", "c", "--frame", "1", "-o", "p/00001.png"});
+  const Outcome refused = weft({"render", "c", "-o", kPicturesInP, "--frames", ":2", "--resume"});
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "p/00001.png: exists already")) << refused.err;
+}
+
 TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   Subprocess process({"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none", "--log-json", "-"},

@@ -74,6 +74,14 @@ void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
     throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
 }
 
+/// Metadata of a picture of `snapshot`. The picture is sharp; if the film has motion blur, its picture differs.
+Metadata describe_sharp(const Stills& stills, const frame::FrameSnapshot& snapshot, const FramePainter& painter) {
+  render::Settings settings = stills.settings();
+  if (snapshot.stage && snapshot.stage->motion_blur > 0) settings.motion_blur = 0;
+  const Metadata about = describe_pictures(stills.scene(), settings, painter.description());
+  return describe_still(about, snapshot.frame, snapshot.time);
+}
+
 // Draws the start of the scene without simulating, even if a run would refuse it.
 void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   if (options.frame || std::filesystem::is_directory(options.common.scene))
@@ -93,8 +101,7 @@ void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   const image::Image image = start.places.empty()
                                  ? pictures.front().image
                                  : image::contact_sheet(pictures, 2, summary.substr(0, summary.find(':')) + ", in red");
-  const Metadata about = describe_pictures(stills->scene(), settings, painter->description());
-  image::write_png(file, image, describe_still(about, start.snapshot->frame, start.snapshot->time));
+  image::write_png(file, image, describe_sharp(*stills, *start.snapshot, *painter));
   log::info(fmt::format("{}: the start: {}", file.string(), summary));
   check_stopped(options, *stills);
 }
@@ -116,8 +123,7 @@ void draw_thumbnail(const ThumbnailOptions& options) {
     painter->set_camera_path(stills->camera());
     const image::Image image = painter->draw(snapshot, nullptr).image;
     progress.advance(Stage::draw);
-    const Metadata about = describe_pictures(stills->scene(), stills->settings(), painter->description());
-    image::write_png(file, image, describe_still(about, snapshot.frame, snapshot.time));
+    image::write_png(file, image, describe_sharp(*stills, snapshot, *painter));
     text = fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), snapshot.frame, snapshot.time);
     if (!options.frame) text += describe_choice(choice.saliency, frames.size());
   }
