@@ -223,6 +223,13 @@ TEST_F(Farms, FailuresOfSlurmAreNoSuccessesAndNoEmptyQueue) {
   EXPECT_TRUE(contains(status.err, "warning: squeue ended with 1")) << status.err;
 }
 
+TEST_F(Farms, NameNoOptionThatTheyLackIfTheFolderHasOtherRuns) {
+  EXPECT_EQ(submit().exit_code, 0);
+  const Outcome other = submit({"--camera", "front"});
+  EXPECT_EQ(other.exit_code, 6);
+  EXPECT_TRUE(contains(other.err, "; give the same options or another name\n")) << other.err;
+}
+
 TEST_F(Farms, RefuseWhatTheyCannotDo) {
   EXPECT_EQ(farm({"submit", "s.toml"}).exit_code, 2) << "no folder";
   EXPECT_EQ(farm({"status", "s.toml", "-o", "x"}).exit_code, 2);

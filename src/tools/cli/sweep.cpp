@@ -63,7 +63,7 @@ class Sweep {
   explicit Sweep(const SweepOptions& options) : options_(options) {
     plan_ = read_sweep(options_, paths_);
     for (const SweepJob& job : plan_) jobs_.push_back({job});
-    check_sweep_folder(options_, paths_);
+    check_sweep_folder(options_, paths_, true);
     if (options_.gather && !fs::exists(options_.output / review::kSweepName))
       throw Error(ExitCode::asset_unreadable, "{}: expected the folder of a sweep, whose runs --report gathers",
                   options_.output.string());

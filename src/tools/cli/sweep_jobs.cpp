@@ -61,7 +61,7 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
   return jobs;
 }
 
-void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
+void check_sweep_folder(const SweepOptions& options, PathLedger& paths, bool can_overwrite) {
   paths.register_output_folder("-o", options.output);
   const fs::path& folder = options.output;
   review::check_replaceable(folder / "page", true);
@@ -75,10 +75,8 @@ void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
   std::vector<std::string> words;
   for (const Json& word : before["options"]) words.push_back(word.is_string() ? word.get<std::string>() : word.dump());
   if (!options.overwrite && words != options.passed_on)
-    throw Error(
-        ExitCode::output_failed,
-        "{}: holds runs with other options ({}); give the same options, --overwrite to start again, or another name",
-        folder.string(), fmt::join(words, " "));
+    throw Error(ExitCode::output_failed, "{}: holds runs with other options ({}); give the same options{} another name",
+                folder.string(), fmt::join(words, " "), can_overwrite ? ", --overwrite to start again, or" : " or");
 }
 
 void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs) {
