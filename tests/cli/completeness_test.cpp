@@ -72,6 +72,19 @@ TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythi
   for (const char* output : {"p", "m", "s.json"}) EXPECT_FALSE(fs::exists(folder_ / output)) << output;
 }
 
+// The scene has no camera, so that the camera is computed from all frames of the cache.
+TEST_F(Completeness, BrokenFrameDoesNotKeepTheFramesBeforeItFromBeingUsed) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  break_file("c/frame_00005.weft");
+  const Outcome part = weft({"render", "c", "-o", "part.mp4", "--partial"});
+  EXPECT_EQ(part.exit_code, 0) << part.err;
+  EXPECT_TRUE(contains(part.err, "only 0:5 are used")) << part.err;
+  EXPECT_TRUE(contains(part.err, "the camera is computed without this frame")) << part.err;
+  EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 5);
+  const Outcome exported = run_weft({"export", "c", "--format", "gltf", "-o", "g", "--partial"}, folder_);
+  EXPECT_EQ(exported.exit_code, 0) << exported.err;
+}
+
 TEST_F(Completeness, FrameBeforeAPartIsCheckedIfTheMotionNeedsIt) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":6"});
   break_file("c/frame_00002.weft");

@@ -75,8 +75,13 @@ void check_frame_before(const cache::Reader& reader, const FrameRange& frames) {
 void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
   const cache::Reader any(reader.folder(), cache::Looks::any);
   for (const int frame : any.frames()) {
-    const cache::CachedFrame cached = any.read(frame);
-    if (cached.scene_hash == any.manifest().scene_hash) camera.add_frame(*cached.snapshot);
+    try {
+      const cache::CachedFrame cached = any.read(frame);
+      if (cached.scene_hash == any.manifest().scene_hash) camera.add_frame(*cached.snapshot);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::asset_unreadable) throw;
+      log::warn(fmt::format("{}; the camera is computed without this frame", error.what()));
+    }
   }
 }
 

@@ -19,7 +19,8 @@ FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& sele
 /// not exist. Throws Error(frames_missing) if it is missing or broken.
 void check_frame_before(const cache::Reader& reader, const FrameRange& frames);
 
-/// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights).
+/// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights). Leaves
+/// out broken frames, with a warning, as well as missing ones.
 void show_frames(const cache::Reader& reader, render::CameraPath& camera);
 
 }  // namespace weft::cli
