@@ -248,6 +248,14 @@ TEST_F(Diff, FoldersAreAcceptedWithAllBelowThem) {
   expect({"accept", "ref", "empty", "--reason", "none"}, 4, "empty: holds no pictures or videos");
 }
 
+TEST_F(Diff, ReferenceThatCannotBeWrittenIsNotInTheLogOfAcceptance) {
+  write("out/front/b.png", 9);
+  write("ref/a.png", 1);
+  support::write_bytes(folder_ / "ref/front", "a file in the place of the folder");
+  expect({"accept", "ref", "out", "--reason", "new view"}, 6, "ref/front");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "ref/accepted.md"));
+}
+
 TEST_F(Diff, OnlyWhatAMaskShowsWhiteIsCompared) {
   const auto with_spot = [&](const std::string& name, int x) {
     image::Image image(32, 24);
