@@ -383,6 +383,22 @@ class Page(unittest.TestCase):
             (self.folder / "in/review.json").unlink()
             weft(self.folder, "review", "in", "--reference", "ref", "-o", "page", "--overwrite")
 
+    def test_decisions_of_two_tabs_are_all_kept(self):
+        self.open_run("plain")
+        self.browser.run("localStorage.clear()")
+        self.open_run("plain")
+        # Another tab stores a decision after this tab has read the storage.
+        self.browser.run("""
+            const run = review.model.find("runs/soft-plain"), date = new Date().toISOString();
+            const entry = { state: "approved", notes: [], of: run.of, by: "", date };
+            localStorage.setItem(`weft-review-decisions:${location.pathname}`, JSON.stringify({ [run.home]: { [run.key]: entry } }));""")
+        self.browser.press("w")
+        self.open_run("soft-plain")
+        self.assertEqual(self.text("[data-state][aria-pressed=true]"), "Approved")
+        self.open_run("plain")
+        self.assertEqual(self.text("[data-state][aria-pressed=true]"), "Needs work")
+        self.browser.run("localStorage.clear()")
+
     def test_versions_are_the_runs_of_one_scene_the_newest_first(self):
         self.open_run("plain")
         rows = self.browser.run("return [...document.querySelectorAll('.versions tbody tr td:first-child')].map((td) => td.textContent)")

@@ -94,17 +94,17 @@
       const now = review.decisions.state(this.run);
       for (const button of this.states) button.setAttribute("aria-pressed", button.dataset.state === now);
       this.who.textContent = [now === "changed" && `${state} for other pictures than these`, by && `by ${by}`, when && date(new Date(when))].filter(Boolean).join(", ");
-      this.list.replaceChildren(...review.decisions.notes(this.run).map((note, i) => this.noteItem(note, i)));
+      this.list.replaceChildren(...review.decisions.notes(this.run).map((note) => this.noteItem(note)));
       this.line.textContent = review.acceptLine(this.run) ?? "";
       this.downloads.show();
       this.showMarks();
     }
-    noteItem(note, i) {
+    noteItem(note) {
       const of = [note.by, note.date && date(new Date(note.date)), note.of !== this.run.of && "of other pictures than these", note.marks?.length > 0 && plural(note.marks.length, "mark")];
       return h("li", {},
         h("button.at", { type: "button", title: `Show frame ${note.frame}`, onclick: () => this.viewer?.player.goToFrame(note.frame) }, `frame ${note.frame}`),
         h("span.note-text", {}, note.text, " ", h("small", {}, of.filter(Boolean).join(", "))),
-        h("button.remove", { type: "button", "aria-label": `Remove the note at frame ${note.frame}`, onclick: () => review.decisions.remove(this.run, i) }, "×"));
+        h("button.remove", { type: "button", "aria-label": `Remove the note at frame ${note.frame}`, onclick: () => review.decisions.remove(this.run, note) }, "×"));
     }
     // Call it when the viewer shows another frame.
     showFrame() {

@@ -33,11 +33,28 @@
   const isPending = (run) => ownOf(run) !== undefined && (ownOf(run).date ?? "") > (run.filed?.date ?? "");
   const entryOf = (run) => (isPending(run) ? ownOf(run) : run.filed) ?? { state: "open", notes: [] };
 
-  const change = (run, entry) => {
-    own = { ...own, [run.home]: { ...own[run.home], [run.key]: { ...entryOf(run), of: run.of, by: author, date: new Date().toISOString(), ...entry } } };
+  // Takes over the changes that other tabs with this page have stored. Of two changes of a run, the later one counts.
+  const takeStored = () => {
+    for (const [home, runs] of Object.entries(stored(place, {})))
+      for (const [key, entry] of Object.entries(runs)) {
+        const known = own[home]?.[key];
+        if (!known || entry.date > known.date) own = { ...own, [home]: { ...own[home], [key]: entry } };
+      }
+  };
+  // `partOf` returns what changes of the entry that it is given.
+  const change = (run, partOf) => {
+    takeStored();
+    const entry = entryOf(run);
+    own = { ...own, [run.home]: { ...own[run.home], [run.key]: { ...entry, of: run.of, by: author, date: new Date().toISOString(), ...partOf(entry) } } };
     store(place, own);
     changed.dispatchEvent(new Event("change"));
   };
+
+  addEventListener("storage", ({ key }) => {
+    if (key !== place) return;
+    takeStored();
+    changed.dispatchEvent(new Event("change"));
+  });
 
   review.decisions = {
     STATES,
@@ -64,11 +81,14 @@
       if (shown === "changed") return { level: "warn", text: `changed since ${state}`, note };
       return { level: shown === "approved" ? "good" : "bad", text: shown, note };
     },
-    decide: (run, state) => change(run, { state }),
+    decide: (run, state) => change(run, () => ({ state })),
     /** `marks`: polylines; points are fractions of the picture's width and height. */
-    add: (run, frame, text, marks) => change(run, { of: entryOf(run).of ?? run.of, notes: [...review.decisions.notes(run),
-      { frame, text, by: author, date: new Date().toISOString(), of: run.of, marks }] }),
-    remove: (run, at) => change(run, { of: entryOf(run).of ?? run.of, notes: review.decisions.notes(run).filter((_, i) => i !== at) }),
+    add: (run, frame, text, marks) => change(run, ({ of, notes = [] }) => ({ of: of ?? run.of, notes: [...notes,
+      { frame, text, by: author, date: new Date().toISOString(), of: run.of, marks }] })),
+    remove: (run, note) => change(run, ({ of, notes = [] }) => {
+      const at = notes.findIndex((other) => JSON.stringify(other) === JSON.stringify(note));
+      return { of: of ?? run.of, notes: notes.filter((_, i) => i !== at) };
+    }),
 
     /** Folders whose review.json lacks changes, each with the number of changed runs. */
     get pending() {
