@@ -104,6 +104,17 @@ TEST_F(RunData, NumberedPicturesTellTheirFrames) {
   expect_times({4, 4, 3, 0});
 }
 
+// As of a farm of which some tasks have not drawn yet.
+TEST_F(RunData, MissingPicturesBetweenOthersAreNamed) {
+  for (const char* picture : {"f_000.png", "f_001.png", "f_004.png", "f_005.png"}) write(picture);
+  EXPECT_EQ(only_run().at("problems").at(1),
+            "f_004.png: expected a number 1 above that of the picture before it, got 3 above: it and those after it "
+            "have the frames and times of missing pictures");
+  std::filesystem::remove(folder_ / "f_001.png");
+  std::filesystem::remove(folder_ / "f_005.png");
+  EXPECT_EQ(only_run().at("problems").dump().find("f_004.png"), std::string::npos);
+}
+
 TEST_F(RunData, WholeRunHasNoProblems) {
   write("a.mp4");
   write("a.json", statistics("a.mp4", "\"warnings\": [\"w\"],"));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
@@ -184,11 +185,30 @@ Json scene_values(const std::string& toml, const std::string& file) {
   }
 }
 
+namespace {
+
+/// Names the first picture that is not PictureTimes::step after the one before; empty if there is none.
+std::string gap_in_pictures(const RunFiles& run) {
+  const long long step = picture_times(run).step;
+  for (std::size_t k = 1; k < run.pictures.size(); ++k) {
+    const long long distance = picture_number(run.pictures[k]) - picture_number(run.pictures[k - 1]);
+    if (distance != step)
+      return fmt::format(
+          "{}: expected a number {} above that of the picture before it, got {} above: it and those after it have the "
+          "frames and times of missing pictures",
+          run.pictures[k].filename().string(), step, distance);
+  }
+  return {};
+}
+
+}  // namespace
+
 Json run_data(const RunFiles& run) {
   std::vector<std::string> problems = run.problems;
   if (run.video.empty() && run.pictures.empty()) problems.push_back("no video or pictures beside the statistics");
   if (run.stats.empty() && problems.empty())
     problems.push_back("no statistics: weft run --stats FILE.json writes them, for figures and plots");
+  if (std::string gap = gap_in_pictures(run); !gap.empty()) problems.push_back(std::move(gap));
   Json stats = run.stats_json.is_object() ? run.stats_json : Json::object();
   Json columns = frame_columns(stats.value("frames", Json::array()));
   Json summary = column_digest(columns);

@@ -32,8 +32,8 @@ PictureTimes picture_times(const RunFiles& run);
 /// "1000000"}. Throws Error(asset_unreadable) if the text is not TOML.
 Json scene_values(const std::string& toml, const std::string& file);
 
-/// All data of a run except its pictures. "problems" also names missing pictures and a missing
-/// effective scene; missing statistics only if there are pictures and `run.problems` is empty.
+/// All data of a run except its pictures. "problems" also names missing pictures, the first gap in the numbers of
+/// pictures, and a missing effective scene; missing statistics only if there are pictures and `run.problems` is empty.
 /// "columns" and "effective" are large, and the overview of all runs does not need them.
 Json run_data(const RunFiles& run);
 
