@@ -247,5 +247,20 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
     EXPECT_TRUE(std::filesystem::exists(request_.folder / file)) << file;
 }
 
+TEST_F(Staged, PanelsThatDifferInTheirBacksAloneHaveBothInTheScriptForBlender) {
+  frame::Surface dress = *surfaces_[0];
+  dress.parts[1].appearance = dress.appearance;
+  dress.parts[1].appearance.back_color = {0, 0, 1};
+  surfaces_[0] = std::make_shared<frame::Surface>(dress);
+  const std::string text = written(Format::blender, "1st film.py");
+  const auto start = text.find("r\"\"\"") + 4;
+  auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  nlohmann::json& backs = film["objects"][0]["backs"];
+  ASSERT_EQ(backs.size(), 2u) << backs;
+  EXPECT_NEAR(backs["red-dress"][1].get<double>(), std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-9);
+  EXPECT_NEAR(backs["red-dress_1_back"][2].get<double>(), 1, 1e-9);
+  EXPECT_NE(support::read_bytes(request_.folder / "red-dress.obj").find("usemtl red-dress_1_back"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace weft::exporter

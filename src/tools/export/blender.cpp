@@ -60,17 +60,13 @@ Json pictures_json(const frame::Surface& surface) {
   return result;
 }
 
-// Linear colour of the back of each material of cloth, if it differs from the front and the back shows no picture.
+// Material::back of each material that has one, by name of the material.
 Json backs_json(const frame::Surface& surface) {
   Json result = Json::object();
-  if (surface.kind != frame::ObjectKind::cloth) return result;
   const Materials materials = materials_of(surface);
   for (const MaterialGroup& group : group_by_look(surface, materials)) {
-    const frame::Appearance& look =
-        group.material == 0 ? surface.appearance : surface.parts[group.material - 1].appearance;
-    const bool painted = look.paint.texture && look.back_painted;
-    if (look.back_color != look.color && !painted)
-      result[materials.all[group.material].name] = list(image::linear_from_srgb(look.back_color));
+    const Material& material = materials.all[group.material];
+    if (material.back) result[material.name] = list(*material.back);
   }
   return result;
 }

@@ -76,6 +76,9 @@ Material material_of(const frame::Surface& surface, const frame::Appearance& loo
                 .color = image::linear_from_srgb(look.color),
                 .roughness = surface.appearance.roughness,
                 .metal = surface.appearance.metal};
+  const bool is_back_painted = look.paint.texture && look.back_painted;
+  if (surface.kind == frame::ObjectKind::cloth && look.back_color != look.color && !is_back_painted)
+    made.back = image::linear_from_srgb(look.back_color);
   const frame::Paint& paint = look.paint;
   const bool has_places = !surface.uv.empty() || !surface.paint_uv.empty();
   if (!paint.texture || !has_places) return made;
@@ -96,7 +99,8 @@ Material material_of(const frame::Surface& surface, const frame::Appearance& loo
 
 bool look_alike(const Material& a, const Material& b) {
   return a.color == b.color && a.roughness == b.roughness && a.metal == b.metal && a.picture == b.picture &&
-         a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v && a.cutout == b.cutout && a.picture_from_uv == b.picture_from_uv;
+         a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v && a.cutout == b.cutout &&
+         a.picture_from_uv == b.picture_from_uv && a.back == b.back;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ struct Material {
   std::size_t picture = kNoPicture;  ///< index in Materials::pictures
   frame::Paint::Wrap wrap_u = frame::Paint::Wrap::repeat, wrap_v = frame::Paint::Wrap::repeat;  ///< never Wrap::once
   bool cutout = false;  ///< whether the alpha of the picture cuts holes
+  /// Linear colour of the back of cloth, if it differs from the front and shows no picture; only Blender's script has
+  /// it.
+  std::optional<Vec3> back = {};
   /// Maps (u, v, 1) of the surface to the picture: 0 to 1 from left to right and from bottom to top.
   Eigen::Matrix<double, 2, 3> picture_from_uv = Eigen::Matrix<double, 2, 3>::Identity();
   std::size_t alike = 0;  ///< index in Materials::all of the first material with the same look
@@ -42,7 +46,7 @@ struct Material {
   bool has_picture() const { return picture != kNoPicture; }
 };
 
-/// Materials of a surface. Both sides of cloth have the materials of the front.
+/// Materials of a surface. Both sides of cloth have the materials of the front, except for Material::back.
 struct Materials {
   std::vector<Material> all;  ///< the material of the surface itself, then one material per element of Surface::parts
   std::vector<PictureFile> pictures;
