@@ -117,6 +117,18 @@ TEST_F(Review, NamesWhatMakesARunTheReference) {
   EXPECT_EQ(accept(2), (Json{{"file", path("in/c.mp4")}, {"reference", path("ref")}}));
 }
 
+// The page shows no command to accept a run without a file or a prefix.
+TEST_F(Review, PicturesNamedByNumbersInTheWorkingFolderCanBeAccepted) {
+  for (const int k : {0, 1}) image::write_png(folder_ / fmt::format("{}.png", k), picture(k));
+  Request here = request();
+  here.folders = {"."};
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  write_review(here);
+  fs::current_path(before);
+  EXPECT_EQ(data().at("runs").at(1).at("accept"), (Json{{"prefix", "./"}, {"reference", "references"}}));
+}
+
 TEST_F(Review, EveryFileThatThePageNamesIsThereAndLocal) {
   write_review(request());
   const std::string html = support::read_bytes(folder_ / "page/index.html");

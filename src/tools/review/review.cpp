@@ -262,7 +262,8 @@ class Page {
       accept["file"] = run.video.string();
     } else if (!run.pictures.empty()) {
       const std::string stem = (run.pictures.front().parent_path() / run.pictures.front().stem()).string();
-      accept["prefix"] = stem.substr(0, stem.find_last_not_of("0123456789") + 1);  // npos + 1 is 0
+      const std::string prefix = stem.substr(0, stem.find_last_not_of("0123456789") + 1);  // npos + 1 is 0
+      accept["prefix"] = prefix.empty() ? "./" : prefix;  // empty: numbers alone in the working folder
     }
     fs::path place = request_.reference.empty() ? fs::path("references") : request_.reference;
     if (reference != nullptr && !run.video.empty() && !reference->video.empty()) place = reference->video;
