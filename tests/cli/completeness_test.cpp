@@ -190,6 +190,16 @@ TEST_F(Completeness, RenderDoesNotTakeASharpThumbnailForAPictureWithMotionBlur) 
   EXPECT_TRUE(contains(refused.err, "p/00001.png: exists already")) << refused.err;
 }
 
+// The camera is computed: for the thumbnail from frames 0 and 1, for the film from all.
+TEST_F(Completeness, RenderDoesNotTakeAThumbnailWithAnotherCameraForAPictureOfTheFilm) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"thumbnail", "s.toml", "--frame", "1", "-o", "p/00001.png"});
+  const Arguments render{"render", "c", "-o", kPicturesInP, "--frames", ":2", "--resume"};
+  EXPECT_EQ(weft(render).exit_code, 6);
+  expect_well({"thumbnail", "c", "--frame", "1", "-o", "p/00001.png", "--overwrite"});
+  expect_well(render);
+}
+
 TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   Subprocess process({"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none", "--log-json", "-"},

@@ -24,6 +24,7 @@ class SceneStills : public Stills {
 
   void add_inputs(PathLedger& paths) const override { cli::add_inputs(paths, input_); }
   int cost(int last) const override { return input_.preroll_frames() + last + 1; }
+  bool has_film_camera() const override { return !camera_ || frame_ == frames_.back(); }
 
   frame::SnapshotPtr at(int frame, Progress& progress) override {
     if (!simulation_) start(progress);
@@ -73,6 +74,7 @@ class CacheStills : public Stills {
 
   void add_inputs(PathLedger& paths) const override { paths.reads_folder(reader_.folder(), "the cache"); }
   int cost(int) const override { return 0; }
+  bool has_film_camera() const override { return true; }
   frame::SnapshotPtr at(int frame, Progress&) override {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
     frame::SnapshotPtr snapshot = reader_.snapshot(frame);

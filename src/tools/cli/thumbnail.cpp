@@ -75,10 +75,12 @@ void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
 }
 
 /// Metadata of a picture of `snapshot`. The picture is sharp; if the film has motion blur, its picture differs.
-Metadata describe_sharp(const Stills& stills, const frame::FrameSnapshot& snapshot, const FramePainter& painter) {
+/// Likewise, a camera that is computed from the frames until then is not that of the film.
+Metadata describe_thumbnail(const Stills& stills, const frame::FrameSnapshot& snapshot, const FramePainter& painter) {
   render::Settings settings = stills.settings();
   if (snapshot.stage && snapshot.stage->motion_blur > 0) settings.motion_blur = 0;
-  const Metadata about = describe_pictures(stills.scene(), settings, painter.description());
+  Metadata about = describe_pictures(stills.scene(), settings, painter.description());
+  if (!stills.has_film_camera()) about["camera_frames"] = "until this one";
   return describe_still(about, snapshot.frame, snapshot.time);
 }
 
@@ -101,7 +103,7 @@ void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   const image::Image image = start.places.empty()
                                  ? pictures.front().image
                                  : image::contact_sheet(pictures, 2, summary.substr(0, summary.find(':')) + ", in red");
-  image::write_png(file, image, describe_sharp(*stills, *start.snapshot, *painter));
+  image::write_png(file, image, describe_thumbnail(*stills, *start.snapshot, *painter));
   log::info(fmt::format("{}: the start: {}", file.string(), summary));
   check_stopped(options, *stills);
 }
@@ -123,7 +125,7 @@ void draw_thumbnail(const ThumbnailOptions& options) {
     painter->set_camera_path(stills->camera());
     const image::Image image = painter->draw(snapshot, nullptr).image;
     progress.advance(Stage::draw);
-    image::write_png(file, image, describe_sharp(*stills, snapshot, *painter));
+    image::write_png(file, image, describe_thumbnail(*stills, snapshot, *painter));
     text = fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), snapshot.frame, snapshot.time);
     if (!options.frame) text += describe_choice(choice.saliency, frames.size());
   }
