@@ -16,8 +16,9 @@ namespace {
 
 // A cloth is reported again only if its stretch is at least this multiple of the last reported one.
 constexpr double kReportAgainRatio = 1.5;
-// Cloth that is sewn wider than its pattern by less is not reported.
-constexpr double kMinReportedWidening = 0.01;
+// Cloth that is sewn wider than its pattern by less is not reported: single triangles beside an elastic waist are 6 %
+// wider (scenes/gallery/shirt.toml), which does not show.
+constexpr double kMinReportedWidening = 0.1;
 
 }  // namespace
 

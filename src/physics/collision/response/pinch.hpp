@@ -25,9 +25,9 @@ namespace weft::collision {
 /// particle with it) are exempt from its limb, too, so that a limb that moves along the cloth does
 /// not drag the cloth with it. But if that particle is on its own side, they keep their planes:
 /// otherwise, a limb that comes nearer would take in the cloth around, ring after ring. renew() adds
-/// a neighbour to the set if it meets the limb or is on
-/// its wrong side. If two limbs overlap, the cloth is exempt from the limb that reached it, and
-/// rests on the other. If the first limb retreats, the cloth returns to its original side of it.
+/// a neighbour to the set if it meets the limb or is on its wrong side. If two limbs overlap, the
+/// cloth is exempt from the limb that reached it, and rests on the other. If the first limb retreats,
+/// the cloth returns to its original side of it.
 class PinchedPairs {
  public:
   struct Key {
