@@ -15,11 +15,11 @@ namespace weft::collision {
 /// Collision properties of a body.
 struct BodyTraits {
   bool deformable = false;  ///< true: its vertices are particles, which the solve moves
-  double thickness = 0;     ///< contact thickness [m]; activation distance: up to the mean of both
+  double thickness = 0;     ///< contact thickness [m]; activation distance of two bodies: at most the mean of theirs
   double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
   bool moving = true;       ///< false: its vertices never leave their positions at the start of the run
   bool rigid = false;       ///< true: its vertices keep their distances from each other
-  Index frame = -1;  ///< if deformable and rigid: first of the four particles that carry it (mesh::RigidFrame); else −1
+  Index frame = -1;  ///< if deformable and rigid: first of its four frame particles (mesh::RigidFrame); else −1
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
@@ -29,9 +29,9 @@ struct Patch {
   double friction = 0;                     ///< Coulomb coefficient; see ContactMaterial
 };
 
-/// Contact material of a vertex. A body has one for its vertices outside patches, followed by one for each patch. Two
-/// materials in contact use the geometric mean of their friction, unless ContactParameters::friction has coefficients
-/// for their bodies.
+/// Contact material of a vertex. Each body has one material for its vertices outside patches, then one for each patch.
+/// The friction of two materials is the geometric mean of their coefficients, unless ContactParameters::friction has
+/// coefficients for their bodies.
 struct ContactMaterial {
   std::size_t body = 0;
   double thickness = 0, friction = 0;  ///< [m], Coulomb coefficient
@@ -47,12 +47,11 @@ class Bodies {
   Bodies(Bodies&&) = default;  // not copyable: a copy would view the triangles of the original
   Bodies& operator=(Bodies&&) = default;
 
-  /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`:
-  /// number of further positions of the body, which come before its vertices and belong to no
-  /// triangle, such as the particles that carry a rigid body. Flags of `patches` and entries of
-  /// `limbs` begin with these positions. If several patches contain a vertex, the last of them
-  /// counts. `limbs`: limb number of each vertex, counted from 0; empty: the body has one limb.
-  /// Limbs are parts of a character, such as arms, that may touch or overlap.
+  /// Adds a body. `triangles`: vertex numbers within the body, 0 to vertex_count − 1. `in_front`: number of further
+  /// positions of the body, which come before its vertices and belong to no triangle, such as the frame particles of a
+  /// rigid body. Flags of `patches` and entries of `limbs` begin with these positions. If several patches contain a
+  /// vertex, the last of them counts. `limbs`: limb number of each vertex, counted from 0; empty: the body has one
+  /// limb. Limbs are parts of a character, such as arms, that may touch or overlap.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
            std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 
@@ -74,6 +73,7 @@ class Bodies {
 
   /// All contact materials. Without patches: one for each body, in the order of the bodies.
   const std::vector<ContactMaterial>& materials() const { return materials_; }
+  /// Contact material of a vertex, as an index into materials().
   std::size_t material_of(Index vertex) const { return material_of_[vertex]; }
 
   /// Index of the first triangle with these corners, in any order, within the body of corners[0].
@@ -93,10 +93,10 @@ class Bodies {
   std::vector<Triangle> triangles_;
   std::vector<Surface> surfaces_;
   std::vector<std::size_t> body_of_;  // per vertex
-  std::vector<Index> limb_of_;
+  std::vector<Index> limb_of_;        // per vertex
   std::vector<ContactMaterial> materials_;
   std::vector<std::size_t> material_of_;  // per vertex
-  std::size_t deformable_ = 0;
+  std::size_t deformable_ = 0;            // number of surfaces in deformable()
 };
 
 }  // namespace weft::collision

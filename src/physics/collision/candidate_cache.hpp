@@ -31,22 +31,22 @@ struct SearchParameters {
 /// margin of its start at the search and ends inside its bounds. Features that are near at such a
 /// start were closer than radius() at the search. Thus cloth at rest is searched only once.
 ///
-/// An obstacle is clear if, along one axis, it is at least two detection distances away from the
-/// bounding box of the trajectories of all particles. While it stays at least that far from this
-/// box, its motion is ignored: it neither makes a step fast nor invalidates the pairs.
+/// An obstacle is clear if, along one axis, it is at least two detection distances away from the bounding box of the
+/// trajectories of all particles. While the obstacle stays at least that far from this box, its motion neither makes a
+/// step fast nor invalidates the pairs.
 ///
 /// Bounds at the start and at the end are compared separately. So triangles that move together with a gap between them
-/// are no candidate pair (sphere_drape at 256²: 4 pairs per particle; 70 with one bound for the whole trajectory).
+/// are no candidate pair. (The scene sphere_drape with 256² particles has 4 candidate pairs per particle. With one
+/// bound for the whole trajectory, it would have 70.)
 class CandidateCache {
  public:
   /// `bodies` must outlive it. `x`: all vertices at the start of the run [m]. `detection_distance`: in [m].
   CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x,
                  double detection_distance);
 
-  /// Replaces pairs() by the candidate pairs of the trajectory from x_t0 to x_t1. They include all
-  /// pairs of triangles without a common vertex that come closer than the detection distance. Sets
-  /// the bounds that covers_start(), covers_end() and lists_near() test. The caller may remove
-  /// pairs from the list.
+  /// Replaces pairs() by the candidate pairs of the trajectory from x_t0 to x_t1. They include all pairs of triangles
+  /// without a common vertex that come closer than the detection distance. Sets the bounds that covers_start(),
+  /// covers_end() and lists_near() test. The caller may remove pairs from the list that is returned.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Collects again, after vertices have been pushed apart to x_t1. If a vertex has left the bounds
@@ -75,8 +75,8 @@ class CandidateCache {
   /// on it.
   bool covers_end(std::span<const Vec3> x) const;
 
-  /// If true, the pairs include the triangles of all features that are near at x. It may be false
-  /// even if they do.
+  /// If this returns true, the pairs include the triangles of all features that are near at x. It may return false
+  /// although they do.
   bool lists_near(std::span<const Vec3> x) const;
 
   /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if no such

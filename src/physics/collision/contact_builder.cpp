@@ -13,8 +13,7 @@ namespace weft::collision {
 namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-// Number of near pairs that become contacts in one batch. A batch occupies up to 16 threads and
-// needs little memory.
+// Number of near pairs that become contacts in one batch: enough work for 16 threads, with little memory.
 constexpr std::size_t kPairsAtOnce = 16 * kFineGrainSize;
 
 double ramp(double from, double to, double value) {
@@ -139,8 +138,8 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
   return is_new;
 }
 
-// Adds a wall for each corner of the triangle that is not of the obstacle. The walls are
-// perpendicular to the line between the closest points of the pair.
+// Adds a wall for each corner of the triangle that does not belong to the obstacle. The walls are perpendicular to the
+// line between the closest points of the pair.
 void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                ContactResponse& response) const {
   const Triangle& cloth = is_particle(pair.a[0]) ? pair.a : pair.b;
@@ -205,7 +204,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double fra
     }
   }
   if (mass_weight == 0) return std::nullopt;
-  // If a rigid body touches cloth or another rigid body, the lighter side decides the stiffness.
+  // If a rigid body touches cloth or another rigid body, the mass of the lighter side determines the stiffness.
   if (is_rigid && side_weight[0] > 0 && side_weight[1] > 0) {
     const std::size_t lighter = side_mass[0] * side_weight[1] < side_mass[1] * side_weight[0] ? 0 : 1;
     mass = side_mass[lighter], mass_weight = side_weight[lighter];

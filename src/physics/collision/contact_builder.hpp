@@ -40,9 +40,9 @@ struct StepMotion {
   bool is_first_solve() const { return x_t0.data() == x_from.data(); }
 };
 
-/// Fraction of its full stiffness that the contact of a near pair gets. (Full stiffness: the larger
-/// of ContactParameters::stiffness and Numerics::Contact::inertial_stiffness · m / h²; m and h: see
-/// there.) The fraction fades from 1 to 0
+/// Fraction of the full stiffness that the contact of a near pair gets. (Full stiffness [N/m]: the larger of
+/// ContactParameters::stiffness and Numerics::Contact::inertial_stiffness · m / h², with the weighted mean mass m of
+/// the particles [kg] and h = ContactParameters::step.) The fraction falls from 1 to 0
 ///   - as the contact direction leaves the wedge of a vertex or edge (see Proximity), because a
 ///     neighbouring face is then closer;
 ///   - for edge pairs, as both surfaces become flat at the edges, because pairs of a vertex and a
@@ -50,11 +50,12 @@ struct StepMotion {
 ///     cloth, this ramp is 1;
 ///   - for edge pairs, as a closest point approaches the end of its edge.
 ///
-/// Without these ramps, contacts of resting cloth would switch on and off. If neither side is cloth
-/// (`with_cloth` is false), only the first ramp applies: the rims of stacked boxes may cross where
-/// no vertex is near, so their edge pairs must keep their stiffness.
+/// The ramps prevent contacts of resting cloth from switching on and off. If neither side is cloth (`with_cloth` is
+/// false), only the first ramp applies: the rims of stacked boxes may cross where no vertex is near, so their edge
+/// pairs must keep their stiffness.
 double stiffness_fraction(const Proximity& proximity, bool with_cloth = true);
 
+/// Makes contacts and adds them to a ContactResponse.
 class ContactBuilder {
  public:
   /// `bodies` and `masses` (of the particles [kg]) must outlive it.
@@ -63,17 +64,16 @@ class ContactBuilder {
   /// Call before the contacts of a step, or of a continued step, are added.
   void begin_step() { in_contact_.clear(); }
 
-  /// Adds a contact for each near pair whose stiffness fraction is not 0. Skips pairs of pinched
-  /// cloth and the limb that pinches it, because their normal may point to the side where the cloth
-  /// does not belong.
+  /// Adds a contact for each near pair whose stiffness fraction is not 0. Skips pairs of pinched cloth and the limb
+  /// that pinches it, because their normal may point to the wrong side of the limb.
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
-  /// Adds a contact without friction that pushes pinched cloth back to its own side of the
-  /// obstacle. Its spring is linear. Its activation distance exceeds the present gap by at most the
-  /// fraction h / Numerics::Contact::range_growth_time of the full one. If the exit is blocked (see
-  /// PinchedPairs::Push), multiplies the stiffness by Numerics::Contact::blocked_exit_factor, so
-  /// that two obstacles do not clamp the cloth.
+  /// Adds a contact without friction that pushes pinched cloth back to its own side of the obstacle. Its spring is
+  /// linear. Its activation distance exceeds the present gap by at most the fraction h /
+  /// Numerics::Contact::range_growth_time of the full activation distance. If the exit is blocked (see
+  /// PinchedPairs::Push), multiplies the stiffness by Numerics::Contact::blocked_exit_factor, so that two obstacles do
+  /// not clamp the cloth.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts for a failing pair: two triangles without a separating plane. `features`: their
@@ -88,7 +88,7 @@ class ContactBuilder {
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                    ContactResponse& response);
 
-  /// Friction coefficients of two contact materials, by index in Bodies::materials().
+  /// Friction coefficients of the contact materials a and b, which are indices into Bodies::materials().
   const Friction& friction_of(std::size_t a, std::size_t b) const {
     return friction_[a * bodies_.materials().size() + b];
   }

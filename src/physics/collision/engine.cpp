@@ -20,7 +20,7 @@ double detection_distance_of(const Bodies& bodies) {
   return numerics.contact.detection * max_thickness;
 }
 
-// The rigid bodies that have triangles and that four frame particles carry (mesh::RigidFrame).
+// Lists the rigid bodies that have triangles and frame particles (mesh::RigidFrame).
 std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
   constexpr Index kFrame = 4;
   std::vector<RigidGroup> groups;
@@ -123,7 +123,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
                         double h, std::span<const RigidMotion> motions, bool is_repeated) {
   step_ = h;
   x_t0_ = x_t0;
-  gathered_at_.clear();  // near pairs must not depend on earlier steps
+  gathered_at_.clear();  // so that near pairs do not depend on earlier steps
   pinched_pushes_.clear();
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
@@ -133,10 +133,10 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
-  // Add contacts of pairs that might meet on the expected trajectory. A pair that only a turning
-  // plane separates comes close, so it gets a contact, too: only planes of constant direction count
-  // here. Exception: if separate_guess() found a turning plane for a pair and did not move the pair
-  // afterwards, the pair is not tested again and gets no contact here.
+  // Find the pairs that might meet on the expected trajectory; they get contacts below. Test only planes of constant
+  // direction: a pair that only a turning plane separates comes close and needs a contact, too. Exception: if
+  // separate_guess() found a turning plane for a pair and did not move the pair afterwards, the pair is not tested
+  // again and gets no contact here.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
@@ -152,10 +152,10 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Pushes apart surfaces that would meet on the way to the estimate x_t1, because contacts found at
-// intersecting positions have meaningless directions. Exempts no further cloth, because x_t1 is
-// only an estimate. Between cloths, seeks no planes for parts of the step: most of these searches
-// would find none. If the surfaces cannot be pushed apart, restores x_t1 and returns false.
+// Pushes apart surfaces that would meet on the way to the estimate x_t1, because contacts found at intersecting
+// positions have meaningless directions. Exempts no further cloth, because x_t1 is only an estimate. Between cloths,
+// does not search for planes that hold for a part of the step, because most of these searches find none. If the
+// surfaces cannot be pushed apart, restores x_t1 and returns false.
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || !find_failing(x_t0, x_t1, PlaneKinds::turning))
     return false;
@@ -194,8 +194,7 @@ void Engine::find_near_at_expected_end(std::span<const Vec3> x_t0, std::span<con
   std::ranges::copy_if(at_start, std::back_inserter(proximities_), fails);
 }
 
-// Adds contacts of failing pairs. Returns for how many of them ContactBuilder::add_failing()
-// returned true.
+// Adds contacts for failing pairs. Returns the number of pairs for which ContactBuilder::add_failing() returned true.
 int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion) {
   std::vector<ClosestFeatures> closest(pairs.size());
   parallel_for(pairs.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {

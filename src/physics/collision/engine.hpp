@@ -6,7 +6,7 @@
 //   ContactBuilder     near pairs -> contacts with stiffness, activation distance, friction
 //   ContactResponse    contacts in the solve, as springs or as velocity constraints
 //   Separation         checks the solved step; corrects pairs that would meet
-//   PinchedPairs       cloth squeezed between obstacles; Separation exempts it
+//   PinchedPairs       cloth without space between obstacles, which Separation exempts
 #pragma once
 
 #include <array>
@@ -57,26 +57,25 @@ class Engine {
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {}, bool is_repeated = false);
 
-  /// Continues the step from x [m], with obstacles at their end. Surfaces must not intersect on the
-  /// way from x_t0 to x. Finds contacts anew around x. Also adds contacts for all pairs that were
-  /// in failing() when push_apart() was called since begin_step(). Friction still measures slip
-  /// from the start of the step. Later calls in this step need x as their x_t0. x must outlive the
-  /// step.
+  /// Continues the step from x [m], in which obstacles are at the end of the step. Surfaces must not intersect on the
+  /// way from x_t0 to x. Finds new contacts at x. Also adds contacts for all pairs that were in failing() when
+  /// push_apart() was called since begin_step(). Friction still measures slip from the start of the step. In later
+  /// calls in this step, pass x as x_t0. x must outlive the step.
   void continue_from(std::span<const Vec3> x);
   /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests or
   /// pushes apart pairs.
   std::span<const CornerPair> failing() const { return failing_; }
 
-  /// Call between two steps. Drops the state of separation lists, velocity cones and coherent detection, so that
+  /// Call between two steps. Deletes the state of separation lists, velocity cones and coherent detection, so that
   /// results do not depend on earlier steps.
   void forget();
 
-  /// Saves or restores the state on which the next step depends, besides the positions x [m]. Throws std::runtime_error
-  /// if restored data do not fit these bodies.
+  /// Saves or restores the state on which the next step depends, in addition to the positions x [m]. Throws
+  /// std::runtime_error if restored data do not fit these bodies.
   template <class Archive>
   void serialize(Archive& archive, std::span<const Vec3> x);
-  /// Saves or restores only what accepted steps have changed: pinched cloth and the state of walls. The rest of
-  /// serialize() fits any positions.
+  /// Saves or restores only pinched cloth and the state of walls. This is enough to return to an earlier step of the
+  /// same run, because candidate pairs and planes are tested against the positions before each use.
   template <class Archive>
   void serialize_events(Archive& archive);
 
@@ -93,12 +92,11 @@ class Engine {
   /// Call when the step is accepted; see ContactResponse::accept().
   void accept() { response_.accept(); }
 
-  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a
-  /// triangle of cloth and an obstacle cannot be separated, exempts this triangle from the limb of
-  /// the obstacle. If `may_pinch` is false, the correction fails if it would exempt a cloth from an
-  /// obstacle that does not pinch this cloth yet. If `may_move_pins` is false, the correction fails
-  /// if a pinned particle has to move. If the correction fails, the result is not `separated`,
-  /// nothing is exempted, and x_t1 may be changed in part. `which`: see Planes::kinds_of().
+  /// Corrects the ends x_t1 of movable particles until no triangles meet during the step. If a triangle of cloth and an
+  /// obstacle cannot be separated, exempts this triangle from the limb of the obstacle. The correction fails in two
+  /// cases: if `may_pinch` is false and it would exempt a cloth from an obstacle that does not pinch this cloth yet; or
+  /// if `may_move_pins` is false and a pinned particle has to move. Then the result is not `separated`, nothing is
+  /// exempted, and x_t1 may be changed in part. `which`: see Planes::kinds_of().
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                               bool may_pinch = false, bool may_move_pins = true, PlaneKinds which = PlaneKinds::all);
 
@@ -114,16 +112,16 @@ class Engine {
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Number of near pairs of features in the last step, without those of continued solves. With
-  /// velocity constraints, they are near at the start of the step. With springs, they are near at
-  /// its expected end. Exception: if no plane of constant direction separates two triangles in the
-  /// step, their features count if they are near at its start.
+  /// Number of near pairs of features in the last step, without those of continued solves. With velocity constraints,
+  /// these are the pairs near at the start of the step; with springs, those near at its expected end. Exception: if no
+  /// plane of constant direction separates two triangles in the step, their features count if they are near at the
+  /// start.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Smallest distance of the pairs that proximities() counts [m]; infinite if there are none.
   double min_distance() const;
 
-  /// Pairs of triangles that touch or cross at x [m], or are closer than Numerics::Separation::least_gap. Valid as long
-  /// as failing().
+  /// Pairs of triangles that touch, cross or are closer than Numerics::Separation::least_gap at x [m]. Valid as long as
+  /// failing().
   std::span<const CornerPair> find_intersections(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
@@ -150,7 +148,7 @@ class Engine {
 
   Bodies bodies_;
   CandidateCache candidates_;
-  bool has_self_collision_;  // of cloth with itself and other cloth
+  bool has_self_collision_;  // whether cloth collides with itself and with other cloth
   Separation separation_;
   ProximityFinder finder_;
   std::vector<Vec3> gathered_at_;               // positions for which finder_ gathered features [m]; empty: none
@@ -164,7 +162,7 @@ class Engine {
   double step_ = 0;                                 // h [s]
   std::span<const Vec3> x_t0_;                      // start of the step
   std::vector<PinchedPairs::Push> pinched_pushes_;  // pushes of pinched cloth in this step
-  std::vector<CornerPair> pushed_pairs_;            // pairs that failed before calls of push_apart() in this step
+  std::vector<CornerPair> pushed_pairs_;            // failing() at each call of push_apart() in this step
   std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
   std::span<const CornerPair> failing_;             // of the last call of find_failing()
 };

@@ -47,7 +47,7 @@ class RoundedBox {
 
   Index vertex(int corner, const Lattice& p) const {
     const int octant = (steps_ + 1) * (steps_ + 2) / 2;
-    // The rows before row p[0] have steps + 1, then steps, … points.
+    // The rows before row p[0] have steps + 1, steps, steps − 1, … points.
     const int before = p[0] * (steps_ + 1) - p[0] * (p[0] - 1) / 2;
     return corner * octant + before + p[1];
   }

@@ -39,9 +39,8 @@ class Lattice {
     return v;
   }
 
-  /// Whether the zero set may pass through the block whose lowest node is (i, j, k). False if
-  /// |field| at the centre of the block is so large that a field with a gradient below 3 (see
-  /// Field) has no zero in it.
+  /// Whether the zero set may pass through the block whose lowest node is (i, j, k). False if |field| at the centre of
+  /// the block is so large that a field with a gradient below 3 (see Field) has no zero in the block.
   bool may_cross(int i, int j, int k) const {
     const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
     const double half = kBlock / 2.0;

@@ -11,7 +11,7 @@ namespace weft::mesh {
 /// the gradient must be continuous, with a length of about 1 (as for a distance) or more.
 using Field = std::function<double(const Vec3&)>;
 
-/// Wanted edge length [m] at a point; it should vary slowly.
+/// Wanted edge length [m] at a point. It should vary slowly from point to point.
 using Sizing = std::function<double(const Vec3&)>;
 
 /// Triangulates the zero set in the half of `box` with x >= 0 by marching tetrahedra. The search

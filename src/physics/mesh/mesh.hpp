@@ -12,7 +12,7 @@
 namespace weft::mesh {
 
 /// Faces of a surface. Each quad is also stored as two triangles. Collision and drawing both use the triangles, so that
-/// cloth collides as it is drawn.
+/// cloth collides where it is drawn.
 struct Topology {
   std::vector<std::array<Index, 4>> quads;      ///< empty for a triangle mesh
   std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise from the front; quad q owns triangles 2q, 2q+1

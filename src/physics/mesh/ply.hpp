@@ -14,7 +14,7 @@ namespace weft::mesh {
 
 /// Optional contents of a PLY file.
 struct PlyExtras {
-  std::span<const std::uint8_t> passed_through = {};  ///< per triangle; 1: cloth passes through
+  std::span<const std::uint8_t> passed_through = {};  ///< per triangle; 1: cloth passes through it
   std::span<const Vec2> uv = {};                      ///< per vertex
   std::span<const float> values = {};                 ///< one more quantity, per vertex
   std::string_view values_name = {};                  ///< name of the property that `values` are written as

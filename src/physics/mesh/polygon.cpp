@@ -13,7 +13,7 @@ double twice_signed_area(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// Projects the polygon along its normal, so that it is counter-clockwise. The normal is a sum of cross products over
-/// all corners (Newell), because the polygon may be not quite flat.
+/// all corners (Newell's method), because the polygon need not be exactly flat.
 std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> positions) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return positions[corners[k % corners.size()]]; };
   const Vec3& origin = corner(0);
@@ -27,16 +27,14 @@ std::vector<Vec2> flatten(std::span<const Index> corners, std::span<const Vec3> 
   return flat;
 }
 
-/// Ratios that the height of an ear must exceed, relative to its longest side, tried one after the
-/// other. Rounding errors move corners off a straight side. An ear at such a corner has hardly any
-/// area, and later repairs of the mesh (assets/mending.hpp) would remove it together with the
-/// corner.
+/// Values of `flatness` in is_ear(), tried in this order: the height of an ear, relative to its longest side, must be
+/// larger. Rounding errors move corners off a straight side. An ear at such a corner has hardly any area, and later
+/// repairs of the mesh (assets/mending.hpp) would remove it together with the corner.
 constexpr std::array<double, 3> kMinEarHeightRatios = {1e-3, 1e-6, 0};
 
 /// Whether corner k of the ring is an ear: it is convex, and its triangle, sides included, contains no other corner.
-/// `flatness`: a height, relative to the longest side of the triangle. Another corner that is
-/// outside the triangle by at most this height counts as inside. A triangle whose height does not
-/// exceed it is no ear.
+/// `flatness`: a height, relative to the longest side of the triangle. Another corner that is outside the triangle by
+/// at most this height counts as inside. A triangle with at most this height is no ear.
 bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vector<Vec2>& flat, double flatness) {
   const std::size_t n = ring.size();
   const Vec2 &a = flat[ring[(k + n - 1) % n]], &b = flat[ring[k]], &c = flat[ring[(k + 1) % n]];
@@ -45,8 +43,7 @@ bool is_ear(const std::vector<std::size_t>& ring, std::size_t k, const std::vect
   if (!(twice_signed_area(a, b, c) > slack * std::max({ab, bc, ca}))) return false;
   for (const std::size_t other : ring) {
     const Vec2& p = flat[other];
-    // Skip the corners of the triangle. Also skip other corners at the same places: there the
-    // polygon touches itself.
+    // Skip the corners of the triangle, and other corners at the same places, where the polygon touches itself.
     if (p == a || p == b || p == c) continue;
     if (twice_signed_area(a, b, p) >= -slack * ab && twice_signed_area(b, c, p) >= -slack * bc &&
         twice_signed_area(c, a, p) >= -slack * ca)

@@ -142,8 +142,8 @@ class Remesher {
     std::vector<Index> common;
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(common));
     if (common.size() != (on_border ? 1U : 2U)) return false;
-    // No inner edge may join two border vertices: its mirror image would have the same two
-    // vertices, so four triangles would share this edge after join_mirror_image().
+    // No inner edge may join two border vertices. The mirror image of such an edge has the same two vertices, so four
+    // triangles would share this edge after join_mirror_image().
     return on_border || !border_[z(keep)] ||
            std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
   }
@@ -249,8 +249,8 @@ class Remesher {
     around_[z(d)].push_back(left);
   }
 
-  /// Moves each vertex along the surface toward the weighted mean of its neighbours; a border
-  /// vertex, toward that of its neighbours on the border.
+  /// Moves each vertex along the surface toward the weighted mean of its neighbours. For a vertex on the border, only
+  /// neighbours on the border count.
   void relax() {
     std::vector<Vec3> normals(x_.size());
     vertex_normals(triangles_, x_, normals);

@@ -25,7 +25,8 @@ void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, Moments& momen
   moments.second += volume / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
 }
 
-// Whether the surface has no border and its triangles face the same way. Otherwise, the Moments depend on the origin.
+// Whether the surface has no border and its triangles are equally oriented. Otherwise, its Moments depend on the
+// origin.
 bool is_closed(std::span<const Triangle> triangles, std::size_t vertex_count) {
   const TopologyReport report = inspect(triangles, vertex_count);
   return report.degenerate.empty() && report.border.empty() && report.misoriented.empty();

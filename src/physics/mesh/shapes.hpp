@@ -1,5 +1,5 @@
-// Procedural bodies, with z up. The centre is at the origin; for the half pipe, the middle of its
-// axis. All but the plane are watertight, with triangles that are counter-clockwise seen from
+// Procedural bodies, with z up; all lengths in metres. The centre of a body is at the origin; that of a half pipe is
+// the middle of its axis. All but the plane are watertight, with triangles that are counter-clockwise seen from
 // outside. Vertices of round parts lie on the exact surface, so a convex shape contains its mesh.
 #pragma once
 
@@ -17,14 +17,14 @@ Mesh make_sphere(double radius, int segments);
 /// one.
 Mesh make_box(const Vec3& size, double bevel, int segments);
 
-/// Base at z = -height / 2, tip at z = +height / 2. `segments`: number of edges around the axis; smaller values than 3
-/// count as 3 (also for the torus and the cylinder).
+/// Cone around the z axis, with the base at z = -height / 2 and the tip at z = +height / 2. `segments`: number of edges
+/// around the axis; values below 3 count as 3 (also for the torus and the cylinder).
 Mesh make_cone(double radius, double height, int segments);
 
 /// Ring around the z axis. `radius` is the distance of the tube's centre line from the axis; `tube_radius` < `radius`.
 Mesh make_torus(double radius, double tube_radius, int segments);
 
-/// Axis along z from -height / 2 to +height / 2.
+/// Cylinder around the z axis, from z = -height / 2 to z = +height / 2.
 Mesh make_cylinder(double radius, double height, int segments);
 
 /// Lower half of a pipe around the x axis, open upward, with rims at z = 0, from x = -length / 2 to x = +length / 2.

@@ -1,4 +1,4 @@
-// Triangulated cloth: its rest shape in material coordinates, and regular sheets.
+// Cloth made of triangles: its rest shape in material coordinates, and regular sheets.
 #pragma once
 
 #include <array>
@@ -22,9 +22,9 @@ struct Band {
   double allowance = 0;         ///< width of cloth along the band that the triangles do not contain [m]
 };
 
-/// Two vertices that a fastener holds together while the fastener is closed: a button, a tooth of a zip, or a seam that
-/// can tear. `open` and `closed` are the scene times at which the fastener opens and closes [s]; infinite: never. If
-/// `closed` < `open`, the fastener is closed only between these times; otherwise it is closed at the start.
+/// Two vertices that a fastener holds together while it is closed. A fastener is a button, a tooth of a zip, or a seam
+/// that can tear. `open` and `closed` are the scene times at which the fastener opens and closes [s]; infinite: never.
+/// If `closed` < `open`, the fastener is closed only between these times; otherwise it is closed at the start.
 struct Tie {
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]

@@ -50,7 +50,7 @@ struct CutPoint {
 struct Island {
   std::vector<Index> particles;
   std::set<Index> beside;            // particles of other islands at the other ends of cut edges
-  std::vector<CutPoint> line;        // line of crossing that cuts it off
+  std::vector<CutPoint> line;        // line of crossing that cuts the island off
   std::set<Index> through;           // corners of the crossed triangles
   std::optional<std::size_t> other;  // the crossed body; none if several are crossed, or only the island's own cloth
 };
@@ -65,8 +65,8 @@ CrossedPair crossed_pair_of(const UntangleInput& input, const Crossing& c) {
 }
 
 // Adds to `cut` the edges of the body `cloth` that would cross the other surface if that surface were extended beyond
-// its border: those whose two particles are on different sides. A particle is on a side of the
-// plane of the crossed triangle whose crossing point is nearest to the particle.
+// its border: those whose two particles are on different sides of it. The side of a particle is its side of the plane
+// of one crossed triangle, the one whose crossing point is nearest to the particle.
 void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings, std::size_t cloth,
                 std::span<const Vec3> x, std::set<std::array<Index, 2>>& cut) {
   std::vector<CutPoint> line;
@@ -137,9 +137,9 @@ Vec3 direction_of(std::span<const CutPoint> line) {
   return along;
 }
 
-// The cheapest moves (stretch_cost()) to the side of the mesh beside the island: flattened, or
-// folded to one of two sides. Folding must cost a tenth less than the best candidate so far. Empty
-// if the normals of the line cancel each other.
+// Returns the cheapest moves (stretch_cost()) that take the island to the side of the mesh beside it: by flattening, or
+// by folding to one of two sides. Folding must cost a tenth less than the best candidate so far. Empty if the normals
+// along the line cancel each other.
 std::vector<Move> best_moves(const UntangleInput& input, const Island& island, double height,
                              const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
   Vec3 up = Vec3::Zero();

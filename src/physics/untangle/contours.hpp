@@ -21,17 +21,16 @@ struct CrossedPair {
 /// layers.
 std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::span<const Crossing> crossings);
 
-/// Lines of crossing divide a mesh into islands. Returns moves for each island that may move, the
-/// smallest island first. The moves take the island to the side of the crossed surface on which the
-/// mesh beside the island is (similar to flood filling in Baraff, Witkin & Kass, "Untangling
-/// Cloth", 2003). The largest island of a mesh and islands with held particles stay. The island is
-/// flattened onto that side, or folded over the line of crossing if folding costs a tenth less (see
-/// stretch_cost()). An island also stays if an island beside it, or a triangle that it crosses,
-/// already moves. Thus, if islands cut each other off, only the smallest moves. Ignores crossings
-/// with solids, floors and layers. `surfaces`: the broad phase, refitted at x. `above`: height of
-/// the moved island over the crossed surface, per body of cloth [m]. `only`: restricts the search
-/// to this pair. If its two surfaces differ, `only->other` is extended beyond its border as a
-/// plane, so that a line of crossing that ends at this border still divides `only->cloth`.
+/// Lines of crossing divide a mesh into islands. Returns moves for each island that may move, the smallest island
+/// first. The moves take the island to the side of the crossed surface on which the mesh beside the island is (similar
+/// to flood filling in Baraff, Witkin & Kass, "Untangling Cloth", 2003). The largest island of a mesh and islands with
+/// held particles do not move. The moves flatten the island onto that side, or fold it over the line of crossing if
+/// folding costs at least a tenth less (stretch_cost()). An island does not move either if an island beside it, or a
+/// triangle that it crosses, already moves. Thus, if islands cut each other off, only the smallest moves. Ignores
+/// crossings with solids, floors and layers. `surfaces`: the broad phase, refitted at x. `above`: height of the moved
+/// island over the crossed surface, per body of cloth [m]. `only`: restricts the search to this pair. If its two
+/// surfaces differ, `only->other` is extended beyond its border as a plane, so that a line of crossing that ends at
+/// this border still divides `only->cloth`.
 std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
                                                     std::span<const double> above,
@@ -43,9 +42,9 @@ std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, 
 void shorten_contours(const UntangleInput& input, std::span<const Crossing> crossings, double length,
                       std::span<Vec3> x);
 
-/// Pushes edges and triangles of cloth out of each solid, floor or layer that they cross; they can cross it although
-/// all their particles are outside. Raises their crossing points, and the quarter points of edges, to at least the
-/// height `above`, per body of cloth [m].
+/// Pushes edges and triangles of cloth out of each solid, floor or layer that they cross. They can cross a solid
+/// although all their particles are outside. Raises their crossing points, and the quarter points of edges, to at least
+/// the height `above`, per body of cloth [m].
 void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
                         std::span<const ForbiddenRegion> solids, std::span<const double> above, std::span<Vec3> x);
 

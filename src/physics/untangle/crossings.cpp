@@ -12,7 +12,7 @@ struct SegmentHit {
   std::array<double, 3> weights;
 };
 
-// Where the segment from p to q crosses a triangle. Nothing if it does not, or if it lies in the triangle's plane.
+// Where the segment from p to q crosses a triangle; nullopt if it does not, or if it lies in the triangle's plane.
 std::optional<SegmentHit> intersect_segment(const Vec3& p, const Vec3& q, const collision::Triangle& t,
                                             std::span<const Vec3> x) {
   const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];

@@ -33,8 +33,8 @@ class CrossingFinder {
   /// Number of crossing pairs of triangles in the last find().
   int pairs() const { return pairs_; }
 
-  /// Of the surfaces that find() tests: pairs of triangles without a common vertex whose bounding
-  /// boxes, enlarged by `distance` / 2 [m] on each side, overlap.
+  /// Pairs of triangles without a common vertex, of the surfaces that find() tests, whose bounding boxes overlap if
+  /// enlarged by `distance` / 2 [m] on each side.
   std::span<const collision::TrianglePair> near(std::span<const Vec3> x, double distance);
 
   const collision::BroadPhase& surfaces() const { return broad_phase_; }

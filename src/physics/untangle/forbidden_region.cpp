@@ -65,7 +65,7 @@ bool ForbiddenRegion::is_near(const Vec3& p, double distance) const {
   return box_.squaredExteriorDistance(p) <= distance * distance;
 }
 
-// Where the segment from p to p + `way` crosses faces, in the order along the segment.
+// Returns where the segment from p to p + `way` crosses faces, in the order along the segment.
 std::vector<ForbiddenRegion::Hit> ForbiddenRegion::hits(const Vec3& p, const Vec3& way) const {
   const collision::Surface& surface = surfaces_.surface(number_);
   std::vector<Index> numbers;

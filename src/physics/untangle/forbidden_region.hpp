@@ -26,9 +26,8 @@ class ForbiddenRegion {
                   std::span<const std::uint8_t> on_border, std::span<const ForbiddenRegion> below);
 
   std::size_t number() const { return number_; }
-  /// Whether p is at most `distance` [m] outside of the bounding box of the surface or, for a floor, lower than
-  /// `distance` over it. If false, callers assume that p is outside the region by more than
-  /// `distance`.
+  /// Whether p is at most `distance` [m] outside of the bounding box of the surface or, for a floor, less than
+  /// `distance` above it. If false, callers treat p as outside the region by more than `distance`.
   bool is_near(const Vec3& p, double distance) const;
   /// Whether p is inside. Uses the winding number for a body, so that points in several of its shells are inside.
   bool inside(const Vec3& p) const;
@@ -42,8 +41,8 @@ class ForbiddenRegion {
     double height;  ///< signed distance of p from `place` [m], negative inside
   };
   Exit exit(const Vec3& p) const;
-  /// Distance from p, which is inside, along the unit direction d to where the ray leaves the region [m]; for a floor
-  /// or layer, infinite if the ray does not leave it.
+  /// Distance from p, which is inside, along the unit direction d to the point where the ray leaves the region [m]; for
+  /// a floor or layer, infinite if the ray does not leave the region.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; always false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const {

@@ -18,7 +18,7 @@ enum class SurfaceKind : std::uint8_t {
   solid,  ///< closed or nearly closed body; cloth may not be inside
   floor,  ///< cloth may not be below it
   open,   ///< other obstacle, or cloth that does not move; cloth may be on both sides
-  layer,  ///< cloth that does not move; cloth worn over it may be on its outer side only
+  layer,  ///< cloth that does not move; cloth that is worn over it may only be on its outer side
 };
 
 /// Constant input: connectivity of surfaces, and allowed lengths of threads. A thread is a link along an edge.
@@ -33,7 +33,7 @@ struct UntangleInput {
   struct Link {
     Index i, j;
     double min_length, max_length;
-    bool is_bend;  ///< joins opposite corners of two adjacent triangles; relax() corrects it only in part
+    bool is_bend;  ///< joins the opposite corners of two adjacent triangles; relax() corrects a part of its error
   };
 
   const collision::Bodies& bodies;

@@ -8,7 +8,7 @@
 namespace weft::untangle {
 namespace {
 
-constexpr int kSweepsPerRaise = 5;
+constexpr int kSweepsPerRaise = 5;  // number of sweeps between calls of raise()
 // Fraction of its error by which a bending link (UntangleInput::Link::is_bend) is corrected.
 constexpr double kBendFraction = 0.2;
 constexpr std::size_t kParticlesPerTask = 256;

@@ -9,10 +9,10 @@
 
 namespace weft::untangle {
 
-/// Sweeps `sweeps` times over all links in order, and corrects the length of each before it reads the next one
-/// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics",
-/// 2007). Corrects only a fifth of the error of a bending link. After every fifth sweep and after
-/// the last one, calls raise(). `above`: minimum height over solids [m], per body.
+/// Sweeps `sweeps` times over all links in order, and corrects the length of each link before it reads the next one
+/// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). Corrects only
+/// a fifth of the error of a bending link. After every fifth sweep and after the last one, calls raise(). `above`:
+/// minimum height over solids [m], per body.
 void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
            int sweeps, std::span<Vec3> x);
 

@@ -16,7 +16,8 @@ namespace {
 constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, relative to the larger thickness of the two: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
-// Two surfaces at most this far apart coincide: neither is on a side of the other [m].
+// Two surfaces coincide if they are at most this far apart [m]: it is then undefined on which side of the other each
+// is.
 constexpr double kTouchDistance = 1e-9;
 constexpr int kMaxRounds = 400;
 // After kPatience rounds in which the number of crossing pairs does not reach a new minimum, the
@@ -29,17 +30,18 @@ constexpr int kSweepsAfterMove = 120, kSweeps = 8;
 // Maximum displacement that takes a region (InsideRegion) out of a body, relative to the region's size. A region that
 // needs more is locked (it has no way out), unless it is shallow (kShallowDepth).
 constexpr double kMaxDisplacementRatio = 1.5;
-// Maximum number of passes over all bodies: a region that leaves one body may enter another.
+// Maximum number of passes over all bodies. One pass is not enough, because a region that leaves one body may enter
+// another.
 constexpr int kMaxPasses = 3;
 // A region is shallow if its displacement is less than this multiple of the height to which cloth is moved
 // (kHeightInThicknesses). Shallow regions always move; only strain after the move can lock them.
 constexpr double kShallowDepth = 4;
-// Maximum strain of a thread after the move. If a thread is strained more, the body probably goes
-// through the cloth, and the region is locked. (Measured: the largest strain of a valid start is
-// 0.44, of a tube 4 cm too small; trousers with a leg through the seat have 4.9.)
+// Maximum strain of a thread after the move. If a thread is strained more, the body probably goes through the cloth,
+// and the region is locked. Measured strains: 0.44 for a tube 4 cm too small (the largest of all valid starts); 4.9 for
+// trousers with a leg through the seat.
 constexpr double kMaxStrain = 1.5;
 // Maximum fraction of a region's threads that may still go through the body after the move. It is not 0, because
-// relax() frees threads at the region's border.
+// relax() takes threads at the region's border out of the body.
 constexpr double kMaxBlockedFraction = 0.2;
 // Maximum displacement per round by shorten_contours(), relative to the mean of the maximum lengths
 // of threads.
@@ -125,11 +127,10 @@ class Untangling {
     return any;
   }
 
-  // Separates surfaces that coincide, because neither is on a side of the other. Of two triangles
-  // of different bodies, moves that of the later body to the front (the side of the normal) of the
-  // other. If the later triangle has held particles, also moves the earlier one to the back of the
-  // later one. If the later body cannot move at all, moves the earlier triangle to the front of the
-  // later one or, if that has no front (a rope), against its own normal.
+  // Separates surfaces that coincide, so that each is on a definite side of the other. Of two triangles of different
+  // bodies, moves that of the later body to the front (the side of the normal) of the other. If the later triangle has
+  // held particles, also moves the earlier one to the back of the later one. If the later body cannot move at all,
+  // moves the earlier triangle to the front of the later one or, if that has no front (a rope), against its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {
@@ -208,7 +209,7 @@ class Untangling {
   }
 
   // Smooths cloth around its crossings, over an area that grows with `smoothings`. Ignores crossings with solids,
-  // because smoothing would move cloth back inside.
+  // because smoothing would move cloth back into the solids.
   void smooth_around(int smoothings) {
     std::vector<Index> around;
     for (const Crossing& c : crossings_) {
@@ -291,7 +292,7 @@ class Untangling {
   std::vector<Vec3> start_;
   CrossingFinder finder_;
   std::vector<ForbiddenRegion> solids_;
-  std::vector<double> above_;  // per body: height over other surfaces to which it is moved [m]
+  std::vector<double> above_;  // per body: height over other surfaces to which its cloth is moved [m]
   double step_ = 0;            // maximum displacement by shorten_contours() [m]
   std::vector<Crossing> crossings_;
   std::vector<Vec3> best_x_;  // state with the fewest crossing pairs

@@ -1,11 +1,11 @@
 // Separates surfaces that touch or cross at the start, before the simulation.
 //
-//   ForbiddenRegion   a region where cloth may not be, such as the inside of an obstacle, and exits from it
+//   ForbiddenRegion   a region where cloth may not be, such as the inside of an obstacle; finds exits
 //   find_inside       finds connected regions of cloth inside a ForbiddenRegion, and one way out for each
 //   CrossingFinder    finds edges that cross triangles
 //   contours.hpp      cloth through cloth: moves islands that are cut off, shortens lines of crossing; pushes cloth
 //                     that crosses solids out of them
-//   relax             moves the rest of the cloth so that threads have allowed lengths again
+//   relax             moves the cloth so that threads return to allowed lengths
 #pragma once
 
 #include <cstdint>
@@ -25,17 +25,16 @@ struct Options {
 
 struct Report {
   int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
-  int rounds = 0;                         ///< rounds that tried to reduce the number of crossings
+  int rounds = 0;                         ///< number of rounds that tried to reduce the number of crossings
   double farthest = 0;                    ///< largest displacement of a particle [m]
   double stretch = 0;                ///< largest excess of a thread over its maximum length, relative to that length
   std::vector<InsideRegion> locked;  ///< regions without a way out; if there are any, nothing was moved
 };
 
-/// Moves particles in x [m] until no triangles cross of which one is cloth (Options select the
-/// pairs), and the gap between two surfaces is at least a tenth of the larger of their thicknesses.
-/// If crossings remain after a bounded number of rounds, keeps the state with the fewest crossing
-/// pairs. If only gaps remain too small, keeps the last state without crossings. If a region is
-/// locked, moves nothing. The result is deterministic.
+/// Moves particles in x [m] until no triangle of cloth crosses another triangle (`options` select which kinds of pairs
+/// count), and the gap between any two surfaces is at least a tenth of the larger of their thicknesses. If crossings
+/// remain after a bounded number of rounds, keeps the state with the fewest crossing pairs. If only gaps remain too
+/// small, keeps the last state without crossings. If a region is locked, moves nothing. The result is deterministic.
 Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -12,16 +12,16 @@ namespace {
 // their squared strain (stretch_cost()).
 constexpr double kBlockedCost = 25;
 // Depth of a thread's midpoint in the body, relative to the length of the thread. Above kBlockedDepth, the thread goes
-// through the body; between the two values, it may only cut a corner; below kFreeDepth, it does not go through.
+// through the body; below kFreeDepth, it does not; in between, this is uncertain.
 constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
-// Cost of a displacement by the size of the region, so that the shorter of two ways with equal stretch is chosen.
+// Cost of a displacement by the size of the region, so that, of two ways out with equal stretch, the shorter one is
+// chosen.
 constexpr double kDisplacementCost = 0.05;
 // Cost of moving a whole mesh, high enough that the region moves alone if it can; and the longest move of a whole mesh,
 // relative to the size of the region.
 constexpr double kWholeMeshCost = 0.3, kMaxWholeMeshRatio = 1.1;
-// Maximum number of particles outside of the region that pass through the body's surface when the
-// whole mesh moves, relative to all particles of the mesh. If more did, the move would take cloth
-// off a body that wears it.
+// Maximum number of particles outside of the region that pass through the body's surface when the whole mesh moves,
+// relative to all particles of the mesh. If more pass, the move probably takes a garment off its wearer.
 constexpr double kMaxThroughFraction = 0.1;
 
 // The 26 directions from a cell of a cubic grid to its neighbours, nearest first.
@@ -140,9 +140,8 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
       const ForbiddenRegion::Exit exit = solid.exit(p);
       return exit.place + height * exit.normal;
     });
-    // Considers a move of the region's whole mesh along d, if all its particles are movable and the
-    // move takes the region out of the body, no particle into the body, and leaves no thread
-    // blocked.
+    // Considers a move of the region's whole mesh along d. All its particles must be movable. The move must take the
+    // region out of the body, take no particle into it, and leave no thread blocked.
     const auto consider_whole_mesh = [&](const Vec3& d) {
       double way = 0;
       for (const Index i : members) way = std::max(way, solid.distance_out(x[i], d) + height);

@@ -18,8 +18,8 @@ struct InsideRegion {
   Vec3 centre = Vec3::Zero();       ///< [m]
   double size = 0;                  ///< longest side of its bounding box, which is extended half-way to neighbours [m]
   double farthest = 0;              ///< largest displacement of a particle [m]
-  /// Smallest value of `farthest` among all ways, also those not chosen, after which no thread goes
-  /// through the solid [m]; infinite if there is no such way.
+  /// Smallest value of `farthest` among all ways out, chosen or not, after which no thread goes through the solid [m];
+  /// infinite if there is no such way.
   double shortest = std::numeric_limits<double>::infinity();
   double cost = 0;          ///< stretch_cost() of `moves`; 0 if the whole mesh moves
   double blocked = 0;       ///< fraction of its threads that would still go through the solid after the moves

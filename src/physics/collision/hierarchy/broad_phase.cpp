@@ -32,8 +32,8 @@ class TreesOf final : public BroadPhase::Trees {
     else
       trees_[surface].refit(motion, margin);
     if (!options_.normal_cones) return;
-    // Normal cones need one end position per vertex. If the ends are boxes, an infinite distance marks no region as
-    // flat.
+    // Normal cones need one end position per vertex. If the ends are boxes, pass an infinite distance, so that no
+    // region counts as flat.
     const bool is_known = std::ranges::equal(motion.low_t1, motion.high_t1);
     const double detection_distance = is_known ? 2 * margin : std::numeric_limits<double>::infinity();
     cones_[surface].update(trees_[surface], motion.x_t0, motion.low_t1, detection_distance);

@@ -2,7 +2,7 @@
 // Options that are known only at run time select how hierarchies are refitted and traversed.
 //
 //   BroadPhase broad_phase(surfaces, x, options);      // once; surface s is surfaces[s]
-//   broad_phase.refit(s, x_t0, x_t1, margin);          // in each step, each surface that has moved
+//   broad_phase.refit(s, x_t0, x_t1, margin);          // in each step, for each surface that has moved
 //   broad_phase.self_pairs(s, candidates);             // appends pairs; as often as needed
 //   broad_phase.pairs(a, b, candidates);
 //
@@ -33,8 +33,8 @@ namespace weft::collision {
 /// and narrow phase together take 1.0 to 1.1 times as long, or 0.8 times if layers are slanted to
 /// the axes. With 26 directions (Etzmuß et al. 2001), the fewest pairs are listed.
 struct BroadPhaseOptions {
-  /// Directions of the bounds: 6 (boxes), 18 or 26. With more directions, each bound costs more
-  /// time, and fewer pairs are listed: a subset of those of boxes.
+  /// Directions of the bounds: 6 (boxes), 18 or 26. With more directions, each bound takes more time, and the broad
+  /// phase lists fewer pairs, a subset of those of boxes.
   int directions = 6;
   /// Children per node, 2 to 8. Changes only the order of the pairs and, with `normal_cones`, which
   /// pairs are skipped.
@@ -42,7 +42,7 @@ struct BroadPhaseOptions {
   /// Maximum number of triangles per leaf, 1 to 8. Changes only the order of the pairs and, with
   /// `normal_cones`, which pairs are skipped.
   int leaf = 8;
-  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001). false:
+  /// Of two nodes that overlap, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001). False:
   /// descend into both. Changes only the order of the pairs.
   bool open_longer_side = false;
   /// Resume each traversal where the last one stopped. Lists the same pairs, in an order that depends on earlier
@@ -68,10 +68,9 @@ class BroadPhase {
   /// index is out of range.
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
-  /// As Tree::refit, or with `velocity_cones` as Tree::refit_lazily; `margin` in [m]. The pairs
-  /// then include all pairs of triangles that meet on any motion whose starts and ends differ from
-  /// those of `motion` by at most the margin: in Euclidean distance or, with 6 directions, along
-  /// each axis.
+  /// As Tree::refit, or with `velocity_cones` as Tree::refit_lazily; `margin` in [m]. Afterwards, self_pairs() and
+  /// pairs() list all pairs of triangles that meet on any motion whose starts and ends differ from those of `motion` by
+  /// at most the margin: in Euclidean distance or, with 6 directions, along each axis.
   void refit(std::size_t surface, const Motion& motion, double margin);
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);

@@ -99,10 +99,10 @@ inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
   return bound;
 }
 
-/// Support values of a set whose points move linearly: at the start of the step in rows 0 to K − 1,
-/// at its end in the next K rows. The gap between two such sets along a direction is concave in
-/// time, so if it is positive at both ends, it is positive throughout. Therefore two sets that move
-/// together do not overlap if there is a gap between them along one direction.
+/// Support values of a set whose points move linearly: rows 0 to K − 1 hold those at the start of the step, the next K
+/// rows those at its end. The gap between two such sets along a direction is concave in time, so if it is positive at
+/// the start and at the end, it is positive in between. Therefore two sets that move together with a gap along one
+/// direction do not overlap.
 template <int K>
 struct alignas(32) MovingKDop {
   float row[(2 * K + 7) / 8 * 8];
@@ -130,8 +130,7 @@ struct alignas(32) MovingKDop {
   static double length(int d) { return kDirections<K>.length[2 * d]; }
 };
 
-/// Bound of a vertex that moves from p to anywhere in the box from `low` to `high`, enlarged by
-/// `margin` [m].
+/// Bound of a vertex that moves from p to any point of the box from `low` to `high`, enlarged by `margin` [m].
 template <int K>
 inline MovingKDop<K> moving_point(const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   const KDop<K> start = swept_point<K>(p, p, margin);

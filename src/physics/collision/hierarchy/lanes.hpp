@@ -1,4 +1,4 @@
-// SIMD tests of one k-DOP or triangle against eight others. Each of the eight occupies one lane.
+// SIMD tests of one k-DOP or triangle against eight others. Each of these eight has one lane of a vector.
 #pragma once
 
 #include <bit>
@@ -33,9 +33,9 @@ struct alignas(32) LaneBounds {
   float row[2 * K][kLanes];
 };
 
-/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r *
-/// stride]: that is, unless the gap along one direction is positive both at the start and at the
-/// end. The sign of a sum of two floats is exact.
+/// Bit l is set if set l of `bounds` overlaps or touches the moving k-DOP whose row r is query[r * stride]. They do not
+/// overlap if the gap along one direction is positive both at the start and at the end. The sign of a sum of two floats
+/// is exact.
 template <int K>
 inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* query, std::size_t stride) {
 #if defined(__AVX__)
@@ -74,7 +74,8 @@ typedef float Lanes4 __attribute__((vector_size(16)));
 typedef float Lanes8 __attribute__((vector_size(32)));
 typedef std::int32_t IntLanes8 __attribute__((vector_size(32)));
 
-/// Sets a to the lane-wise minimum (maximum) of a and b. Returning a vector by value would use another ABI without AVX.
+/// Sets a to the lane-wise minimum (maximum) of a and b. Does not return the result, because the ABI of a returned
+/// vector depends on AVX.
 inline void lower_to(Lanes8& a, const Lanes8& b) {
   a = a < b ? a : b;
 }

@@ -8,16 +8,17 @@
 
 namespace weft::collision {
 
-/// Squared distance [m²] of a triangle (by global number) from the query point; infinite to exclude it.
+/// Returns the squared distance [m²] of a triangle (by global number) from the query point, or infinity to exclude the
+/// triangle.
 using DistanceSq = std::function<double(Index)>;
 
 /// A triangle counts as nearest if its squared distance exceeds the smallest one by at most this fraction.
 inline constexpr double kNearestTolerance = 1e-6;
 
-/// Replaces `out` by the triangles nearest to p (within kNearestTolerance), sorted by number. `out`
-/// is empty if `distance_sq` excludes all. Branch and bound: skips subtrees whose bounds are
-/// farther than the best triangle so far. At the positions that `distance_sq` uses, each triangle
-/// must lie inside its bound of the last refit; larger bounds only cost time.
+/// Replaces `out` by the triangles nearest to p (within kNearestTolerance), sorted by number. `out` is empty if
+/// `distance_sq` excludes all. Branch and bound: skips subtrees whose bounds are farther than the best triangle so far.
+/// At the positions that `distance_sq` uses, each triangle must lie inside its bound of the last refit. A bound that is
+/// larger than necessary only costs time.
 template <int K>
 void nearest_triangles(const Tree<K>& tree, const Vec3& p, const DistanceSq& distance_sq, std::vector<Index>& out);
 

@@ -42,7 +42,6 @@ std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> 
   const auto middle = std::stable_partition(items.begin(), items.end(), goes_first);
   const auto first = static_cast<std::size_t>(middle - items.begin());
 
-  // If one part is empty, each part gets half of the triangles.
   return first == 0 || first == items.size() ? items.size() / 2 : first;
 }
 

@@ -19,13 +19,13 @@ struct Regions {
 
 /// Options of a traversal. Only `regions` and `one_shared` change which pairs are found.
 struct Traversal {
-  /// Of two overlapping nodes, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001, "Detection
+  /// Of two nodes that overlap, descend only into the one with the longer k-DOP side (Etzmuß et al. 2001, "Detection
   /// Process").
   bool open_longer_side = false;
   /// If not null: resume where the last traversal with this list stopped, and record where this one
   /// stops. Each pair of trees needs its own list.
   SeparationList* list = nullptr;
-  const Regions* regions = nullptr;  ///< self_pairs() skips pairs inside these; null: none
+  const Regions* regions = nullptr;  ///< self_pairs() skips pairs inside these regions; null: skips none
   /// Also list pairs with one common vertex.
   bool one_shared = true;
 };

@@ -14,9 +14,9 @@ namespace weft::collision {
 // traversal is then divided into at least kMinThreadTasks tasks, if possible.
 constexpr std::size_t kMinLeavesForThreads = 512, kMinThreadTasks = 64;
 
-/// One traversal of two trees, which may be the same. kLonger: of two nodes, descends only into the one with the longer
-/// side. kListed: records in a separation list where the traversal stops. Both are compile-time constants, so that the
-/// plain traversal has no branches for them.
+/// One traversal of two trees, which may be the same. kLonger: as Traversal::open_longer_side. kListed: records in a
+/// separation list where the traversal stops. Both are template parameters, so that the usual traversal has no branches
+/// for them.
 template <int K, bool kLonger, bool kListed>
 class Traverser {
  public:

@@ -32,9 +32,9 @@ void check(const Surface& surface, std::size_t positions, const TreeShape& shape
         throw Error(ExitCode::internal, "hierarchy: expected corners in [{}, {}), got {}", first, last, corner);
 }
 
-// Slack of lazy refits: enough for kSlackSteps steps at the present speed, plus a fraction of the margin against
-// jitter. If this sum exceeds kMaxSlackFraction of the margin, the vertex gets no slack: the additional pairs would
-// cost more in the narrow phase than the lazy refit saves.
+// Slack of lazy refits: the motion of kSlackSteps steps at the present speed, plus kMinSlackFraction of the margin for
+// vertices that only oscillate. If this sum exceeds kMaxSlackFraction of the margin, the vertex gets no slack, because
+// the additional pairs would cost more in the narrow phase than the lazy refit saves.
 constexpr double kSlackSteps = 8;
 constexpr double kMinSlackFraction = 1.0 / 64;
 constexpr double kMaxSlackFraction = 1.0 / 8;
@@ -86,7 +86,8 @@ struct Tree<K>::Builder {
 
   Ref add(const Group& whole) {
     if (whole.size() <= max_triangles) return add_leaf(whole);
-    // Split the largest child until the node is full, so that few lanes of nodes and leaves remain empty.
+    // Split the largest child again and again until the node is full, so that few lanes of nodes and leaves remain
+    // empty.
     std::array<Group, kLanes> children{whole};
     std::size_t count = 1;
     while (count < max_children) {
@@ -179,7 +180,7 @@ void Tree<K>::fit_node(std::size_t n) {
   }
 }
 
-/// Updates the bound of vertex v, which moves from p to anywhere in the box from `low` to `high`. Returns false if the
+/// Updates the bound of vertex v, which moves from p to any point of the box from `low` to `high`. Returns false if the
 /// old bound is still valid.
 template <int K>
 bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
@@ -189,8 +190,8 @@ bool Tree<K>::update_vertex_bound(std::size_t v, const Vec3& p, const Vec3& low,
   if (vertex_slack.slack >= 0 && to_one_place && (p - vertex_slack.place).squaredNorm() <= slack_sq &&
       (low - vertex_slack.place).squaredNorm() <= slack_sq)
     return false;
-  // The bound covers the ball of radius `slack` around the end position of the vertex. The ball
-  // contains its start, too. If `slack` is too large, the bound is as tight as after refit.
+  // The bound with slack covers the ball of radius `slack` around the end position of the vertex. This ball also
+  // contains the start position. If `slack` is too large, the bound is that of refit.
   const double slack = kSlackSteps * (low - p).norm() + kMinSlackFraction * margin;
   if (slack <= kMaxSlackFraction * margin && to_one_place) {
     vertex_slack = {low, slack};

@@ -13,8 +13,8 @@
 
 namespace weft::collision {
 
-/// Motion of all vertices [m]: v moves from x_t0[v] to anywhere in the box from low_t1[v] to high_t1[v] (possibly a
-/// point).
+/// Motion of all vertices [m]: vertex v moves from x_t0[v] to any point of the box from low_t1[v] to high_t1[v]. The
+/// box may be a single point.
 struct Motion {
   std::span<const Vec3> x_t0, low_t1, high_t1;
 
@@ -56,9 +56,9 @@ class Tree {
 
   Tree() = default;
 
-  /// Builds a tree over the surface at `positions` (global array, [m]) and fits it there without
-  /// margin. Splits sets of triangles along their longest side until each set fits into a leaf.
-  /// Throws Error(internal) if an index or the shape is out of range.
+  /// Builds a tree over the surface at `positions` (global array, [m]) and fits it there without margin. Splits sets of
+  /// triangles by split_longest_side() until each set fits into a leaf. Throws Error(internal) if an index or the shape
+  /// is out of range.
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
   /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. Triangles that come
@@ -66,10 +66,10 @@ class Tree {
   void refit(const Motion& motion, double margin);
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
-  /// As refit, but enlarges the bound of a slow vertex by a slack that suffices for a few steps
-  /// (see kMaxSlackFraction in tree.cpp), and keeps this bound while the vertex stays within the
-  /// slack. Refits only leaves and nodes above vertices with a new bound. A changed margin renews
-  /// all bounds. Bounds are never smaller than after refit.
+  /// As refit, but enlarges the bound of a slow vertex by a slack that suffices for a few steps (see kMaxSlackFraction
+  /// in tree.cpp), and keeps this bound while the vertex stays within the slack. Refits only leaves and nodes above
+  /// vertices with a new bound. If the margin has changed, renews all bounds. Bounds are never smaller than after
+  /// refit.
   void refit_lazily(const Motion& motion, double margin);
   void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit_lazily({x_t0, x_t1}, margin);

@@ -8,12 +8,13 @@ namespace weft::collision {
 
 namespace {
 
-/// Weights below this count as zero. So if the closest point is on an edge that two faces share,
-/// both faces find it on the edge, despite rounding. This rule moves the closest point by up to
-/// 1e-13 of an edge; rounding moves it by a few times 1e-16.
+/// Weights below this count as zero. So if the closest point is on an edge that two faces share, closest_vertex_face()
+/// finds it on the edge for both faces, despite rounding. This rule moves the closest point by up to 1e-13 of the
+/// length of an edge; rounding moves it by a few times 1e-16 of that length.
 constexpr double kSnap = 1e-13;
 
-/// Relative rounding error of a squared distance; also that of a distance, relative to the edge lengths.
+/// Rounding error of a squared distance, relative to it; also rounding error of a distance, relative to the edge
+/// lengths.
 constexpr double kRounding = 2e-15;
 
 /// Parameter in [0, 1] of the point of the segment o + t e that is closest to o + w.
@@ -102,7 +103,7 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1, s_q1);
   if (!inside) return best;
 
-  // Nearly parallel: refine as for a needle.
+  // The edges are nearly parallel: refine the solution as in closest_vertex_face().
   const Vec3 rest = w + t * e - s * d;
   s = std::clamp(s + rest.cross(e).dot(n) / n_sq, 0.0, 1.0);
   t = std::clamp(t + rest.cross(d).dot(n) / n_sq, 0.0, 1.0);

@@ -8,10 +8,9 @@
 
 namespace weft::collision {
 
-/// If the squared sine of the angle between two edges does not exceed this, their cross product has
-/// lost many digits. The solution inside the features is then refined, and their boundaries are
-/// searched as well. At the limit, the error without refinement is about 1e-16 / 1e-2 of the edge
-/// length.
+/// If the squared sine of the angle between two edges is at most this, rounding errors of their cross product are
+/// large. The solution inside the features is then refined, and the boundaries of the features are searched as well. At
+/// the limit, the error without refinement is about 1e-16 / 1e-2 of the edge length.
 inline constexpr double kNearlyParallelSq = 1e-4;
 
 /// Closest points of two features that have four vertices x together: x_a = Σ (positive weights) x on side a, x_b = −Σ

@@ -49,7 +49,7 @@ void Features::own_edges() {
     return std::tie(a.low, a.high, a.triangle, a.corner) < std::tie(b.low, b.high, b.triangle, b.corner);
   });
 
-  // Of equal edges, which are consecutive now, the first triangle owns the edge.
+  // Equal edges are consecutive now. The first triangle in each group of equal edges owns the edge.
   edge_.resize(triangles_.size());
   across_.assign(triangles_.size(), {-1, -1, -1});
   apexes_begin_ = {0};
@@ -58,7 +58,7 @@ void Features::own_edges() {
     const Side& owner = sides[begin];
     owned_[owner.triangle] |= static_cast<std::uint8_t>(8U << owner.corner);
     edge_[owner.triangle][owner.corner] = static_cast<Index>(apexes_begin_.size() - 1);
-    // In a piece of rope (a, b, b), the same triangle has the edge twice.
+    // A piece of rope (a, b, b) has the edge twice; then no other triangle is across the edge.
     if (end - begin == 2 && sides[begin + 1].triangle != owner.triangle)
       across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)

@@ -11,10 +11,9 @@
 
 namespace weft::collision {
 
-/// The lowest-numbered triangle that contains a vertex or edge owns it. If a loop over pairs of
-/// triangles uses, for each triangle, only the vertices and edges that it owns, it visits each pair
-/// of features once (Curtis, Tamstorf & Manocha, "Fast Collision Detection for Deformable Models
-/// using Representative-Triangles", 2008).
+/// The lowest-numbered triangle that contains a vertex or edge owns it. A loop over pairs of triangles that uses only
+/// the vertices and edges that each triangle owns visits each pair of features once (Curtis, Tamstorf & Manocha, "Fast
+/// Collision Detection for Deformable Models using Representative-Triangles", 2008).
 class Features {
  public:
   Features() = default;
@@ -36,8 +35,8 @@ class Features {
     return std::span(apexes_).subspan(at(apexes_begin_[edge]), at(apexes_begin_[edge + 1] - apexes_begin_[edge]));
   }
 
-  /// The other triangle at the edge from corner c to corner c + 1. −1 if triangle t does not own
-  /// the edge, or unless exactly two triangles share it.
+  /// The other triangle at the edge from corner c to corner c + 1. −1 if triangle t does not own the edge, or if one
+  /// triangle or more than two contain it.
   Index across(Index t, std::size_t c) const { return across_[t][c]; }
 
   /// Triangles at a vertex, lowest number first.

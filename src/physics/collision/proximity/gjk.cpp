@@ -12,7 +12,8 @@ namespace {
 /// The search ends when the upper and lower bounds of the distance differ by at most this fraction
 /// of the size of both sets. The fraction is a few rounding errors.
 constexpr double kTolerance = 1e-14;
-/// Sets of a few corners need 3 to 8 rounds. For needles, rounding can prevent the search from ending by itself.
+/// Maximum number of rounds. Sets of a few corners need 3 to 8; for needles, rounding can keep the bounds farther apart
+/// than kTolerance.
 constexpr int kMaxRounds = 40;
 
 /// A corner w of the Minkowski difference a - b: corner `a` of set a minus corner `b` of set b.
@@ -128,7 +129,7 @@ ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
     simplex.corner[simplex.count++] = next;
     find_nearest(simplex);
     simplex.shrink();
-    // In exact arithmetic the distance always decreases; with rounding it may stall.
+    // In exact arithmetic, the distance decreases in each round; with rounding, it may not.
     const double reached = simplex.nearest.norm();
     if (!(reached < distance)) break;
     distance = reached;

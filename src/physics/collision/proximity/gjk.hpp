@@ -18,7 +18,7 @@ struct ConvexClosest {
   std::array<double, kMaxCorners> weights_a, weights_b;  ///< ≥ 0; sum 1; zero past the last corner
   Vec3 difference;                                       ///< x_a - x_b [m]; zero, up to rounding, if the hulls meet
   double distance;     ///< length of `difference` [m]; never less than the true distance
-  double lower_bound;  ///< never more than the true distance [m]: a plane separates the hulls by this much
+  double lower_bound;  ///< never more than the true distance [m]; some plane separates the hulls by this gap
   int iterations;
 };
 

@@ -18,13 +18,12 @@ namespace weft::collision {
 
 /// Two near features with their closest points: Σ weights x = distance · normal.
 struct Proximity : FeaturePair {
-  /// Sine of the angle by which the contact direction, between the closest points, leaves the wedge
-  /// of a feature. The wedge of a vertex or edge consists of the directions (of an edge:
-  /// perpendicular to it) in which no adjacent face is closer than the vertex or edge itself. For
-  /// an edge pair, these are the values of edge a and edge b, negative inside the wedge. For a
-  /// vertex-face pair, the first value is that of the vertex, and the second is 0. The first is 0,
-  /// too, inside the wedge of the vertex, or if the closest point is inside the face. If a value is
-  /// above 0, a neighbouring pair is closer, so the response may skip this pair.
+  /// Sine of the angle by which the contact direction, between the closest points, leaves the wedge of a feature. The
+  /// wedge of a vertex or edge consists of the directions (of an edge: perpendicular to it) in which no adjacent face
+  /// is closer than the vertex or edge itself. For an edge pair, these are the values of edge a and edge b, negative
+  /// inside the wedge. For a vertex-face pair, the first value is that of the vertex, and the second is 0. The first is
+  /// also 0 if the direction is inside the wedge of the vertex, or if the closest point is inside the face. If a value
+  /// is above 0, a neighbouring pair is closer, so the response may skip this pair.
   std::array<double, 2> outside_wedge{};
 };
 
@@ -35,12 +34,11 @@ struct Proximity : FeaturePair {
 ///   - on an edge or at a vertex of the face, if no other face around that edge or vertex is closer. If several faces
 ///     are equally close, it lists only one pair.
 ///
-/// Every near pair that is not listed is represented by a listed pair that is at least as close.
-/// Proof: let the point of a face closest to a vertex lie on the edge or vertex S of the face.
-/// Every face around S contains that point, so the vertex is no farther from each of them.
-/// Likewise, if a closest point of an edge pair is an end of its edge, this end is no farther from
-/// the faces around the other edge. Going from face to face, distances never grow, and of equal
-/// distances the face with the lower number wins, so the chain ends at a listed pair.
+/// Every near pair that is not listed is represented by a listed pair that is at least as close. Proof: let the point
+/// of a face closest to a vertex lie on the edge or vertex S of the face. Every face around S contains that point, so
+/// the vertex is no farther from each of them. Likewise, if a closest point of an edge pair is an end of its edge, this
+/// end is no farther from the faces around the other edge. Repeat this step from the face found: distances never grow,
+/// and of equally distant faces the one with the lowest number is taken, so the repetition ends at a listed pair.
 class ProximityFinder {
  public:
   ProximityFinder() = default;

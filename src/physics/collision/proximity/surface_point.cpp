@@ -10,7 +10,7 @@
 namespace weft::collision {
 namespace {
 
-// If the nearest point is closer than this [m], rounding determines the direction of the line to it.
+// If the nearest point is closer than this [m], the direction of the line to it consists of rounding errors.
 constexpr double kMinDirectionLength = 1e-10;
 // Scale of the offset from a point to the start of its ray [m], and length of the ray [m].
 constexpr double kRayOffset = 1e-7;
@@ -77,7 +77,7 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
       difference = points.difference;
       outward.setZero();
     }
-    // Skip a point that is just as near but elsewhere, such as on the other side of a thin body.
+    // Skip a nearest point that is equally near but at another place, such as on the other side of a thin body.
     if ((points.difference - difference).squaredNorm() >
         kRoundoff * best_sq + kMinDirectionLength * kMinDirectionLength)
       continue;

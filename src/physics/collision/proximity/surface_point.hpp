@@ -32,18 +32,18 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
 
 /// Returns whether a face takes part in a search.
 using CountsFace = std::function<bool(const Triangle& face)>;
-/// Nearest point of a surface of the broad phase at positions x [m], which must be inside the
-/// bounds of its last refit. Gives the same bits as a search over all faces that take part, unless
-/// some thousand faces are equally near up to rounding. `counts`: if given, faces for which it is
-/// false do not take part. `towards`: unit or zero. If the normals of some faces are within 60
-/// degrees of it, only these faces take part. If there are none, or if `towards` is zero, all do.
+/// Nearest point of a surface of the broad phase at positions x [m], which must be inside the bounds of its last refit.
+/// Gives the same bits as a search over all faces that take part, unless some thousand faces are equally near up to
+/// rounding. `counts`: if given, faces for which it is false do not take part. `towards`: unit or zero. If the normals
+/// of some faces are within 60 degrees of it, only these faces take part. If there are none, or if `towards` is zero,
+/// all faces take part.
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
                            const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
 
-/// Whether a point is inside a surface of the broad phase, which may cross itself. Casts a ray of
-/// 1000 m along the axis nearest to `towards`. The point counts as inside if the ray leaves through
-/// more faces than it enters through. So for an open surface, a point behind a face that the ray
-/// meets counts as inside. x [m] must be inside the bounds of the last refit.
+/// Whether a point is inside a surface of the broad phase. The surface may cross itself. Casts a ray of 1000 m along
+/// the axis nearest to `towards`. The point counts as inside if the ray leaves through more faces than it enters
+/// through. So for an open surface, a point behind a face that the ray meets counts as inside. x [m] must be inside the
+/// bounds of the last refit.
 bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
                std::span<const Vec3> x);
 

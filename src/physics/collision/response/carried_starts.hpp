@@ -19,13 +19,12 @@ struct RigidMotion {
   bool moves() const { return turns() || shift != Vec3::Zero(); }
 };
 
-/// The vertices of an obstacle that turns move on arcs, but separating planes are found for
-/// straight trajectories (see `separates` in separating_plane.hpp). In the frame of the obstacle,
-/// the obstacle rests. This class therefore applies the motion of the obstacle to the start
-/// positions of all particles. The results are the carried starts. For the straight trajectory from
-/// there to the end of the step, the obstacle is at its end all the time, so that a plane fixed to
-/// it can separate a pair for the whole step. A particle that ends at its carried start has moved
-/// rigidly with the obstacle, so it does not meet this obstacle.
+/// The vertices of an obstacle that turns move on arcs, but separating planes are found for straight trajectories (see
+/// `separates` in separating_plane.hpp). In its own frame, the obstacle rests. This class therefore applies the motion
+/// of the obstacle to the start positions of all particles. The results are the carried starts. On the straight
+/// trajectory from the carried starts to the end of the step, the obstacle stays at its end, so that a plane fixed to
+/// it can separate a pair for the whole step. A particle that ends at its carried start has moved rigidly with the
+/// obstacle, so it does not meet this obstacle.
 class CarriedStarts {
  public:
   CarriedStarts() = default;

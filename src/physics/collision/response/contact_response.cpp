@@ -17,7 +17,7 @@ int single_particle(const Contact& contact) {
 }
 
 // Adds the contact as a wall if it concerns a single particle in front of an obstacle. Returns whether it did. A
-// particle behind the obstacle is pinched: a wall would hold it there.
+// particle behind the obstacle is pinched and gets no wall, which would hold it there.
 bool add_wall_of(const Contact& contact, std::span<const Vec3> x_t0, VelocityConstraints& walls) {
   const int place = single_particle(contact);
   if (place < 0) return false;

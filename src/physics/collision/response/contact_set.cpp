@@ -15,9 +15,9 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// Limits of depth_for_force(): number of iterations, and relative error of the force. A relative
-// error e of the depth changes the force that update() finds along the tangent only by the order of
-// e²: here, less than rounding. (With 1e-3, the solver misses a newton_tolerance of 1e-6.)
+// Limits of depth_for_force(): number of iterations, and relative error of the force. A relative error e of the depth
+// changes the force that update() finds along the tangent only by the order of e²: here, less than rounding. With an
+// error of 1e-3, the solver cannot reach a newton_tolerance of 1e-6.
 constexpr int kDepthIterations = 30;
 constexpr double kDepthTolerance = 1e-8;
 
@@ -36,7 +36,7 @@ NormalForce normal_force_at(const Contact& contact, double depth) {
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
 
-// Continues the normal force from `depth_at`, where it is `at`, to `depth` along its tangent; never negative [N].
+// Value at `depth` of the tangent to the normal force at `depth_at` [N]; never negative. `at`: force and slope there.
 double tangent_force(const NormalForce& at, double depth_at, double depth) {
   return std::max(0.0, at.force + at.slope * (depth - depth_at));
 }
@@ -83,15 +83,15 @@ Vec3 friction_over_normal_force(const Contact& contact, const Vec3& slip) {
   return friction_over_slip(contact, slip.norm()) * slip;
 }
 
-// Inverse of friction_over_normal_force(): the slip that belongs to w. ‖w‖ must not exceed the
-// static friction coefficient.
+// Inverse of friction_over_normal_force(): the slip that w corresponds to. ‖w‖ must not exceed the static friction
+// coefficient.
 Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
   const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
   return w / friction_over_slip(contact, slip);
 }
 
-// Derivative of w with respect to a slip in units of the stick slip. Exact if w belongs to the slip, else a positive
-// semidefinite approximation.
+// Derivative of w with respect to a slip in units of the stick slip. Exact if w corresponds to the slip, else a
+// positive semidefinite approximation.
 Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
   const double size = slip.norm();
   return friction_over_slip(contact, size) *
@@ -105,8 +105,8 @@ Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   return slip - contact.normal.dot(slip) * contact.normal;
 }
 
-// Degree to which a contact is an impact, 0 to 1; see add_impacts(). Estimated from the motion of
-// its particles up to the start of the step, and from the motion of the obstacle in the step.
+// Fraction to which a contact is an impact, 0 to 1; see add_impacts(). Estimated from the motion of its particles up to
+// the start of the step, and from the motion of the obstacle in the step.
 double impact_fraction(const Contact& contact, const StepStart& start) {
   const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
   const double velocity = along_normal(start.v);
@@ -141,7 +141,7 @@ void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, s
     if (contact.weights[k] != 0) ++involved, last = k;
   }
   if (involved == 1) {
-    // A single particle against an obstacle has no coupling.
+    // A single particle against an obstacle couples to no other particle.
     const double w = contact.weights[last];
     system.diagonal_terms.push_back({contact.particles[last], w * w * stiffness});
   } else {
@@ -206,7 +206,7 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     lag.depths.push_back(std::max(0.0, contacts_[c].depth));
     lag.normal_forces.push_back(normal_force_at(contacts_[c], lag.depths.back()).force);
     lag.frictions.emplace_back();
-    if (lag.updates > 0) continue;  // contacts found later have no meaningful first iterate
+    if (lag.updates > 0) continue;  // for contacts found later, the first iterate means nothing
     FrictionLag& friction = lag.frictions.back();
     friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
     friction.relative_friction = friction_over_normal_force(contacts_[c], friction.slip);

@@ -10,8 +10,7 @@
 namespace weft::collision {
 namespace {
 
-// Normal of that of `faces` which is nearest to p at positions x. `faces`: those that reached the
-// cloth.
+// Normal, at positions x, of the face nearest to p. `faces`: those in an Origin.
 Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
   return face_normal(nearest_point(p, faces, x).face, x);
 }
@@ -113,9 +112,10 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
   }
 }
 
-// The faces that a neighbour crosses itself and that face the way out of the triangle beside it; that triangle's own
-// if there are none. On a round limb, each neighbour then returns its own way: the faces that reached the first
-// triangle, in an armpit, are far from the chest and face another way.
+// Finds the faces for the Origin of a neighbour that is added to the set: those that the neighbour crosses and whose
+// normals are within 60° of the exit direction of `beside`, the Origin of the exempted triangle beside it. Without such
+// faces, returns those of `beside`. Thus each neighbour on a round limb has its own exit direction. Example: faces in
+// an armpit, which met the first triangle, are far from the chest and point in another direction.
 std::vector<Triangle> PinchedPairs::faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
                                                    std::span<const Vec3> x) const {
   const auto& [a, b, c] = key.cloth;

@@ -1,5 +1,5 @@
-// Pinched cloth, squeezed between obstacles without space: which triangles may intersect which obstacle, and how they
-// return.
+// Pinched cloth, to which obstacles leave no space: which triangles may intersect which obstacle, and how contacts push
+// them back.
 #pragma once
 
 #include <array>
@@ -18,16 +18,15 @@
 
 namespace weft::collision {
 
-/// The exempted cloth triangles, each with the limb of an obstacle from which it is exempt. (An
-/// obstacle without limbs counts as one limb.) The triangle may intersect this limb: no separating
-/// plane is required. renew() removes a triangle from the set if it is apart from the limb and back
-/// on its original side of the limb. Neighbours of a triangle of the set (triangles that share a
-/// particle with it) are exempt from its limb, too, so that a limb that moves along the cloth does
-/// not drag the cloth with it. But if that particle is on its own side, they keep their planes:
-/// otherwise, a limb that comes nearer would take in the cloth around, ring after ring. renew() adds
-/// a neighbour to the set if it meets the limb or is on its wrong side. If two limbs overlap, the
-/// cloth is exempt from the limb that reached it, and rests on the other. If the first limb retreats,
-/// the cloth returns to its original side of it.
+/// The exempted cloth triangles, each with the limb of an obstacle from which it is exempt. (An obstacle without limbs
+/// counts as one limb.) The triangle may intersect this limb: no separating plane is required. renew() removes a
+/// triangle from the set if it is apart from the limb and back on its original side of the limb. Neighbours of a
+/// triangle of the set (triangles that share a particle with it) are exempt from its limb, too, so that a limb that
+/// moves along the cloth does not drag the cloth with it. Exception: if the common particle is on its original side of
+/// the limb, the neighbour is not exempt, so that a limb that approaches does not exempt more and more of the cloth
+/// around it. renew() adds a neighbour to the set if it meets the limb or is on the wrong side of it. If two limbs
+/// overlap, the cloth is exempt from the limb that first met it, and rests on the other limb. If the first limb
+/// retreats, the cloth returns to its original side of that limb.
 class PinchedPairs {
  public:
   struct Key {
@@ -37,15 +36,15 @@ class PinchedPairs {
     friend auto operator<=>(const Key&, const Key&) = default;
   };
 
-  /// How the limb reached the cloth.
+  /// Where the limb first met the cloth.
   struct Origin {
     int side = 0;  ///< +1: the cloth was outside the limb; −1: inside, or behind an open surface; 0: not recorded
-    std::vector<Triangle> faces;  ///< faces of the limb that reached the triangle or, failing that, a neighbour
+    std::vector<Triangle> faces;  ///< faces of the limb that first met the triangle or else its neighbour
   };
 
-  /// Two points for a contact that pushes a particle, or a point of a cloth triangle, back to its
-  /// side. The vertices of `exit_pair` are a particle and the corners of a face of the limb, or the
-  /// corners of a cloth triangle and one corner of the face that it crosses.
+  /// Two points for a contact that pushes a particle, or a point of a cloth triangle, back to its original side of the
+  /// limb. The vertices of `exit_pair` are a particle and the corners of a face of the limb, or the corners of a cloth
+  /// triangle and one corner of the face that it crosses.
   struct Push {
     FeaturePair exit_pair;
     bool is_exit_clear = false;  ///< no obstacle contains the point to which the push leads
@@ -60,6 +59,7 @@ class PinchedPairs {
   bool is_cloth_and_obstacle(const CornerPair& pair) const {
     return pair.a[0] < first_obstacle_ && pair.b[0] >= first_obstacle_;
   }
+  /// Whether the pair needs no separating plane.
   bool exempts(const CornerPair& pair) const {
     if (origins_.empty() || !is_cloth_and_obstacle(pair)) return false;
     const Key of_pair = key(pair);
@@ -71,8 +71,7 @@ class PinchedPairs {
   /// Whether one of these vertices is a corner of an exempted triangle, and another one belongs to
   /// the limb from which this triangle is exempt.
   bool are_pinched(const std::array<Index, 4>& vertices) const;
-  /// Exempts side a of the pair from the limb of side b. The side in its origin is not recorded
-  /// until note_origins() is called.
+  /// Exempts side a of the pair from the limb of side b. Call note_origins() afterwards, which records Origin::side.
   void add(const CornerPair& pair);
   void add(const Key& key, const Origin& origin) {
     origins_.emplace(key, origin);
@@ -82,24 +81,22 @@ class PinchedPairs {
   // In the functions below, `surfaces` contains all bodies, by number. Positions must be inside the bounds of the last
   // refit of `surfaces`.
 
-  /// Completes the origin of triangles that add(pair) has exempted: records their side at x_t0 [m],
-  /// that of their first corner.
+  /// Completes the origin of triangles that add(pair) has exempted: records the side of their first corner at x_t0 [m].
   void note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0);
 
-  /// Removes triangles that, at x [m], are apart from their limb and back on their side. Adds
-  /// triangles that share a particle with one of the set, unless they are apart from its limb and
-  /// on its side. `triangles`: of all surfaces, cloth first. `is_repeated`: whether the step was
-  /// rejected before; then neighbours are exempt whatever the side of their particle, as keeping
-  /// them apart may have stretched the cloth.
+  /// Removes triangles that, at x [m], are apart from their limb and back on their original side of it. Adds triangles
+  /// that share a particle with a triangle of the set, unless they are apart from the limb of that triangle and on its
+  /// original side. `triangles`: of all surfaces, cloth first. `is_repeated`: whether the step was rejected before. In
+  /// this case, neighbours are exempt on whichever side their common particle is, because keeping them apart may have
+  /// stretched the cloth.
   void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
              bool is_repeated = false);
 
-  /// Finds how pinched cloth returns to its side at x [m]. Pairs each corner of an exempted
-  /// triangle whose height is below `max_height` [m] with the nearest point of the limb. (Height:
-  /// signed distance from the limb, negative on the wrong side.) For a corner on the wrong side,
-  /// only faces count whose normal is within 60° of the normal of the nearest face that reached the
-  /// cloth, if there are any. If all corners of a triangle are on the right side but the triangle
-  /// crosses a face, pairs the middle of that crossing with the face. Side a of each pair is the
+  /// Finds how to push pinched cloth at x [m] back to its original side. Pairs each corner of an exempted triangle
+  /// whose height is below `max_height` [m] with the nearest point of the limb. (Height: signed distance from the limb,
+  /// negative on the wrong side.) For a corner on the wrong side, only faces count whose normal is within 60° of the
+  /// normal of the nearest face in its Origin (if there are such faces). If all corners of a triangle are on the right
+  /// side but the triangle crosses a face, pairs the middle of that crossing with the face. Side a of each pair is the
   /// cloth; the normal points to the side where the cloth belongs.
   std::vector<Push> find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x, double max_height) const;
 
@@ -138,7 +135,7 @@ class PinchedPairs {
   std::span<const Index> limb_of_;
   std::map<Key, Origin> origins_;
   std::map<Corner, Origin> particles_;  // corners of the exempted triangles
-  std::set<Corner> returned_;           // those that were on their own side at the last renew()
+  std::set<Corner> returned_;           // those on their original side at the last renew()
 };
 
 }  // namespace weft::collision

@@ -21,7 +21,8 @@ double distance_facing(const Vec3& place, const Vec3& direction, const BroadPhas
   return faces ? std::abs(point.height) : kNoFaces;
 }
 
-// The obstacle that presses the cloth into key.body: the nearest other one, or key.body if two of its parts pinch.
+// The obstacle that presses the cloth into key.body: the nearest other obstacle, or key.body if two parts of it pinch
+// the cloth.
 std::optional<std::size_t> find_pressing_obstacle(const PinchedPairs& pinched, const PinchedPairs::Key& key,
                                                   const Vec3& place, const Bodies& bodies, const BroadPhase& surfaces,
                                                   std::span<const Vec3> x) {

@@ -30,9 +30,9 @@ struct Triangles8 {
 
 }  // namespace
 
-// Tests face normals and the direction between the centres for eight pairs at once, in float. This
-// takes a twelfth of the time of a search with branches in double. If no direction separates a
-// pair, find_failing() searches later.
+// Tests face normals and the direction between the centres for eight pairs at once, in float. This takes a twelfth of
+// the time of a search in double with branches. If none of these directions separates a pair, find_failing() searches
+// further.
 void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   const auto gather = [&](bool side_b) {
     Triangles8 result;
@@ -48,11 +48,10 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
     return result;
   };
   Triangles8 a = gather(false), b = gather(true);
-  // Bound of rounding errors. Coordinates are rounded twice, by 2^-24 of themselves. Dot products
-  // are rounded by a few times as much, because relative coordinates are at most twice the largest
-  // coordinate. The least gap that separates() requires is added, and half of it again for the
-  // error of the length of n. Only coordinates of the pair enter, so other bodies do not affect the
-  // result.
+  // `rounding` bounds the rounding errors of the gap. Coordinates are rounded twice, by 2^-24 of their values; dot
+  // products, by a few times as much, because relative coordinates are at most twice the largest coordinate. `rounding`
+  // also contains the least gap that separates() requires, and half of it again for the error of the length of n. It
+  // uses only coordinates of the pair, so other bodies do not affect the result.
   Lanes8 rounding = a.corner[0].axis[0];
   for (const Triangles8* side : {&a, &b})
     for (const Points8& corner : side->corner)

@@ -16,14 +16,12 @@
 
 namespace weft::collision {
 
-/// Stores, for each pair of a list of candidate pairs (the watched pairs), a direction and the gap
-/// along this direction at the reference, the positions of the last watch(). The motion of a
-/// triangle is the largest distance of its corners from the reference. The gap shrinks by at most
-/// the sum of the motions of both triangles. If this sum is less than the gap, the pair counts as
-/// separated without a test, so cloth that rests on cloth costs one comparison per pair and step. A
-/// pair also counts as separated without a test if its trajectory has not changed since its last
-/// successful test. This saves time when pairs are pushed apart, because each round moves few
-/// vertices.
+/// Stores, for each pair of a list of candidate pairs (the watched pairs), a direction and the gap along this direction
+/// at the reference, the positions of the last watch(). The motion of a triangle is the largest distance of its corners
+/// from the reference. The gap shrinks by at most the sum of the motions of both triangles. If this sum is less than
+/// the gap, the pair counts as separated without a test, so cloth that rests on cloth costs one comparison per pair and
+/// step. A pair also counts as separated without a test if its trajectory has not changed since its last successful
+/// test. This saves time while pairs are pushed apart, because each round moves few vertices.
 class Planes {
  public:
   Planes() = default;
@@ -31,9 +29,8 @@ class Planes {
   explicit Planes(std::span<const Triangle> triangles, Index obstacles_from = 0)
       : triangles_(triangles), obstacles_from_(obstacles_from) {}
 
-  /// Kinds of planes to seek for a pair: `which`, except that for a pair with an obstacle, `all`
-  /// replaces `turning`, because obstacles move fast and turn. (With `turning` for all pairs, a
-  /// ball that hits a cloth takes 1.13 times the iterations.)
+  /// Kinds of planes to seek for a pair: `which`, except that for a pair with an obstacle, `all` replaces `turning`,
+  /// because obstacles move fast and turn. If a ball hits a cloth, this takes 12 % fewer iterations than `turning`.
   PlaneKinds kinds_of(const CornerPair& pair, PlaneKinds which) const {
     const bool with_obstacle = pair.a[0] >= obstacles_from_ || pair.b[0] >= obstacles_from_;
     return which == PlaneKinds::turning && with_obstacle ? PlaneKinds::all : which;
@@ -92,7 +89,7 @@ class Planes {
   std::vector<Plane> planes_;
   std::vector<Lanes4> rounded_;             // positions in float, for the search in watch()
   std::vector<float> moved_;                // per triangle: bound of the distances of its corners from the reference
-  std::vector<std::uint8_t> changed_;       // per triangle: a corner has changed since the last call
+  std::vector<std::uint8_t> changed_;       // per triangle: x_t0 or x_t1 of a corner differs from that of the last call
   std::vector<std::uint8_t> is_separated_;  // per pair: its last test, from x_t0 (no carried start), found a plane
 };
 

@@ -29,8 +29,8 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 /// and stays positive in between.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-/// Which planes are tried. `constant`: those of constant direction. `turning`: also those that turn during the step.
-/// `all`: also several planes one after the other, each for a part of the step.
+/// Kinds of planes that a search tries. `constant`: planes of constant direction. `turning`: also planes that turn
+/// during the step. `all`: also several planes one after the other, each for a part of the step.
 enum class PlaneKinds { constant, turning, all };
 
 /// Searches for a separating plane of the kinds `which`, cheap ones first:
@@ -41,12 +41,11 @@ enum class PlaneKinds { constant, turning, all };
 ///   4. all again in each half of the trajectory; halves are halved again, at most Numerics::Repair::max_retries times
 ///      in all.
 ///
-/// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, with t from 0 to 1. Let δ(t) be the
-/// difference of two linearly moving corners. Then n·δ is quadratic in t. Its Bernstein
-/// coefficients are n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and n₁·δ₁. If they are positive, so is n·δ. Example:
-/// two layers at a distance g turn together by an angle θ. The coefficients are g, g cos θ and g,
-/// whatever the width of the layers. In contrast, a plane of constant direction cuts a layer if the
-/// width times sin(θ/2) exceeds g.
+/// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, with t from 0 to 1. Let δ(t) be the difference of two
+/// linearly moving corners. Then n·δ is quadratic in t. Its Bernstein coefficients are n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and
+/// n₁·δ₁. If they are positive, so is n·δ. Example: two layers at a distance g turn together by an angle θ. The
+/// coefficients are g, g cos θ and g, for layers of any width. A plane of constant direction, however, cuts a layer if
+/// its width times sin(θ/2) exceeds g.
 ///
 /// Returns the direction of the plane at the end of the step, in single precision as Planes stores it; nullopt if none.
 std::optional<Vec3> find_separating_plane(const CornerPair& pair, std::span<const Vec3> x_t0,

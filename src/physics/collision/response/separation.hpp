@@ -30,13 +30,13 @@ struct SeparationReport {
   int corrected_pairs = 0;                     ///< number of pairs that failed before the correction
   double largest_push = 0;                     ///< longest single push or backtrack of a pair [m]
   std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that had to move
-  CornerPair unseparated_pair{};               ///< if not `separated`: a pair that is not
+  CornerPair unseparated_pair{};               ///< if not `separated`: a pair that is not separated
 };
 
-/// Vertices that move only together: those of a rigid body, and the particles that carry it (mesh::RigidFrame).
+/// Vertices that move only together: the surface vertices of a rigid body, and its frame particles (mesh::RigidFrame).
 struct RigidGroup {
-  Index first, count;        ///< its surface vertices: the first, and their number
-  Index frame, frame_count;  ///< the particles that carry it: the first, and their number
+  Index first, count;        ///< surface vertices: the first one, and their number
+  Index frame, frame_count;  ///< frame particles: the first one, and their number
   double mass;               ///< [kg]
 };
 
@@ -56,11 +56,11 @@ struct RigidGroup {
 ///      their carried start instead (CarriedStarts). No pair meets at the start. So two triangles
 ///      do not meet if all their vertices end at their start, or if one obstacle carries all of
 ///      them. The set of backtracked particles grows until no pair fails.
-///   3. A pair that still fails is forced together by fixed vertices that move differently. Cloth can then be exempted
-///      from the obstacle.
+///   3. If a pair still fails, fixed vertices that move differently force it together. Cloth can then be exempted from
+///      the obstacle.
 ///
-/// A rigid body pushes cloth as an obstacle does: the push does not move the body. Rigid bodies are
-/// translated away from obstacles and from each other, the lighter one farther.
+/// A rigid body pushes cloth as an obstacle does: the push does not move the body. Pushes translate rigid bodies away
+/// from obstacles and from each other, the lighter body farther.
 class Separation {
  public:
   Separation() = default;
@@ -72,10 +72,9 @@ class Separation {
   /// Sets the rigid groups. `vertices`: number of all vertices. Call before the first watch().
   void set_rigid(std::vector<RigidGroup> groups, Index vertices);
 
-  /// Sets the pairs to watch (to test for a separating plane), which have no common vertex. x [m]
-  /// becomes the reference from which motion is measured, also for the vertex stars. The pairs must
-  /// include all that can meet. If a vertex moves out of the bounds for which the pairs were
-  /// collected, collect and watch again.
+  /// Sets the pairs to watch, that is, to test for a separating plane; they have no common vertex. x [m] becomes the
+  /// reference from which motion is measured, also for the vertex stars. The pairs must include all that can meet. If a
+  /// vertex moves out of the bounds for which the pairs were collected, collect the pairs and call watch() again.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
   /// As above, for the pairs received by exchange().
   void watch(std::span<const Vec3> x);
@@ -92,8 +91,9 @@ class Separation {
     planes_.append_closer(radius, begin, end, out);
   }
 
-  /// Flags clear triangles by 1: at x [m], their features are farther than `distance` [m] from those of all triangles
-  /// that share a vertex with them. Pairs of features with a common vertex do not count. May miss clear triangles.
+  /// Flags clear triangles by 1: a triangle is clear if, at x [m], its features are farther than `distance` [m] from
+  /// those of all triangles that share a vertex with it. Pairs of features with a common vertex do not count. May miss
+  /// clear triangles.
   std::vector<std::uint8_t> find_clear_triangles(double distance, std::span<const Vec3> x) const;
 
   /// Returns the pairs without a separating plane on the trajectory from x_t0 to x_t1. Changes no
@@ -161,7 +161,7 @@ class Separation {
   VertexStars stars_;
   std::vector<float> moved_;                 // per vertex: bound of its distance from the reference at both ends [m]
   std::vector<Vec3> tested_t0_, tested_t1_;  // per vertex: position at the last test [m]
-  std::vector<std::uint8_t> changed_;        // per vertex: has moved since the last test
+  std::vector<std::uint8_t> changed_;        // per vertex: x_t0 or x_t1 differs from that of the last test
   std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked; 0: never
   std::vector<RigidGroup> groups_;
   std::vector<int> group_of_;  // per vertex: index in groups_, −1: none; empty if there are no groups

@@ -222,7 +222,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
     return particle.constraint_changes++ < numerics.walls.flips;
   }
 
-  // Split the force into components along the normals of the walls and the rest (`left`), which is tangential or pulls.
+  // Split the force into components along the normals of the walls and the rest (`left`), a tangential force or a pull.
   ActiveWalls pushing;
   const double size = force.norm();
   const Vec3 left = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
@@ -251,7 +251,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
       particle.overloaded = left.norm() - limit > negligible;
     }
     hold(particle, held_at, next);
-    return passes;  // too much friction in a single step does no harm
+    return passes;  // if it only slips, no further solve: too much friction in one step is harmless
   }
 
   const bool other_walls = !next.same_walls(particle.held);

@@ -32,16 +32,15 @@ struct PrescribedParticle {
 /// particles stop at d_min and resting ones stay. If d < d_min, a step restores the fraction c =
 /// Numerics::Walls::correction of the missing distance: γ d_min = d + c (d_min − d).
 ///
-/// A wall holds its particle as long as the wall has to push. The inequality is then an equality,
-/// which removes one direction from the conjugate gradients. The wall releases the particle if the
-/// residual shows that it would pull. At most three walls hold a particle at once.
+/// A wall holds its particle while satisfying the inequality takes a push. The inequality is then an equality, which
+/// removes one direction from the conjugate gradients. The wall releases the particle if the residual shows that the
+/// wall would pull. At most three walls hold a particle at once.
 ///
-/// A held particle sticks (moves with the obstacle in the tangent plane, too) while the force that
-/// this takes lies in the friction cone. Otherwise the particle slides: friction acts against the
-/// slip, with μ times the normal force, reduced below the stick velocity as in ContactSet. A
-/// particle that ends a step slower than the stick velocity, with the same walls and nearly the
-/// same normal force as before, sticks from the next step on (exception: see accept() in the .cpp).
-/// Friction is implicit: explicit forces would reverse the motion of neighbours that begin to slide
+/// A held particle sticks (moves with the obstacle in the tangent plane, too) while the necessary force lies in the
+/// friction cone. Otherwise the particle slides: friction acts against the slip, with μ times the normal force, reduced
+/// below the stick velocity as in ContactSet. A particle that ends a step slower than the stick velocity, with the same
+/// walls and nearly the same normal force as before, sticks from the next step on (exception: see accept() in the
+/// .cpp). Friction is implicit, because explicit friction would reverse the motion of neighbours that begin to slide
 /// together.
 ///
 /// revise() updates the state between the solves of a step; accept() keeps it for the next step.
@@ -65,12 +64,11 @@ class VelocityConstraints {
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
-  /// Finds the particles that walls held at the end of the last step and that have no wall yet in
-  /// this step. So far, walls were found for near pairs at the start of the step, and for corners
-  /// of triangles that would meet an obstacle on the way to x_t1, the expected end of the step.
-  /// Without a wall, the first solve would release these particles. If there are such particles,
-  /// returns true and sets `predicted` to x_t1, with these particles moved by `by` [m] towards
-  /// their former walls, so that a second search finds walls for them.
+  /// Finds the particles that walls held at the end of the last step and that have no wall yet in this step, that is,
+  /// neither for a near pair at the start of the step, nor for a triangle that would meet an obstacle on the way to
+  /// x_t1, the expected end of the step. Without a wall, the first solve would release these particles. If there are
+  /// such particles, returns true and sets `predicted` to x_t1, with these particles moved by `by` [m] towards their
+  /// former walls, so that a second search finds walls for them.
   bool predict_wall_contacts(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& predicted) const;
 
   /// Chooses the walls that hold in the first solve: those that a particle would pass on the way from x_t0, the start
@@ -144,8 +142,8 @@ class VelocityConstraints {
     double friction_normal_force = 0;  // normal force that limits friction in this solve [N]
     Vec3 drag = Vec3::Zero();          // −friction / maximum friction at the expected end x_t1
     int constraint_changes = 0;        // number of changes of its constraint in this step
-    bool may_stick = false;            // slides so slowly that it may stick
-    bool overloaded = false;           // began to slide: sticking would have taken noticeably more than static friction
+    bool may_stick = false;            // slides so slowly that it may stick from the next step on
+    bool overloaded = false;           // began to slide, because sticking needs noticeably more than static friction
   };
 
   Vec3 project(const TouchingParticle& particle, const Vec3& u, bool of_force, ActiveWalls& held) const;

@@ -166,8 +166,7 @@ bool VertexStars::keeps_orientation(std::size_t star, std::span<const Vec3> x_t0
   }
   for (std::size_t k = 1; k < vertices.size(); ++k) {
     const Vec3 f_t0 = arm(k, x_t0), f_t1 = arm(k, x_t1);
-    // The limit is far above the rounding of these products, and far below their values for any
-    // relevant angle.
+    // `least` is far above the rounding errors of these products, and far below their values at angles that occur.
     const double least = 1e-9 * axis.norm() * (e_t0.norm() + e_t1.norm()) * (f_t0.norm() + f_t1.norm());
     if (axis.dot(e_t0.cross(f_t0)) <= least || axis.dot(e_t1.cross(f_t1)) <= least ||
         axis.dot(e_t0.cross(f_t1) + e_t1.cross(f_t0)) <= least)

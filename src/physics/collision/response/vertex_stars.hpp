@@ -1,5 +1,5 @@
-// Tests triangles with exactly one common vertex: proves, vertex star by vertex star, that they stay apart. The star of
-// a vertex is the set of triangles around it.
+// Proves for each vertex star that its triangles with exactly one common vertex stay apart. The star of a vertex is the
+// set of triangles around it.
 #pragma once
 
 #include <array>
@@ -15,20 +15,18 @@ namespace weft::collision {
 
 /// Two triangles (v, p, q) and (v, r, s) with only the vertex v in common meet elsewhere only if the edge pq meets the
 /// other triangle, or rs does. In each of these two cases, edge and triangle have no common vertex. So two separating
-/// planes, one for each case, keep the triangles apart.
+/// planes, one for each case, prove that the triangles stay apart.
 ///
-/// In a star of six triangles, nine pairs of triangles have only the centre in common. VertexStars
-/// therefore tests a closed star (triangles all around the centre) as a whole if possible: all its
-/// triangles, projected along one axis n, must keep their orientation during the step and go around
-/// the centre once. They then cover disjoint sectors, so no two meet outside their common edges.
-/// The oriented area n·(e × f) of a moving triangle with edges e and f from the centre is quadratic
-/// in time, and positive if its Bernstein coefficients are (the cone test of Volino &
-/// Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface
-/// Animations using Geometrical Shape Regularity", 1994, over a time interval as in Tang et al.,
-/// "ICCD: Interactive Continuous Collision Detection between Deformable Models using
-/// Connectivity-Based Culling", 2009). A star that goes around once at the start goes around once
-/// throughout, because its total angle is continuous in time. Open stars, at borders, have few
-/// pairs and are tested pair by pair; so are closed stars that this test does not prove apart.
+/// In a star of six triangles, nine pairs of triangles have only the centre in common. VertexStars therefore tests a
+/// closed star (triangles all around the centre) as a whole if possible: all its triangles, projected along one axis n,
+/// must keep their orientation during the step and go around the centre once. They then cover disjoint sectors, so no
+/// two meet outside their common edges. The oriented area n·(e × f) of a moving triangle with edges e and f from the
+/// centre is quadratic in time, and positive if its Bernstein coefficients are (the cone test of Volino &
+/// Magnenat-Thalmann, "Efficient Self-Collision Detection on Smoothly Discretized Surface Animations using Geometrical
+/// Shape Regularity", 1994, over a time interval as in Tang et al., "ICCD: Interactive Continuous Collision Detection
+/// between Deformable Models using Connectivity-Based Culling", 2009). A star that goes around once at the start goes
+/// around once throughout, because its total angle is continuous in time. Open stars, at borders, have few pairs and
+/// are tested pair by pair; so are closed stars that fail this test.
 class VertexStars {
  public:
   VertexStars() = default;
@@ -41,14 +39,13 @@ class VertexStars {
   /// Makes the next find_failing() test all stars.
   void forget_tests();
 
-  /// Sets the flag in `vertices` to 1 for centres of clear stars. In a clear star, features without
-  /// a common vertex are farther apart than `distance` [m] at x [m] (at the reference if x is
-  /// empty). A closed star is clear if all altitudes of its triangles, projected along its axis,
-  /// exceed `distance`. Open stars are never marked. Proof: in the projection, the closest points
-  /// of two such features of two triangles are a vertex and a point of the other triangle. If this
-  /// vertex is the centre, the segment between them leads from the centre to an opposite edge. If
-  /// it is another vertex, the segment crosses a neighbouring edge of the star or passes the end of
-  /// that edge. In each case, it is at least as long as an altitude.
+  /// Sets the flag in `vertices` to 1 for centres of clear stars. In a clear star, features without a common vertex are
+  /// farther apart than `distance` [m] at x [m] (at the reference if x is empty). A closed star is clear if all
+  /// altitudes of its triangles, projected along its axis, exceed `distance`. Open stars are never marked. Proof: in
+  /// the projection, the closest points of two such features of two triangles are a vertex and a point of the other
+  /// triangle. If this vertex is the centre, the segment between them leads from the centre to an opposite edge. If it
+  /// is another vertex, the segment crosses a neighbouring edge of the star or passes the end of that edge. In each
+  /// case, the segment is at least as long as an altitude.
   void mark_clear(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
   /// Appends the pairs of an edge and a triangle without a separating plane on the trajectory from x_t0 to x_t1.

@@ -14,8 +14,8 @@ namespace {
 /// Maximum number of triangles per group. Cones of smaller groups bound the motion more tightly,
 /// but the time of an update grows with the square of the number of groups.
 constexpr std::size_t kGroupSize = 128;
-/// Every this many updates, the present step becomes the reference step and all results are
-/// dropped, so that the cones stay small.
+/// After every kReferenceUpdates updates, the present step becomes the reference step and all results are deleted, so
+/// that the cones stay small.
 constexpr int kReferenceUpdates = 64;
 
 void append(const PairList& from, PairList& to) {
@@ -96,8 +96,8 @@ void CoherentDetection::update_cones(std::span<const Vec3> x_t0, std::span<const
   }
   for (std::vector<Group>& groups : groups_) {
     for (Group& group : groups) {
-      // Compare the start of the step with the start of the reference step, and the end of the step
-      // with the end of the reference step. Thus the motion within a step does not count.
+      // Compare the start of the step with the start of the reference step, and the end of the step with the end of the
+      // reference step. Thus the motion within a step does not enlarge the cone.
       Vec3 mean = Vec3::Zero();
       group.low.setConstant(INFINITY);
       group.high.setConstant(-INFINITY);

@@ -15,9 +15,9 @@
 //   - every two triangles whose bounds with margin D / 2 overlap now are among the candidates;
 //   - the kept closest points of two features, with unchanged weights, are at least as far apart as the features, and
 //     at most 2 R farther;
-//   - for every two features within D of each other, some listed pair is at most 2 R farther apart.
-//     (At the search, these features were within D + R, and the listed pair that represented them
-//     was no farther apart; see ProximityFinder.)
+//   - for every two features within D of each other, some listed pair is at most 2 R farther apart than they are. (At
+//     the search, the two features were within D + R of each other, and the listed pair that represented them was at
+//     most as far apart; see ProximityFinder.)
 //
 // A pair of surfaces is searched as a whole, because a near pair may represent pairs in neighbouring groups.
 #pragma once
@@ -51,8 +51,9 @@ class CoherentDetection {
   CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> surface_pairs, std::span<const Vec3> x,
                     const CoherenceParameters& parameters);
 
-  /// Updates to the step from x_t0 to x_t1 [m]. Refits all bounds, searches the pairs of surfaces whose result is no
-  /// longer valid, and returns their number; 0: the candidates are unchanged. Call again if the motion changes.
+  /// Updates the results to the step from x_t0 to x_t1 [m]. Refits all bounds, searches the pairs of surfaces whose
+  /// result is no longer valid, and returns their number; 0: the candidates are unchanged. Call again if x_t1 changes
+  /// within the step.
   int update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Candidate pairs of all listed pairs of surfaces.
@@ -61,7 +62,7 @@ class CoherentDetection {
   /// features is listed if its distance is below D + 2 R, where R is the largest bound of its pair
   /// of surfaces.
   std::span<const Proximity> proximities() const { return proximities_; }
-  /// Largest R of all pairs of groups that are not far apart (D + R, see above) [m]; at most the budget.
+  /// Largest R of all pairs of groups whose boxes were at most D + R apart at the search [m]; at most the budget.
   double largest_motion() const { return largest_motion_; }
 
   /// Makes the next update search all pairs of surfaces, so that its results do not depend on
@@ -84,7 +85,7 @@ class CoherentDetection {
     CandidatePairs candidates;
     std::vector<Proximity> proximities;
     std::vector<GroupSnapshot> groups_a, groups_b;
-    double motion = 0;  ///< largest R of groups that are not far apart [m]
+    double motion = 0;  ///< as largest_motion(), for this pair of surfaces [m]
   };
 
   void add_groups(const Surface& surface, std::span<const Vec3> x);

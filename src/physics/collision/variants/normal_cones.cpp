@@ -16,7 +16,8 @@ bool is_star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& a
   centre_t0 /= static_cast<double>(contour.size());
   centre_t1 /= static_cast<double>(contour.size());
 
-  // All edges turn counter-clockwise, so the edges that cross the line up · p = 0 upwards count the turns.
+  // All edges turn counter-clockwise, so the number of turns is the number of edges that cross the line up · p = 0
+  // upwards.
   const Vec3 up = axis.unitOrthogonal();
   int turns = 0;
   for (const auto& edge : contour) {
@@ -237,7 +238,7 @@ bool NormalCones<K>::has_nothing_near(const Tree<K>& tree, Ref ref, std::span<co
   return all.cosine > 0 && all.cosine * all.altitude > needed && is_star_shaped(subtree.contour, all.axis, x_t0, x_t1);
 }
 
-/// Marks flat regions top-down. self_pairs() skips a marked subtree as a whole, so nodes below it need no mark.
+/// Marks flat regions top-down. self_pairs() skips a marked subtree as a whole, so the nodes below it are not marked.
 template <int K>
 void NormalCones<K>::mark_flat_regions(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0,
                                        std::span<const Vec3> x_t1, double detection_distance) {

@@ -33,9 +33,9 @@ namespace weft::collision {
 /// test therefore use their Bernstein coefficients (Tang, Curtis, Yoon & Manocha, "ICCD", 2009). A degenerate triangle
 /// violates condition 2.
 ///
-/// Provot (1997) and Etzmuß et al. (2001) require only condition 2, for P instead of P⁺. Their test
-/// would also skip near pairs of parts that overlap in projection (a spiral stair) or that meet
-/// across a border or slit (measured: 0.6 to 25 % of the pairs that it skips are near).
+/// Provot (1997) and Etzmuß et al. (2001) require only condition 2, for P instead of P⁺. Their test would also skip
+/// near pairs of parts that overlap in projection (such as a spiral staircase) or that meet across a border or slit. Of
+/// the pairs that their test skips, 0.6 to 25 % are near (measured).
 template <int K>
 class NormalCones {
  public:

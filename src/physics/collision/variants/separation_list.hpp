@@ -7,12 +7,11 @@
 
 namespace weft::collision {
 
-/// Pairs of subtrees at which the last traversal stopped. Together they cover all pairs of
-/// triangles between two trees, or within one tree, whatever the bounds become. So a traversal may
-/// start from them instead of the roots. If the bounds of an entry overlap now, entries for its
-/// children replace it. No entry moves up again: an entry that is lower than necessary costs one
-/// overlap test per traversal until the list is rebuilt. A rebuild is due after kMaxTraversals
-/// traversals, or once the list has grown by more than half.
+/// Pairs of subtrees at which the last traversal stopped. Together they cover all pairs of triangles between two trees,
+/// or within one tree, whatever the bounds become. So a traversal may start from them instead of the roots. If the
+/// bounds of an entry overlap now, entries for its children replace it. Entries for parents never replace those for
+/// children: an entry that is deeper in the tree than necessary costs one overlap test per traversal until the list is
+/// rebuilt. A rebuild is due after kMaxTraversals traversals, or once the list has grown by more than half.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node number (≥ 0) or ~leaf number (< 0), as in Tree
