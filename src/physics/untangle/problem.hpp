@@ -14,10 +14,10 @@ namespace weft::untangle {
 
 /// Kinds of surfaces, by the sides on which other cloth may be.
 enum class SurfaceKind : std::uint8_t {
-  cloth,  ///< cloth to be untangled; other cloth may be on both sides
+  cloth,  ///< cloth to be untangled; other cloth may be on either side
   solid,  ///< closed or nearly closed body; cloth may not be inside
   floor,  ///< cloth may not be below it
-  open,   ///< other obstacle, or cloth that does not move; cloth may be on both sides
+  open,   ///< other obstacle, or cloth that does not move; cloth may be on either side
   layer,  ///< cloth that does not move; cloth that is worn over it may only be on its outer side
 };
 

@@ -127,10 +127,10 @@ class Untangling {
     return any;
   }
 
-  // Separates surfaces that coincide, so that each is on a definite side of the other. Of two triangles of different
-  // bodies, moves that of the later body to the front (the side of the normal) of the other. If the later triangle has
-  // held particles, also moves the earlier one to the back of the later one. If the later body cannot move at all,
-  // moves the earlier triangle to the front of the later one or, if that has no front (a rope), against its own normal.
+  // Separates surfaces that coincide, so that each is on a definite side of the other. Of two triangles a and b of
+  // different bodies, let b be that of the later body. Moves b to the front of a (the side to which the normal of a
+  // points). If b has held particles, also moves a against its own normal. If the body of b cannot move at all, moves
+  // only a: to the front of b or, if b is a piece of rope and has no front, against its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) {
