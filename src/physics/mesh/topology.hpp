@@ -22,8 +22,8 @@ struct Edge {
 /// All edges of a triangle list, sorted by their vertex pair.
 struct EdgeSet {
   std::vector<Edge> edges;
-  std::vector<std::array<Index, 3>> of_triangle;  ///< edge k of a triangle joins its corners k and (k + 1) % 3
-  std::vector<Index> non_manifold;                ///< edges with more than two triangles; they store only the first two
+  std::vector<std::array<Index, 3>> of_triangle;  ///< indices into `edges`; edge k joins corners k and (k + 1) % 3
+  std::vector<Index> non_manifold;                ///< edges with more than two triangles; Edge stores the first two
 };
 
 /// Collects each edge once. Vertex indices must be in range (see inspect()). Time O(n log n).
