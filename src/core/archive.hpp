@@ -1,6 +1,6 @@
-// Serialisation: values to bytes and back. Each type has one function or member `serialize`, a template over the
-// archive (ByteWriter or ByteReader), so that writing and reading cannot differ. A plain value has a trivially copyable
-// type with neither padding nor pointers.
+// Serialisation: converts values to bytes and back. Each type has one function or member `serialize`, a template over
+// the archive (ByteWriter or ByteReader), so that writing and reading use the same code. In this file, a "plain value"
+// is a value of a trivially copyable type with neither padding nor pointers.
 #pragma once
 
 #include <cstring>
@@ -25,6 +25,7 @@ struct ByteWriter {
   void value(T& value) {
     raw(&value, sizeof value);
   }
+  /// Writes the number of entries. The second parameter has no effect; ByteReader::size() uses it.
   template <class List>
   void size(List& list, std::size_t = 1) {
     const std::size_t count = list.size();
@@ -45,7 +46,7 @@ struct ByteReader {
   template <class T>
   void value(T& value) {
     if constexpr (std::is_same_v<T, bool>) {
-      unsigned char byte = 0;  // copying a byte other than 0 or 1 into a bool is undefined behaviour
+      unsigned char byte = 0;  // reading a bool whose byte is neither 0 nor 1 is undefined behaviour
       raw(&byte, 1);
       value = byte != 0;
     } else {
@@ -63,7 +64,8 @@ struct ByteReader {
   }
 };
 
-/// Checks data that was read: throws std::runtime_error if `holds` is false. `expected`: for the message.
+/// Checks data that was read: throws std::runtime_error if `holds` is false. `expected`: what was expected, for the
+/// message.
 inline void require(bool holds, const char* expected) {
   if (!holds) throw std::runtime_error(std::string("the data does not fit: expected ") + expected);
 }

@@ -47,7 +47,8 @@ class BoundedQueue {
     return item;
   }
 
-  /// The producer calls close() at its end. Waiting items can still be popped. Only the first call has an effect.
+  /// The producer calls close() after its last push(). `failure`: exception of a producer that failed. Waiting items
+  /// can still be popped. Only the first call has an effect.
   void close(std::exception_ptr failure = nullptr) {
     {
       const std::lock_guard lock(mutex_);
@@ -58,7 +59,7 @@ class BoundedQueue {
     room_.notify_all();
   }
 
-  /// The consumer calls cancel() at its end. Waiting items are dropped.
+  /// The consumer calls cancel() when it pops no further items. Discards the waiting items.
   void cancel() {
     {
       const std::lock_guard lock(mutex_);

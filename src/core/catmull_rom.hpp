@@ -7,8 +7,8 @@
 
 namespace weft {
 
-/// Knot i of a spline of n knots, at least two. `i`: from −1 to n or, if the spline is closed, to n
-/// + 1. Beyond its ends, a closed spline wraps around, and an open spline is extended linearly.
+/// Position of knot `i` of a spline with n ≥ 2 knots. `i`: from −1 to n, or to n + 1 if the spline is closed. Outside
+/// of 0 to n − 1, a closed spline wraps around, and an open spline is extended linearly.
 inline Vec3 spline_knot(const std::vector<Vec3>& knots, bool closed, int i) {
   const auto count = static_cast<int>(knots.size());
   const auto knot = [&](int k) -> const Vec3& { return knots[static_cast<std::size_t>(k)]; };

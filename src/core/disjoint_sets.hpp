@@ -10,7 +10,8 @@
 
 namespace weft {
 
-/// Disjoint sets of the numbers 0 to count − 1, initially of one member each. The root of a set is its least member.
+/// Partition of the numbers 0 to count − 1 into disjoint sets, initially of one member each. The root of a set is its
+/// smallest member.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }

@@ -17,15 +17,15 @@ inline constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{256} << 20;
 inline constexpr std::uintmax_t kAnySize = std::numeric_limits<std::uintmax_t>::max();
 
 /// Returns all bytes of a regular file. Throws std::runtime_error, with the reason but without the
-/// file's name, if `file` is no regular file, is larger than `max_bytes` or the free memory, or
+/// file's name, if `file` is not a regular file, is larger than `max_bytes` or the free memory, or
 /// cannot be read.
 std::string read_bytes(const std::filesystem::path& file, std::uintmax_t max_bytes = kAnySize);
 
-/// The same, but throws Error(asset_unreadable) with the name of the file and the reason.
+/// Like read_bytes(), but throws Error(asset_unreadable) with the name of the file and the reason.
 std::string read_file(const std::filesystem::path& file, std::uintmax_t max_bytes = kAnySize);
 
-/// Throws std::runtime_error with the reason if `file` is no regular file or cannot be opened. Call
-/// it before a library opens the file itself.
+/// Throws std::runtime_error with the reason if `file` is not a regular file or cannot be opened. Call it before a
+/// library opens `file` itself.
 void check_is_file(const std::filesystem::path& file);
 
 /// Returns the first bytes of a regular file, at most `count`; empty if the file cannot be read.
@@ -33,9 +33,9 @@ std::string read_start(const std::filesystem::path& file, std::size_t count);
 /// Returns the last bytes of a regular file, at most `count`; empty if the file cannot be read.
 std::string read_end(const std::filesystem::path& file, std::size_t count);
 
-/// Returns the result of `read`, which parses `file`. If `read` throws a std::exception that is no
-/// Error, throws Error(asset_unreadable) with the name of the file instead: a broken file must not
-/// count as an internal error.
+/// Returns the result of `read`, which parses `file`. If `read` throws a std::exception that is not an Error, throws
+/// Error(asset_unreadable) with the name of the file instead, so that a broken file does not count as an internal
+/// error.
 template <class Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
   try {

@@ -20,8 +20,8 @@ struct Isolation {
 /// survives a crash of the child and, within the limits of `isolation`, an endless loop or a
 /// runaway allocation. If `work` throws a std::exception, throws std::runtime_error with its text;
 /// if memory or time runs out or the child crashes, throws std::runtime_error with the reason. If
-/// `stop` becomes true, throws Error(interrupted). The child has only the calling thread, so `work`
-/// must not wait for other threads.
+/// `stop` becomes true, throws Error(interrupted). The child has a copy of the calling thread but of no other thread,
+/// so `work` must not wait for other threads.
 std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation);
 
 }  // namespace weft

@@ -11,19 +11,19 @@
 
 namespace weft {
 
-/// Parses JSON. Throws an exception derived from std::exception if the text is no JSON, nests deeper than kMaxDepth
-/// (nesting.hpp), or has too many keys in its objects. Depth is limited because nlohmann::json copies, compares and
-/// writes recursively. The number of keys is limited because nlohmann::ordered_json compares each key with all earlier
-/// keys of its object.
+/// Parses JSON. Throws an exception derived from std::exception if the text is not JSON, nests deeper than kMaxDepth
+/// (nesting.hpp), or has too many keys in its objects. The depth is limited because nlohmann::json copies, compares and
+/// writes values recursively. The number of keys is limited because nlohmann::ordered_json compares each key with all
+/// earlier keys of its object.
 template <class Json = nlohmann::ordered_json>
 Json parse_json(std::string_view text);
 
 extern template nlohmann::ordered_json parse_json(std::string_view);
 extern template nlohmann::json parse_json(std::string_view);
 
-/// Returns the value of a key; `otherwise` if `json` is no object, if it lacks the key, or if the value is no T
-/// (std::string, double, or an int within its range). Use it instead of nlohmann::json::value(), which throws if `json`
-/// is no object or the type differs.
+/// Returns the value of a key; or `otherwise` if `json` is not an object, lacks the key, or has a value that is not a
+/// T. T is std::string, double or int (values within the range of int). Use this function instead of
+/// nlohmann::json::value(), which throws if `json` is not an object or the type differs.
 template <class T, class Json>
 T value_or(const Json& json, const char* key, T otherwise) {
   if (!json.is_object()) return otherwise;
@@ -44,8 +44,7 @@ T value_or(const Json& json, const char* key, T otherwise) {
   return fits ? found->template get<T>() : otherwise;
 }
 
-/// Contents of a JSON file; null if the file cannot be read, is larger than kMaxTextBytes, or is no
-/// JSON.
+/// Contents of a JSON file; null if the file cannot be read, is larger than kMaxTextBytes, or is not JSON.
 nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);
 
 enum class JsonLetters { all, ascii };

@@ -13,14 +13,14 @@ namespace weft::log {
 /// not escaped.
 std::string without_controls(std::string_view text, std::string_view kept = "\n\t");
 
+/// Prints `line`.
 void info(std::string_view line);
 
-/// Prints `warning: text`, and keeps the text for warnings(). Does nothing if this text is kept
-/// already.
+/// Prints `warning: text`, and adds the text to warnings(). Does nothing if warnings() contains this text already.
 void warn(std::string_view text);
 
-/// Like warn(), but prints `note: text` and keeps the text for notes(). For changes of a scene that
-/// the program makes on purpose.
+/// Like warn(), but prints `note: text` and adds the text to notes(). Use it for changes of a scene
+/// that the program makes on purpose.
 void note(std::string_view text);
 
 /// Passes the texts of all later calls of info(), warn() and note() to `handle`, in the thread of
@@ -28,12 +28,15 @@ void note(std::string_view text);
 /// and kept again.
 void set_handler(std::function<void(std::string_view text)> handle);
 
+/// The texts that warn() has kept, each once, in order.
 std::vector<std::string> warnings();
 
+/// The texts that note() has kept, each once, in order.
 std::vector<std::string> notes();
 
 /// Shows `line`, such as a progress bar, below all other lines, in place of the previous status
-/// line. If `line` is empty, only removes the previous status line. For terminals only.
+/// line. If `line` is empty, only removes the previous status line. Standard error must be a
+/// terminal.
 void status(std::string_view line);
 
 }  // namespace weft::log

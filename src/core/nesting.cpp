@@ -6,7 +6,7 @@
 namespace weft {
 namespace {
 
-/// Position behind the string whose opening quote is at `at`.
+/// Position after the string whose opening quote is at `at`.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   const char quote = text[at];
   const std::string_view triple_quote = quote == '"' ? "\"\"\"" : "'''";

@@ -19,8 +19,8 @@ struct Numerics {
     /// 1e4 N·s/m are not solved. Smaller: soft cloth takes twice as many iterations.
     double stiff_particle = 1e3;
     /// After n iterations, the error is estimated from the last max(`min_error_window`, n /
-    /// `error_window_divisor`) iterations, at most n. Fewer: solves end where the error only
-    /// stagnates, and cloth with a viscosity of 1e4 N·s/m gains energy.
+    /// `error_window_divisor`) iterations, at most n. With fewer iterations, solves end where the
+    /// error only stagnates, and cloth with a viscosity of 1e4 N·s/m gains energy.
     int min_error_window = 3;
     int error_window_divisor = 5;
     /// Maximum number n of cloth aggregates on the coarsest multigrid level. If there are more than
@@ -33,15 +33,15 @@ struct Numerics {
   struct Newton {
     /// Allowed error of a linear solve, relative to the allowed error of Newton's method. If the
     /// Newton error of a diagonal block (a cloth or rigid body) is at most this fraction of the
-    /// allowed error, the next linear solve leaves out this block (but see `slow_after`). 1: fewer
+    /// allowed error, the next linear solve omits this block (but see `slow_after`). 1: fewer
     /// iterations, but more strain.
     double linear_fraction = 0.8;
     /// Factor on `linear_fraction` and on `solver.linear_tolerance` for the midpoint rule, which damps nothing. Larger:
     /// flat sheets fold in free fall.
     double midpoint_tightening = 0.1;
-    /// `slope_left`: magnitude of the slope (residual · direction) at which a line search ends,
-    /// relative to that at its start. Smaller: more evaluations. Larger: more Newton iterations.
-    /// `line_trials`: maximum number of evaluations.
+    /// A line search ends if the magnitude of the slope (residual · direction) is at most
+    /// `slope_left` times its initial magnitude, or after `line_trials` evaluations. Smaller
+    /// `slope_left`: more evaluations. Larger: more Newton iterations.
     double slope_left = 0.5;
     int line_trials = 6;
     /// Number of Newton iterations after which the first solve of a step pauses, so that contacts
@@ -83,7 +83,7 @@ struct Numerics {
     /// rejection, the maximum is 1. Larger `largest_factor`: BDF2 amplifies earlier errors.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Length of a step [s] below which the step control does not go to reduce the local error. If a
+    /// Minimum length of a step that the step control chooses because of its local error [s]. If a
     /// step is not solved, it is halved even below this length; but if a step that is already
     /// shorter is not solved, the run ends. Without `time.tolerance`, this value has no effect.
     double min_step = 1e-5;
@@ -128,6 +128,7 @@ struct Numerics {
     ///   from 2 w to w / 2, because the surfaces become flat at the edges,
     /// - for edge pairs with cloth, while the closest point moves from the fraction w of an edge to its end.
     double ramp_width = 0.1;
+    /// Value of the sum in the second item at which the stiffness is zero: below it, surfaces count as flat at an edge.
     double flat_fold() const { return 0.5 * ramp_width; }
     /// Slip velocity below which a contact sticks: friction then grows with the slip [m/s]. For
     /// contacts that are springs, this velocity is at least `stick_spacings` [1/s] times the
@@ -207,8 +208,8 @@ struct Numerics {
     /// energy can reject the step. Larger: single frames show strain of 0.1 and more.
     double added_strain = 0.05;
     /// If the first solve of a step has added more energy than this when it pauses (`check_after`),
-    /// relative to the kinetic and elastic energy at the start of the step, it begins again with
-    /// fixed normal forces.
+    /// relative to the kinetic and elastic energy at the start of the step, the solve begins again
+    /// with fixed normal forces.
     double diverged_energy_ratio = 3;
   } repair;
 
@@ -250,8 +251,8 @@ struct Numerics {
     /// of the step, and the work of the solver's residual on a diagonal block in a step, relative
     /// to the kinetic energy of the block.
     double doubtful_gain = 0.1;
-    /// Energy per mass that is added to the bounds of gains and of the residual's work [J/kg]: it
-    /// lifts cloth by 1 cm.
+    /// Energy per mass that is added to the bounds of gains and of the residual's work [J/kg]: enough
+    /// to lift cloth by 1 cm.
     double negligible = 0.1;
   } energy;
 };

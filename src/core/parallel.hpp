@@ -18,9 +18,9 @@ void set_thread_count(int threads);
 /// The maximum number of threads that is in effect, at least 1.
 int thread_count();
 
-/// Estimates how much several threads would speed up the loops below, from a measurement on one
-/// thread, where the time of a loop is the sum of the times of its chunks. Counts only loops of
-/// several chunks that do not run inside another counted loop.
+/// Times of the loops below, measured on one thread, and from them estimates of the times on
+/// several threads. Only loops of several chunks count, and only if they do not run inside another
+/// counted loop.
 struct LoopCounts {
   static constexpr std::array<std::size_t, 4> kThreads{2, 4, 8, 16};
 
@@ -34,7 +34,7 @@ struct LoopCounts {
 /// thread_count() is 1.
 inline LoopCounts* counted_loops = nullptr;
 
-/// Counts a loop if it has several chunks and there are `counted_loops`. The lifetime of this
+/// Counts a loop if it has several chunks and `counted_loops` is not null. The lifetime of this
 /// object is the wall time of the loop.
 class CountedLoop {
  public:
@@ -84,8 +84,8 @@ class FunctionOfIndex {
 };
 
 /// Calls run(c) for each c below `chunks`, and returns when all calls have returned. The order of
-/// the calls is arbitrary, and several threads may share them. Not a template, because to
-/// instantiate TBB's code for each loop would take a tenth of the build time.
+/// the calls is arbitrary, and several threads may share them. This function is not a template,
+/// because to instantiate TBB's code for each loop would take a tenth of the build time.
 void run_chunks(std::size_t chunks, FunctionOfIndex run);
 
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each, or fewer in the last. Chunks

@@ -19,7 +19,7 @@ inline constexpr std::size_t kStages = 3;
 /// A number of frames for each stage.
 using StageCounts = std::array<int, kStages>;
 
-/// "48 s", "3:07 min", "1:02:45 h".
+/// Duration as text for users, such as "48 s", "3:07 min" or "1:02:45 h".
 std::string format_duration(double seconds);
 
 /// Estimates the remaining time from the frames of the last half minute: as layers of cloth come

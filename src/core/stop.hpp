@@ -25,8 +25,8 @@ inline long long monotonic_ns() {
   return clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
 }
 
-/// A check that a program that uses the library may set; empty: none. If it throws, its exception
-/// ends the computation.
+/// Function that a program which uses the library may set; empty: none. If the function throws, its exception ends the
+/// computation.
 inline std::function<void()> host_check;
 
 /// Calls host_check, if there is one, and lets its exception pass. Throws Error(interrupted) if a

@@ -29,8 +29,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Path of a temporary file for the signal handler: in fixed memory, without a lock. A run has far
-// fewer than 64 temporary files at once.
+// Path of a temporary file, for the signal handler, which may neither allocate memory nor wait for a lock. A run has
+// far fewer than 64 temporary files at once.
 struct Slot {
   enum State : int { free, claimed, active };
   std::atomic<int> state{free};
@@ -126,9 +126,9 @@ bool rename_to_free_name(const fs::path& from, const fs::path& to) {
 }
 
 // Creates and locks the file or folder; returns its descriptor, or −1 with errno. Before this
-// process locks it, another process that cleans up the parent folder may lock and remove it. Then
-// tries again, for half a second at most, because the other process may have to wait for a
-// processor.
+// process locks it, another process that cleans up the parent folder may lock and remove it. In
+// this case, the function tries again, for half a second at most, because the other process may
+// have to wait for a processor.
 int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
   constexpr int kAttempts = 10;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -138,7 +138,7 @@ int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
     const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
     if (descriptor < 0 && errno != ENOENT) return -1;
     if (descriptor < 0) continue;
-    // If the file system has no locks, no process cleans up (remove_abandoned()), so the lock is not needed.
+    // If the file system has no locks, remove_abandoned() removes nothing, so the lock is not needed.
     if ((lock(descriptor) || errno != EWOULDBLOCK) && has_name(path, descriptor)) return descriptor;
     ::close(descriptor);
     errno = EBUSY;
@@ -149,7 +149,7 @@ int create_and_lock(const fs::path& path, TemporaryName::Kind kind) {
 }  // namespace
 
 TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
-  // Absolute, so that the name stays valid if the working folder changes.
+  // The path is absolute, so that it stays valid if the working folder changes.
   std::error_code error;
   const fs::path absolute = fs::absolute(final_name, error);
   if (error || !prepare_once(absolute.parent_path(), error))
@@ -248,14 +248,14 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
-  // Several machines may draw parts of one film; each of them writes the same scene file beside the
-  // film.
+  // Several machines may draw parts of one film. Each of them writes the same scene file beside the film, so a
+  // protected file with the same content is no conflict.
   const auto is_there = [&] { return !may_replace(file) && holds(file, content); };
   if (is_there()) return;
   try {
     temporary.commit(flush);
   } catch (const Error&) {
-    if (!is_there()) throw;  // otherwise another machine was first
+    if (!is_there()) throw;  // if it is there, another machine has written it meanwhile
   }
 }
 

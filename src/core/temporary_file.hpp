@@ -70,7 +70,7 @@ void protect_missing_file(const std::filesystem::path& file);
 /// Whether `file` is not protected by protect_missing_file().
 bool may_replace(const std::filesystem::path& file);
 
-/// The final name (or its hash) that a temporary name contains; empty if `temporary_name` is no temporary name.
+/// The final name (or its hash) that a temporary name contains; empty if `temporary_name` is not a temporary name.
 std::string_view final_name_of(std::string_view temporary_name);
 
 /// Whether a file has exactly this content.

@@ -3,7 +3,8 @@
 
 namespace weft {
 
-/// In the same order as in shaders/weave.glsl. `denim`: a twill with undyed weft. `none`: felt or leather.
+/// Pattern of the threads. The order is that of the numbers in shaders/weave.glsl. `denim`: a twill with undyed weft.
+/// `none`: no threads, as in felt or leather.
 enum class Threads { plain, twill, denim, knit, none };
 
 }  // namespace weft

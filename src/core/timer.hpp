@@ -53,7 +53,7 @@ struct StageTime {
 /// nothing else. Set it before any stage runs.
 inline bool charge_all_threads = false;
 
-/// Adds the wall and CPU time of a scope to those of a stage.
+/// Adds the wall and CPU time from its construction to its destruction to those of a stage.
 class Stopwatch {
  public:
   explicit Stopwatch(StageTime& stage) : stage_(stage) {}
@@ -69,7 +69,7 @@ class Stopwatch {
   double cpu_start_ = cpu_seconds();
 };
 
-/// Time that `work` takes.
+/// Calls `work` and returns the time that the call takes.
 template <class Work>
 StageTime timed(const Work& work) {
   StageTime stage;

@@ -9,7 +9,7 @@
 
 namespace weft {
 
-/// Parses TOML. Throws toml::parse_error if the text is no TOML or nests_too_deep() is true.
+/// Parses TOML. Throws toml::parse_error if the text is not TOML or nests_too_deep() is true.
 /// `source`: path of the file, for error messages.
 inline toml::table parse_toml(std::string_view text, std::string_view source = {}) {
   if (nests_too_deep(text))

@@ -25,8 +25,7 @@ inline std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Tolerance for ratios, and for lengths [m]: far above rounding errors, and far below all sizes
-/// that matter.
+/// Tolerance for ratios and for lengths [m]: far above rounding errors, far below all sizes that matter.
 inline constexpr double kRoundoff = 1e-9;
 
 inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
