@@ -24,8 +24,8 @@ struct AirParameters {
 /// initial velocity (Etzmuß et al. 2001, "Time integration"), terminal velocities and folds in
 /// steady wind would depend on the step size. The matrix contains the derivative of the drag with
 /// respect to velocities, lumped on the diagonal. The lumped matrix is an upper bound of the full
-/// derivative, and exact if all corners of a face change their velocity alike. It omits the
-/// derivatives of normals and areas.
+/// derivative, and exact if the velocities of all corners of a face change by the same amount. It
+/// omits the derivatives of normals and areas.
 class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);

@@ -8,9 +8,9 @@
 
 namespace weft::forces {
 
-/// The bands of a sheet. A piece of an elastic band, with length l, rest length r and stiffness k [N], has the energy ½
-/// k r (l/r − 1)². At each particle between two pieces, a hem has the energy ½ E L ‖s''‖² with the bending stiffness E
-/// [N·m²], the second difference s'' of the positions, and the mean L of the rest lengths of the cloth along both
+/// The bands of a sheet. A piece of an elastic band, with length l, rest length r and stiffness k [N], has the energy
+/// ½ k r (l/r − 1)². At each particle between two pieces, a hem has the energy ½ E L ‖s''‖² with the bending stiffness
+/// E [N·m²], the second difference s'' of the positions, and the mean L of the rest lengths of the cloth along both
 /// pieces. A hem is straight at rest. Therefore, if the edge of the cloth is curved with a radius R
 /// at rest, the hem acts on the cloth with a force of about E/R² [N]. A seam allowance is an
 /// elastic band as stiff as a strip of cloth of its width.

@@ -21,10 +21,10 @@ struct CordParameters {
 
 /// The forces on one rope or cord: a chain of particles. A piece is the part between two consecutive particles.
 ///
-/// Stretch: a piece of length l and rest length r has the energy ½ EA r (l / r − 1)² and the viscous tension η d/dt (l
-/// / r). Bending: each particle between two pieces has the energy ½ EI L ‖s''‖². s'' is the second difference of the
+/// Stretch: a piece of length l and rest length r has the energy ½ EA r (l/r − 1)² and the viscous tension η d(l/r)/dt.
+/// Bending: each particle between two pieces has the energy ½ EI L ‖s''‖². s'' is the second difference of the
 /// positions with the rest lengths as spacings, and L is the mean of both rest lengths. At clamps, L is half of the
-/// rest length on the free side, as in Bend. The cord is straight at rest. For viscosity of bending
+/// rest length on the free side, as in Bend. The cord is straight at rest. For the viscosity of bending
 /// see BendDamping. Air: the drag on a piece is −½ ρ c d l ‖v_n‖ v_n; each end gets half of it. v_n
 /// is the mean velocity of both ends relative to the air, without its component along the piece.
 class Cord final : public Membrane {
@@ -60,7 +60,7 @@ class Cord final : public Membrane {
   };
   struct BendElement {
     std::array<Index, 3> particles;
-    double before, after;                      // initial rest lengths of the two pieces [m]
+    double before, after;                      // initial rest lengths of the pieces 01 and 12 [m]
     double initial_length;                     // L at the initial rest lengths [m]
     std::array<double, 3> weights{};           // of s'' [1/m²]
     double length = 0;                         // L [m]

@@ -238,10 +238,10 @@ Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& stat
 
 // Sums (k (1 − lateral) + rate η) ∂L ∂Lᵀ over the ratios L of length to rest length, with the stretch stiffness k and
 // the viscosity η, and the same for shear without `lateral`. Then adds the geometric stiffness
-// (that of the elastic stresses). Across n, it has the gradients of State::flat. Along n, it has
-// those of a cell with its middle at the mean of the corners (if ‖n‖ = 1), plus the stiffness of
-// the height. In all directions, the stiffness of the twist is added. If `definite`, the part of
-// the shear stress is made positive semidefinite, as in Shear.
+// (that of the elastic stresses). Perpendicular to n, it is computed from the gradients of
+// State::flat. Along n, it is computed from those of a cell with its middle at the mean of the
+// corners (if ‖n‖ = 1), plus the stiffness of the height. The stiffness of the twist acts in all
+// directions. If `definite`, the part of the shear stress is made positive semidefinite, as in Shear.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];

@@ -65,7 +65,7 @@ class CrossedMembrane final : public TriangleMembrane {
     std::array<Vec3, 2> diagonals;
     double size = 0;                // S [m²]
     Vec3 direction = Vec3::Zero();  // e, unit vector of the cross product of the diagonals
-    double kept_change = 0;         // κ: along e, S δn is κ times the change of D₁ × D₂
+    double kept_change = 0;         // κ: e·δn = κ e·δ(D₁ × D₂) / S; 0 if the cell is not folded
   };
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
   static State state_of(const Cell& cell, const Five& positions);

@@ -123,7 +123,7 @@ inline void add_scalars(const solver::AssemblyRows& assembly, const IndexLanes& 
 }
 
 /// Calls body(index, lane, is_used) for the four lanes of pack number `pack` of `count` elements. In the last pack,
-/// lanes behind the last element repeat it, with is_used = false.
+/// lanes after the last element repeat it, with is_used = false.
 template <class Body>
 void for_each_lane(std::size_t count, std::size_t pack, const Body& body) {
   for (std::size_t l = 0; l < 4; ++l) body(std::min(4 * pack + l, count - 1), l, 4 * pack + l < count);
@@ -133,8 +133,8 @@ inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
 }
 
-/// Ranges::partition() for packs of four elements. all_of(pack) returns the particles of a pack: one IndexLanes per
-/// corner.
+/// Calls Ranges::partition() for packs of four elements. all_of(pack) returns the particles of a pack: one IndexLanes
+/// per corner.
 template <class Pack, class AllOf>
 void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
   ranges.partition(bounds, packs.size(), [&](std::size_t p, const auto& visit) {

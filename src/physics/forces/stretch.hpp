@@ -19,8 +19,8 @@ struct StretchParameters {
 ///
 /// An edge d = x_j − x_i of rest length l that covers the area A has the energy ½ k A (‖d‖/l − 1)², k = k1 or k2. The
 /// force density of the paper, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], acts on x_j; times A, it is the force of
-/// an edge on x_j. Viscosity has the same form, with the rate of strain instead of the strain: dissipation ½ η A (d/dt
-/// (‖d‖/l))².
+/// an edge on x_j. Viscosity has the same form, with the rate of strain instead of the strain: the dissipation is
+/// ½ η A (d(‖d‖/l)/dt)².
 class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);

@@ -53,13 +53,12 @@ class Lock {
   double onset_, span_;
 };
 
-/// Extensions at which Newton's method linearises the locks of a cloth's threads. At its extension
-/// in `extensions`, each piece of a thread has the tension that the last linear solve predicted:
-/// the tension is a dual unknown, like the normal force of contacts. If Newton's method linearised
-/// at the iterate, a piece would lose only a third of its excess over the onset per iteration,
-/// because the stress is cubic.
+/// Extensions at which Newton's method linearises the locks of a cloth's threads. They follow from
+/// the tensions that the last linear solve predicted, so that the tension is a dual unknown, like
+/// the normal force of contacts. If Newton's method linearised at the iterate, a piece would lose
+/// only a third of its excess over the onset per iteration, because the stress is cubic.
 struct LockLinearisation {
-  std::vector<double> extensions;           ///< per piece of a thread
+  std::vector<double> extensions;           ///< ‖s‖ − 1 of each piece of a thread, at the predicted tension
   std::vector<std::uint32_t> beyond_onset;  ///< pieces beyond the onset at the last update()
 };
 
@@ -78,7 +77,7 @@ class StretchLimit final : public Force {
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
-  /// Does nothing: few pieces lock at a time; add() looks up their blocks.
+  /// Does nothing, because add() looks up the blocks of the few pieces that lock at a time.
   void attach(const solver::Assembly& /*assembly*/) override {}
   void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;

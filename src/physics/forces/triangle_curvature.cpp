@@ -44,7 +44,7 @@ class Slopes {
   /// Triangles around an edge, unfolded into the plane of the first one.
   struct Patch {
     std::vector<std::pair<Index, std::array<Point, 3>>> triangles;
-    // The two ends of the edge, the two vertices opposite the edge, then others.
+    // Vertices and their positions: the two ends of the edge, the two vertices opposite it, then others.
     std::vector<std::pair<Index, Point>> vertices;
     std::size_t last_ring = 0;  // index of the first triangle of the last ring
   };
@@ -191,7 +191,7 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
 Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& axes,
                                               const std::array<Point, 2>& clamp) const {
   const Point line = clamp[1] - clamp[0];
-  // In units of the clamp's length, so that the moments are about 1.
+  // The distance is in units of the clamp's length, so that the moments are about 1.
   const auto distance = [&](const Point& at) { return std::max(0.0, cross(at - clamp[0], line) / std::norm(line)); };
   const auto count = static_cast<Eigen::Index>(patch.vertices.size());
   std::vector<char> in_clamp(patch.vertices.size());
@@ -280,7 +280,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
     bool depends_on_pins = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
-      const Vec3 twist = packed(outward * along.transpose()) / area;  // l of the sum cancels the 1/l of ∂/∂t
+      const Vec3 twist = packed(outward * along.transpose()) / area;  // the factor l cancels the 1/l of ∂s/∂t
       add(corners[(k + 1) % 3], twist);
       add(corners[k], -twist);
       const Vec3 bend = packed(outward * outward.transpose());

@@ -39,14 +39,14 @@ class TriangleMembrane : public Membrane {
   /// For sewn sheets: interpolates the rest shape of each triangle between its shape at the start (progress 0; the
   /// start has no stress) and that in the pattern (progress 1). The deformation from the pattern to the start has a
   /// right stretch tensor U in the axes of weft and warp; this function interpolates linearly between U and the
-  /// identity. A triangle that accept_rest_shape() has stopped keeps its shape; one that was
-  /// stopped before makes up for it at twice the speed.
+  /// identity. A triangle that accept_rest_shape() has stopped keeps its rest shape. A triangle that
+  /// was stopped earlier progresses at twice the speed until it has caught up with `progress`.
   void interpolate_rest_shape(double progress);
   /// For sewn sheets, after each step: stops the triangles whose threads are extended by more than
-  /// `max_extension` with corners at x [m], until the next call. So cloth that is sewn too narrow
-  /// for a body stays as wide as it must be. Threads that are shorter at the start than in the
-  /// pattern do not count, because further sewing releases them. Returns whether the progress has
-  /// become 1 in this step.
+  /// `max_extension` with corners at x [m], until the next call. Thus cloth whose pattern is too
+  /// narrow for a body stays wide enough. Threads that are shorter at the start than in the pattern
+  /// do not count, because further sewing releases them. Returns whether the progress has become 1
+  /// in this step.
   bool accept_rest_shape(std::span<const Vec3> x, double max_extension);
   /// The triangle whose shape is wider than in the pattern by the largest fraction of its width.
   struct Widening {
@@ -58,7 +58,7 @@ class TriangleMembrane : public Membrane {
   /// the progress of the last accepted step, after restoring.
   template <class Archive>
   void serialize_rest_shape(Archive& archive, double progress);
-  /// As serialize_rest_shape(), from the same sheet elsewhere.
+  /// Copies what serialize_rest_shape() saves from `other`, a membrane of the same sheet.
   void copy_rest_state(const TriangleMembrane& other);
   std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
@@ -76,7 +76,7 @@ class TriangleMembrane : public Membrane {
   ShearParameters shear_;
 
  private:
-  /// Four triangles, with corners in the order of particle numbers.
+  /// Four triangles, each with its corners in ascending order of particle numbers.
   struct Triangles {
     std::array<IndexLanes, 3> corners{};
     std::array<IndexLanes, 3> blocks{};  // of the pairs 01, 02, 12
@@ -104,12 +104,12 @@ class TriangleMembrane : public Membrane {
   /// interpolate_rest_shape).
   struct Start {
     Eigen::Matrix2d inverse, excess;
-    double lag = 0;           // by which the progress of this triangle lags at the last accepted step
-    bool is_stopped = false;  // until the next accepted step
+    double lag = 0;           // progress at the last accepted step, minus that of this triangle
+    bool is_stopped = false;  // whether the triangle keeps its rest shape until the next accepted step
   };
   double progress_of(const Start& start, double progress) const;
   std::vector<Start> starts_;
-  double progress_ = 0, accepted_progress_ = 0;  // the last one, and that of the last accepted step
+  double progress_ = 0, accepted_progress_ = 0;  // of the last interpolate_rest_shape(), of the last accepted step
   std::vector<Triangles> packs_;
   Ranges ranges_;  // of packs
 };
