@@ -34,7 +34,7 @@ double Sliding::friction_error(const solver::DiagonalBlock& rows, std::span<cons
 }
 
 bool is_held(const solver::DiagonalBlock& rows, std::span<const solver::ParticleConstraint> constraints) {
-  constexpr double kTwoDirections = 1.5;
+  constexpr double kTwoDirections = 1.5;  // the trace of `free` is the number of free directions
   return std::ranges::any_of(constraints, [&](const solver::ParticleConstraint& constraint) {
     return constraint.particle >= rows.begin && constraint.particle < rows.end &&
            constraint.free.trace() < kTwoDirections;

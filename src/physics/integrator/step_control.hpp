@@ -22,6 +22,7 @@ class StepControl {
   /// Whether a step over h [s] with this error [m] is accepted. If h is at most
   /// `Numerics::Steps::min_step`, any finite error is accepted.
   bool accepts(double h, double error) const;
+  /// Whether this error [m] is within the tolerance.
   bool meets(double error) const { return error <= tolerance_; }
 
   /// Length of the next step [s]. The three functions below update it after a step over h [s] that

@@ -214,7 +214,7 @@ void Stepper::select_unsolved(int iterations) {
 // a slope is not finite, returns that slope.
 double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
-  // of the energy: positive before the minimum along delta, negative behind it. If contacts begin or compressed edges
+  // of the energy: positive before the minimum along delta, negative after it. If contacts begin or compressed edges
   // come under tension on the way, the product becomes strongly negative; full steps would then oscillate. If friction
   // and compression make the matrix too stiff, the product hardly decreases.
   const std::size_t n = x_.size();
@@ -302,14 +302,14 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   do {
     end_if_stopped();
     linearise(system, now, stage, previous_iterations + report.newton_iterations);
-    // Later iterations reuse the sums over aggregates: the stiffness of long waves hardly changes.
+    // Later iterations reuse the sums over aggregates, because the stiffness of long waves hardly changes in a solve.
     {
       const Stopwatch watch(times_.preconditioner);
       cg_.prepare(linear,
                   report.newton_iterations == 0 ? solver::AggregateSums::recompute : solver::AggregateSums::reuse);
     }
     gather_residual(masses, stage);
-    if (report.newton_iterations == 0) {  // later iterations did this at the end of the previous one
+    if (report.newton_iterations == 0) {  // before a later iteration, the end of the previous one has done this
       estimate_local_errors(masses, now, stage, h);
       update_tolerances(h, previous_iterations);
     }

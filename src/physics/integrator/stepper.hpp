@@ -32,7 +32,9 @@ struct NewtonParameters {
   double position_tolerance = 0;
 };
 
+/// Result of Stepper::step(). Only after `solved` and `unfinished` is the end state valid.
 enum class Verdict { solved, unfinished, not_finite, newton_stalled, indefinite };
+/// The verdict in words, for messages.
 std::string_view describe(Verdict verdict);
 
 struct StageTimes {
@@ -49,8 +51,8 @@ struct StepReport {
   /// Estimate of the error of positions that Newton's method adds: the largest remaining velocity
   /// error of a diagonal block times `Numerics::Newton::lasting_time` [m].
   double solver_error = 0;
-  /// Velocity error that remains, and its bound, of the diagonal block in which left / allowed is
-  /// largest [m/s].
+  /// Remaining velocity error and its bound, in the diagonal block with the largest ratio
+  /// left / allowed [m/s].
   double left = 0, allowed = 0;
   StageTimes times;
 };
@@ -137,7 +139,7 @@ class Stepper {
   /// Longest step [s] that may follow the last accepted one; infinite without a history, or if the method has no bound.
   double longest_step() const;
 
-  /// Forgets the history: the next BDF2 step is an Euler step. For the first step and after discontinuities.
+  /// Forgets the history, so that the next BDF2 step is an Euler step. Call it before a discontinuity of the motion.
   void restart() { history_.h = 0; }
 
   /// Saves or restores the history of `particles` particles and the method, which decides longest_step(). Throws
@@ -185,6 +187,7 @@ class Stepper {
   std::span<const Vec3> predict_velocity_change(std::span<const double> masses, const State& now);
   solver::LinearReport solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0);
   double search_along_delta(System& system, const State& now, const Stage& stage);
+  /// Forces that residual() evaluates: System::forces() or System::linear_forces().
   enum class Equation { itself, linear };
   void linearise(System& system, const State& now, const Stage& stage, int iteration);
   void residual(System& system, const State& now, const Stage& stage, Equation equation);
@@ -221,7 +224,7 @@ class Stepper {
   Sliding sliding_;
   std::vector<BlockState> blocks_;
   std::vector<std::size_t> unsolved_;
-  // Per block: allowed linear errors in the mass-weighted norm, and root mean square velocities [m/s].
+  // Per block: allowed linear errors in the mass-weighted norm [√kg m/s], and root mean square velocities [m/s].
   std::vector<double> goals_, predicted_speeds_, solved_speeds_, speeds_;
   std::vector<Past> past_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, motion_,

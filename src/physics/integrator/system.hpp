@@ -28,10 +28,12 @@ struct StagePoint {
   std::span<const Past> past = {};
 };
 
+/// The physical system of a Stepper. Spans have one entry per particle.
 class System {
  public:
   virtual ~System() = default;
 
+  /// Masses of the particles [kg].
   virtual std::span<const double> masses() const = 0;
 
   /// Adds the forces of a step that depend neither on positions nor on velocities [N], without the
@@ -46,11 +48,11 @@ class System {
   /// tangent. A line search along the solution of the linear system must use these forces.
   virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
 
-  /// As linear_forces(), and fills linear_system(): the matrix with a positive definite
-  /// approximation of rate² M − ∂f/∂x − rate ∂f/∂v, and the terms. First updates what stays
+  /// Does what linear_forces() does, and sets the matrix and the terms of linear_system() to a
+  /// positive definite approximation of rate² M − ∂f/∂x − rate ∂f/∂v. First updates what stays
   /// constant between linearisations, such as the normal forces that limit friction. `iteration`:
   /// number of Newton iterations of the solve before this one. If a call of Stepper::step()
-  /// continues a paused one, the iterations of that call count, too.
+  /// continues a paused solve, the iterations before the pause count, too.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// Whether translating a diagonal block changes no force except those of terms, constraints and
