@@ -41,7 +41,7 @@ struct Physics {
 
 struct FanKey {
   double time = 0;                             ///< [s], strictly increasing
-  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; axis of the cone, of any length but 0
+  Vec3 position{0, 0, 0}, direction{1, 0, 0};  ///< centre of the outlet disc [m]; axis of the cone, not zero
   double speed = 5;                            ///< speed of the air at the centre of the disc [m/s]
 };
 

@@ -38,7 +38,8 @@ GustField::GustField(const Gusts& gusts, const Vec3& wind) {
     energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());
     sum += energies.back();
   }
-  // The standard specifies the numbers of this generator, but not those of its distributions.
+  // The C++ standard specifies the output of this generator, but not that of its distributions, which therefore are not
+  // used.
   std::mt19937_64 generator(static_cast<std::uint64_t>(gusts.seed));
   const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // in [0, 1)
   for (int shell = 0; shell < kShells; ++shell) {

@@ -16,8 +16,8 @@ namespace weft::model {
 ///     E(k) ~ k⁴ / (k² + k_e²)^(17/6) for the wave number k.
 ///
 /// At large k, this spectrum falls as k^(−5/3). k_e is chosen so that Gusts::size is the integral
-/// length. The waves move with the mean wind. Besides, the phase of each wave changes at half the
-/// turnover rate of eddies of its size.
+/// length. The waves move with the mean wind. In addition, the phase of each wave changes at half
+/// the turnover rate of eddies of its size.
 class GustField {
  public:
   /// `wind`: the mean velocity of the air [m/s].

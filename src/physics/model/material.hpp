@@ -7,7 +7,7 @@ namespace weft::model {
 
 /// A fabric; the values do not depend on the mesh (Etzmuß et al. 2001, "Elastic Model").
 struct Material {
-  std::string fabric = "cotton";  ///< fabric that gives the values that a scene omits; a name only
+  std::string fabric = "cotton";  ///< name of the fabric from which the scene took the values below by default
   double density = 0.15;          ///< [kg/m²]
   double stretch_weft = 800;      ///< k1: stiffness along weft [N/m]
   double stretch_warp = 2100;     ///< k2: stiffness along warp [N/m]

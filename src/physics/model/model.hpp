@@ -30,8 +30,8 @@ namespace weft::model {
 struct WeightedParticle {
   Index particle = 0;   ///< index within the cloth
   double fraction = 1;  ///< in (0, 1]. Pin with a strength, attachment: factor on the stiffness of
-                        ///< the particle's spring. Weight: the particle gets mass in proportion to
-                        ///< it.
+                        ///< the particle's spring. Weight: the additional mass of the particle is
+                        ///< proportional to it.
   bool faded = false;   ///< pin: whether the particle is in the fade, a zone around the pin's
                         ///< region in which `fraction` falls to 0
 };
@@ -43,10 +43,9 @@ struct Pin {
   motion::PoseTrack motion;                 ///< without `body`: motion of `middle` in the world;
                                             ///< without keys, the particles stay in place
   std::optional<std::size_t> body;          ///< number of the body that the pin follows; absent: none
-  /// If the key frames of `body` include a point for each particle of the pin: number of the first
-  /// particle's point, for Model::vertex(); the points of the other particles follow in order.
-  /// Absent: if `body` deforms, each particle follows the nearest triangle of `body`; if `body` is
-  /// rigid, all follow its pose.
+  /// The key frames of `body` may include one point for each particle of the pin, in order. Then
+  /// this is the number of the first point, for Model::vertex(). Absent: if `body` deforms, each
+  /// particle follows the nearest triangle of `body`; if `body` is rigid, all follow its pose.
   std::optional<std::size_t> first_vertex;
   double release = -1;             ///< time of release [s]; negative: never
   std::optional<double> strength;  ///< stiffness of the spring of a particle with the fraction 1
@@ -97,10 +96,10 @@ struct Cloth {
 struct Dynamics {
   mesh::RigidFrame frame;
   double mass = 0;                 ///< [kg]
-  Vec3 velocity{0, 0, 0};          ///< added at `release` to the velocity that its keys give [m/s]
+  Vec3 velocity{0, 0, 0};          ///< added at `release` to the velocity that the body's keys give [m/s]
   Vec3 angular_velocity{0, 0, 0};  ///< likewise, about the centre of mass [rad/s]
-  double release = 0;              ///< time from which forces move the body, until then `mover` does [s];
-                                   ///< minus infinity: forces always do
+  double release = 0;              ///< time from which forces move the body [s]; until then, Body::mover
+                                   ///< moves it; minus infinity: forces always move it
 };
 
 /// Some vertices of a body, with a thickness and friction of their own.
@@ -155,11 +154,11 @@ struct Attachment {
   std::string name;
   std::size_t cloth = 0;  ///< number of the cloth whose particles are attached
   std::vector<WeightedParticle> particles;
-  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; exactly one of both is given
+  std::optional<std::size_t> to_cloth, to_body;  ///< number of the target; exactly one of the two is given
   double stiffness = 10000;                      ///< stiffness of the spring of a particle with the fraction 1 [N/m]
-  std::optional<double> length;                  ///< rest length of the springs [m]; absent: of
-                                                 ///< each spring, the distance of its ends at
-                                                 ///< `begin`
+  std::optional<double> length;                  ///< rest length of the springs [m]; absent: for
+                                                 ///< each spring, the distance between its ends
+                                                 ///< at `begin`
   double begin = -1e5, release = -1;    ///< times between which the springs act [s]; negative release: until the end
   std::optional<double> breaking_load;  ///< sum of the spring forces above which all springs break [N]; absent: never
 };

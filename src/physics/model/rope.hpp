@@ -28,7 +28,7 @@ struct Rope {
   double diameter = 0;          ///< contact diameter [m]
   double drag = 0;              ///< drag coefficient of a cylinder, for motion across the rope
   motion::Interpolation interpolation = motion::Interpolation::cubic;  ///< between `keys`
-  std::vector<RopeKey> keys;  ///< of the rest length; empty: the sum of `lengths`
+  std::vector<RopeKey> keys;  ///< of the rest length; if empty, the rest length stays the sum of `lengths`
 };
 
 }  // namespace weft::model

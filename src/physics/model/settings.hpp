@@ -11,8 +11,8 @@ namespace weft::model {
 /// `kMaxStepsInFrame`: largest number of steps in a frame, so that an int can count them.
 inline constexpr double kMinStep = 1e-7, kMaxStepsInFrame = 1e9;
 
-/// Times that differ by less count as equal [s]: the end of a step is a sum of step lengths, which rounding parts from
-/// the time that a scene prescribes.
+/// Times that differ by less count as equal [s]: the end of a step is a sum of step lengths, which differs by rounding
+/// errors from the time that a scene prescribes.
 inline constexpr double kSameTime = 1e-9;
 /// Whether `t` is later than `prescribed`, by more than rounding.
 constexpr bool is_later(double t, double prescribed) {
@@ -33,8 +33,8 @@ struct Time {
 struct Solver {
   double newton_tolerance = 0.4;  ///< error that the solver may leave in a step, relative to the
                                   ///< local truncation error, with a visibility threshold as floor
-  int newton_iterations = 60;     ///< maximum in one solve, of which a step may need several; if it
-                                  ///< is reached without a solution, the step is rejected
+  int newton_iterations = 60;     ///< maximum number of iterations in one solve (a step may need
+                                  ///< several solves); if they do not suffice, the step is rejected
   double linear_tolerance = 0.1;  ///< allowed error of a linear solve, relative to its solution,
                                   ///< both in the energy norm
   int linear_iterations = 1000;   ///< maximum number of conjugate gradient iterations in one linear solve
