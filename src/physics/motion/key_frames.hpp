@@ -33,7 +33,7 @@ class KeyFrames {
 
   bool moving() const { return keys_.size() > 1; }
   std::vector<double> times() const;  ///< of the keys [s]
-  std::size_t bytes() const;
+  std::size_t bytes() const;          ///< memory of the keys [bytes]
 
  private:
   /// Position of a time among the keys: `s` [s] after key i. `is_still`: before the first key, or from the last one on.

@@ -62,8 +62,8 @@ std::vector<Vec3> rotation_vectors_between(const std::vector<Pose>& poses) {
       continue;
     }
     Vec3 turn = log(poses[i + 1].rotation * poses[i].rotation.conjugate());
-    // For half a turn, rounding errors decide the sign of the axis: take the sign for which the
-    // axis is closer to that of the previous turn.
+    // For half a turn, rounding errors decide the sign of the axis. This loop takes the sign for
+    // which the axis is closer to that of the previous turn.
     if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
       turn -= 2 * kPi * turn.normalized();
     turns.push_back(turn);
