@@ -12,7 +12,7 @@ namespace weft::solver {
 /// Assembles the symmetric BlockMatrix of the forces and masses of all particles. Forces between
 /// particles do not change if all particles translate together, so the blocks of these forces sum
 /// to zero in each row. Therefore such forces add only the block (i, j) of each pair of particles
-/// i < j: a triangle adds three blocks instead of nine. Each particle also has an own block, to
+/// i < j: a triangle adds three blocks instead of nine. Each particle also has its own block, to
 /// which the terms of this particle alone are added (its mass, the drag of air). complete_rows()
 /// sets each block (j, i) to the transpose of block (i, j), and each diagonal block such that its
 /// row sums to the own block. Before complete_rows(), the diagonal block holds the own block
@@ -72,7 +72,7 @@ class Assembly {
 class AssemblyRows {
  public:
   AssemblyRows() = default;
-  /// For scalars alone, of all pairs.
+  /// Accepts scalars of all pairs, but no blocks.
   AssemblyRows(Assembly& assembly) : assembly_(&assembly), scalars_{0, static_cast<Index>(assembly.scalars_.size())} {}
   AssemblyRows(Assembly& assembly, BlockMatrix& matrix) : AssemblyRows(assembly, matrix, 0, matrix.rows()) {}
   AssemblyRows(Assembly& assembly, BlockMatrix& matrix, Index begin, Index end)

@@ -75,7 +75,7 @@ void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::
   const double* value = values_.data() + 9 * static_cast<std::size_t>(full.start[begin]);
   const auto entry = [&](Index column) -> const Vector& { return x[static_cast<std::size_t>(column)]; };
   for (std::size_t row = begin; row < end; ++row) {
-    // Lane 3 holds the number behind the column, and is ignored.
+    // Lane 3 holds the number after the column, and is ignored.
     Lanes sum0{}, sum1{}, sum2{};
     for (Index s = full.start[row]; s < full.start[row + 1]; ++s, value += 9) {
       const Vector& xj = entry(full.columns[s]);

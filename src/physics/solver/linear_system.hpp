@@ -125,6 +125,7 @@ inline AnyTerm term_at(const LinearSystem& system, std::size_t number) {
   return {term.particles, term.weights, term.stiffness};
 }
 
+/// The diagonal blocks of a system; if it lists none, one block of all rows.
 inline std::vector<DiagonalBlock> blocks_of(const LinearSystem& system) {
   return system.blocks.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.blocks;
 }

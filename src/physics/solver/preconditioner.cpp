@@ -342,7 +342,7 @@ typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::make_blocks
   return all;
 }
 
-// Contact stiffness of each particle with contact terms if all particles with weights of the same sign move with it.
+// Contact stiffness that acts on each particle if all particles whose weights have the same sign move with it.
 template <class Real>
 typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::lump_terms() const {
   BlocksWithTerms lumped = make_blocks_with_terms();
@@ -359,8 +359,8 @@ typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::lump_terms(
   return lumped;
 }
 
-// An aggregate gets the contact terms of all particles that interpolate from it, by their weights. If it got only those
-// of its own particles, aggregates between scattered contacts would count as free.
+// The block of an aggregate contains the contact stiffness of all particles that interpolate from it, with these
+// weights. If it contained only that of its own particles, aggregates between scattered contacts would count as free.
 template <class Real>
 void Preconditioner<Real>::invert_aggregates() {
   const BlocksWithTerms of_particles = lump_terms();

@@ -46,7 +46,7 @@ enum class AggregateSums { recompute, reuse };
 /// cloth is folded, and R_l A R_lᵀ contains only the threads that cross the boundaries of
 /// aggregates.
 ///
-/// Set up in double, applied in `Real`.
+/// prepare() computes in double precision, apply() in the precision `Real`.
 template <class Real>
 class Preconditioner {
  public:
@@ -99,7 +99,7 @@ class Preconditioner {
   const LinearSystem* system_ = nullptr;
   bool interpolates_ = true;                       // false if threads are very stiff
   std::vector<DiagonalBlock> blocks_;              // at the last call of prepare()
-  std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were made
+  std::vector<std::uint64_t> summed_version_;      // version of each diagonal block when its sums were computed
   std::vector<char> rows_changed_, sums_changed_;  // per diagonal block: whether its rows, or its sums, are new
   std::vector<ParticleConstraint> constraints_;    // at the last call of prepare()
   std::vector<Index> constraint_of_;               // per particle, −1 for none

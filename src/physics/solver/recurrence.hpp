@@ -17,9 +17,9 @@ namespace weft::solver {
 /// leave in the energy norm, 6e-8 √kMaxSingleStiffness.
 inline constexpr double kSmallestSingleGoal = 1e-3;
 
-/// Allowed error of the solution, per diagonal block. One of two bounds suffices. In the energy norm: `relative` times
-/// the norm of the solution without its step along Directions::start. In the mass-weighted norm (or, without
-/// `norm_weights`, the energy norm): `absolute`.
+/// Allowed error of the solution, per diagonal block. One of two bounds suffices: the error in the energy norm is at
+/// most `relative` times the norm of the solution without its step along Directions::start, or the error in the
+/// mass-weighted norm (without `norm_weights`, the energy norm) is at most `absolute`.
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< per diagonal block; empty: none
@@ -56,9 +56,11 @@ struct Progress {
   int iterations = 0;
   bool is_exact = false;  ///< the residual is zero up to rounding
 
+  /// Whether the estimated errors of the selected diagonal blocks are within `goal`.
   bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
 
+/// Why the iteration ended.
 enum class End {
   converged,
   out_of_iterations,
@@ -66,6 +68,7 @@ enum class End {
   needs_double,  ///< single precision only: the caller must continue in double, with a new search direction
 };
 
+/// The iteration of ConjugateGradient, in the precision `Real`.
 template <class Real>
 class Recurrence {
  public:

@@ -18,6 +18,7 @@ struct Weights {
   std::vector<Index> columns;
   std::vector<Real> values;
 
+  /// One row of the product of this matrix and the vector `of`.
   PaddedVec3<Real> sum(std::size_t row, std::span<const PaddedVec3<Real>> of) const {
     PaddedVec3<Real> result{};
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
