@@ -100,8 +100,8 @@ void Attachments::tie_to_target(Attachment& attachment, double t, std::span<cons
     }
     const double distance = (place - own).norm();
     spring.length = attachment.length.value_or(distance);
-    // Let e be the spring's extension beyond its rest length. Without other forces, the particle reaches the speed e
-    // √(k/m), for its mass m and the stiffness k. An implicit step moves the particle by at most e,
+    // Let e be the spring's extension beyond its rest length. Without other forces, the particle reaches the speed
+    // e √(k/m), for its mass m and the stiffness k. An implicit step moves the particle by at most e,
     // so its speed is also at most e / step.
     const double rate = std::min(std::sqrt(spring.stiffness / masses[spring.particle]), 1 / step_);
     attachment.speed = std::max(attachment.speed, rate * (distance - spring.length));

@@ -19,10 +19,10 @@ namespace weft::simulation {
 /// moves with the target: it is a weighted sum, with constant weights, of the corners of a triangle
 /// or, if forces move the target body, of the four particles of its frame (mesh::RigidFrame).
 ///
-/// If the distance l between the particle and its point exceeds the rest length L, a spring pulls with the force k (l −
-/// L), k = Spring::stiffness. Otherwise the spring is slack and exerts no force. L is model::Attachment::length or, if
-/// that is absent, l at the time of tying. The forces act at the positions at the end of the step, as those of contacts
-/// do.
+/// If the distance l between the particle and its point exceeds the rest length L, a spring pulls with the force
+/// k (l − L), k = Spring::stiffness. Otherwise the spring is slack and exerts no force. L is model::Attachment::length
+/// or, if that is absent, l at the time of tying. The forces are those at the positions at the end of the step, as for
+/// contacts.
 class Attachments {
  public:
   /// `first_particle`: of each cloth; `first_of_frames`: first frame particle of each body, −1 for a body without a
@@ -76,11 +76,11 @@ class Attachments {
     int cloth = -1, body = -1;  // number of the target cloth or body; −1: none
     Index frame = -1;           // first frame particle of the target body; −1 if it has none
     bool target_has_particles() const { return cloth >= 0 || frame >= 0; }
-    double begin, release;  // [s]; release is infinite if never
+    double begin, release;  // [s]; `release` is infinite if there is no release
     std::optional<double> length, breaking_load;
     std::vector<Spring> springs;
     State state = State::open;
-    bool holds = false;  // in the current step
+    bool holds = false;  // whether its springs act in the current step
     double speed = 0;    // largest speed to which it can pull newly tied particles [m/s]; accept() sets it to 0
     double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };

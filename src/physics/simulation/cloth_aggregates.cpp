@@ -22,7 +22,8 @@ struct Lattice {
   std::array<double, 3> sides;  // of a box, along the same axes [m]
 };
 
-// The finest lattice. Grids have one box per particle; triangles have cubes with the mean particle distance as side.
+// The finest lattice. A grid has one box per particle. A cloth of triangles has cubes whose side is the mean particle
+// distance.
 Lattice lattice_of(const model::Cloth& cloth) {
   Lattice lattice;
   const mesh::Grid& grid = cloth.grid;

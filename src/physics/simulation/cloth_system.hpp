@@ -124,12 +124,15 @@ class ClothSystem {
   template <class Archive>
   void serialize(Archive& archive);
 
+  /// Elastic energy of all parts [J].
   double elastic_energy(std::span<const Vec3> x) const;
   /// Energy of the enclosed air [J].
   double air_energy(std::span<const Vec3> x) const { return inflation_.energy(x); }
+  /// Kinetic energy of all particles [J].
   double kinetic_energy(std::span<const Vec3> v) const;
   /// Gravitational energy, zero at the origin [J].
   double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
+  /// Largest |length / rest length − 1| of weft, warp and ropes.
   double max_strain(std::span<const Vec3> x) const;
   /// The place with the largest extension of threads, relative to the limit of their cloth.
   struct Overstretch {
@@ -158,7 +161,7 @@ class ClothSystem {
   std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per part
   std::vector<Range> ranges_;                                                // in the order of particles
   std::vector<const forces::Membrane*> membranes_;                           // one per cloth; owned by forces_
-  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of cloths with a limit to stretch
+  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // of the cloths that limit extension
   /// A cloth made of flat panels, which are sewn together during the run or, if `duration` is 0,
   /// before it.
   struct Sewing {

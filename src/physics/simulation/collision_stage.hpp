@@ -26,6 +26,7 @@ struct SystemState : integrator::State {
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
+/// Contact detection and separation for one model.
 class CollisionStage {
  public:
   /// Whether anything in the model can collide. Otherwise, the caller makes no stage.

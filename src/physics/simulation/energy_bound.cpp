@@ -100,7 +100,7 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
 }
 
 std::optional<std::string> EnergyBound::check_solver(int frame) {
-  const double in_play = energy_in_play() + highest_;  // not only pins may drive the cloth here
+  const double in_play = energy_in_play() + highest_;  // highest_: in this check, wind or bodies may drive the cloth
   if (warned_of_solver_ || solver_work_ <= numerics.energy.failing_gain * in_play + negligible_energy_) return {};
   warned_of_solver_ = true;
   return fmt::format(

@@ -42,7 +42,7 @@ class EnergyBound {
   std::optional<std::string> check_gain(const FrameReport& energies);
   std::optional<std::string> check_solver(int frame);
 
-  bool applies_, damped_contact_;  // whether pins alone drive the model; whether a gain only warns
+  bool applies_, damped_contact_;  // whether pins alone drive the model; whether the run only warns of a large gain
   // Whether gains are not checked any more: exempt_gains() was called, or pinned particles have lagged. (The work of
   // the force that pulls lagging particles is not measured.)
   bool is_exempt_ = false;

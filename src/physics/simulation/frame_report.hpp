@@ -31,9 +31,9 @@ struct FrameReport {
   /// assembly of their matrix. `preconditioner`: its setup, and its application outside of linear solves. `linear`:
   /// linear solves.
   StageTime collide, forces, preconditioner, linear;
-  int steps = 0;              ///< accepted
-  int rejected_steps = 0;     ///< repeated with shorter steps
-  int inexact_steps = 0;      ///< accepted although their error exceeded time.tolerance
+  int steps = 0;              ///< number of accepted steps
+  int rejected_steps = 0;     ///< number of steps that were rejected and repeated as shorter ones
+  int inexact_steps = 0;      ///< number of steps that were accepted although their error exceeded time.tolerance
   double error_estimate = 0;  ///< estimated sum over the steps of the local errors of positions [m]
   double solver_error = 0;    ///< estimated sum over the steps of the errors of the solver [m]
   int newton_iterations = 0;
@@ -46,7 +46,7 @@ struct FrameReport {
   double stretch_ratio = 0;     ///< largest ratio of extension to material.max_stretch in any step
   double kinetic_energy = 0;    ///< [J]
   double potential_energy = 0;  ///< energy of gravity, zero at the origin [J]
-  double elastic_energy = 0;    ///< stretch, shear, bending, seams, rigid frames, attachments [J]
+  double elastic_energy = 0;    ///< energy of stretch, shear, bending, seams, rigid frames and attachments [J]
   double air_energy = 0;        ///< energy of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth since the frame before [J]
   double solver_work = 0;       ///< work of the residual of the equations of motion since the frame before [J]

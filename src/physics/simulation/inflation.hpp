@@ -45,8 +45,9 @@ class Inflation {
   /// Whether the model gives the same pressures or amounts of air at t0 and t1 [s].
   bool is_constant_between(double t0, double t1) const;
 
-  /// `x`, `force` [N] and the rows of `system` are those of all particles.
+  /// Adds the force of the air on each particle to `force` [N]. `x`: all particles [m].
   void add_forces(std::span<const Vec3> x, std::span<Vec3> force) const;
+  /// Like add_forces(), and replaces the rank-one terms of `system`, whose rows are those of all particles.
   void linearise(std::span<const Vec3> x, std::span<Vec3> force, solver::LinearSystem& system) const;
 
   /// Energy of the air in all cloths [J].
@@ -63,13 +64,13 @@ class Inflation {
   static constexpr double kOpen = -1;
   struct Cloth {
     std::string name;
-    std::string where;   // for errors
+    std::string where;   // place in the scene, for error messages
     std::size_t number;  // of the cloth in the model
     Index first, end;    // particles
     forces::EnclosedVolume volume;
     model::PressureControl control;
     motion::Spline<1> track;
-    double value = 0;                      // of `track` at the time set last; for the unit, see PressureControl
+    double value = 0;                      // of `track`, at the time of set_time(); for the unit, see PressureControl
     double closed_volume = kOpen;          // volume when it was closed [m³]; kOpen: not closed yet
     mutable std::vector<Vec3> gradient{};  // scratch
 

@@ -158,8 +158,8 @@ void Simulation::Impl::put_on_next() {
   }
 }
 
-// Untangles cloth when a layer is put on, if the model allows it. Lifts bodies before, if this is the first layer.
-// Throws Error(scene_invalid) if surfaces still touch or cross.
+// Prepares the start of a layer that is put on: lifts bodies if it is the first layer, then untangles cloth if the
+// model allows it. Throws Error(scene_invalid) if surfaces still touch or cross.
 void Simulation::Impl::make_start() const {
   if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
     log::note(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));

@@ -36,8 +36,8 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
   const double t = attempt.t, h = attempt.h;
   held_ = pins_.held();
   hold_frames(model_, cloth_, t + h, held_);
-  // If a rejected attempt contained the time at which the model releases a pin or body, undo this
-  // release: the present step may be shorter and end before that time.
+  // If a rejected attempt contained the time at which the model releases a pin or body, this attempt
+  // first undoes the release, because its step may end before that time.
   if (before_release_) {
     progress_.now.v = std::move(before_release_->v);
     stepper_.return_to(std::move(before_release_->history));
@@ -155,9 +155,9 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
   collisions_->append_prescribed_particles(held_);
   integrator::StepReport step = solve(attempt.h, start, check_early, report);
   // Normal forces and friction depend on each other, and can increase each other without bound. If
-  // the first solve of a step is unfinished and has added much energy, solve again with fixed
-  // normal forces: friction then has a potential, and dissipates. (Measured without this: a sheet
-  // of 0.5 J with friction 10 gains 1,300 J.)
+  // the first solve of a step is unfinished and has added much energy, a second solve uses fixed
+  // normal forces: friction then has a potential, and dissipates. (Measured without the second
+  // solve: a sheet of 0.5 J with friction 10 gains 1,300 J.)
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.diverged_energy_ratio) {
     problem_.fix_normal_forces();
@@ -216,13 +216,13 @@ StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
       ratio);
 }
 
-// Whether pinned particles that find no space may be released. If obstacles near cloth move far, only in the last
-// attempt, because a shorter step may find space. Never if push_apart() may move pinned particles.
+// Whether pinned particles without space may be released: if push_apart() may not move pinned particles, and if this is
+// the last attempt or obstacles near cloth move little. If they move far, a shorter step may find space.
 bool StepLoop::may_release_pins(const Attempt& attempt) const {
   return !attempt.may_move_pins && (attempt.is_last || collisions_->obstacles_move_little(progress_.now, next_));
 }
 
-// Whether cloth that finds no space may pass into an obstacle (PinchedPairs): in the last attempt, or after
+// Whether cloth without space may pass into an obstacle (PinchedPairs): in the last attempt, or after
 // `max_retries` rejections if obstacles move so little that a shorter step would not find more space.
 bool StepLoop::may_pinch(const Attempt& attempt) const {
   return attempt.is_last || (attempt.rejections >= numerics.repair.max_retries &&

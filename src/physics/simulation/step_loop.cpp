@@ -16,8 +16,8 @@ namespace {
 
 // A cloth is reported again only if its stretch is at least this multiple of the last reported one.
 constexpr double kReportAgainRatio = 1.5;
-// Cloth that is sewn wider than its pattern by less is not reported: single triangles beside an elastic waist are 6 %
-// wider (scenes/gallery/shirt.toml), which does not show.
+// A smaller ClothSystem::Widening::fraction is not reported: single triangles beside an elastic waist are 6 % wider
+// than in the pattern (scenes/gallery/shirt.toml), which is not visible.
 constexpr double kMinReportedWidening = 0.1;
 
 }  // namespace
@@ -125,8 +125,8 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
 
 // Whether one long step may replace the next `steps` steps of length h [s]. Conditions: the method is implicit Euler;
 // contacts are springs; all cloth is slow and has settled in its last step; no earlier rejection limits the length;
-// everything that keys move or set is the same at t and at the end of each step. The last condition is tested before
-// the attempt, because a long step that fails would leave its contacts to later steps.
+// everything that keys move or set is the same at t and at the end of each step. These conditions are tested before the
+// attempt, because the contacts of a long step that fails would affect later steps.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // With velocity constraints, contacts release and stick again from step to step.
@@ -260,8 +260,8 @@ void StepLoop::accept(double h, FrameReport& report) {
 
 // Measures the stretch at the end of the accepted step; the start of the step is in `next_`. Warns if the largest ratio
 // of stretch to limit rises above kMaxStretchRatio in this step, for the first time in the frame. If the same cloth was
-// reported before, warns only at kReportAgainRatio times the last reported ratio: otherwise a tight waist would be
-// reported with every breath of its wearer.
+// reported before, warns only at kReportAgainRatio times the last reported ratio: otherwise a tight waist on a moving
+// character would be reported many times.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());

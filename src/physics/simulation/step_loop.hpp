@@ -50,7 +50,7 @@ class StepLoop {
   struct Progress {
     SystemState now;
     std::optional<integrator::StepControl> control;  // if the model has a tolerance in place of a step
-    // Longest allowed step [s]; infinite at first. If a step with contacts is not solved, or if
+    // Maximum length of a step [s]; infinite at first. If a step with contacts is not solved, or if
     // pushing apart adds too much energy to it, the value becomes half of the length of this step.
     // Each accepted step multiplies the value by Numerics::Steps::largest_factor.
     double longest;

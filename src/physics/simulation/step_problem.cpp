@@ -25,8 +25,8 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
   reset_memory();
 }
 
-// Called at the start of each step: the step then depends only on its start state, and equal steps have the same bits
-// at any frame rate.
+// begin_step() calls this function, so that the step depends only on its start state, and equal steps have the same
+// bits at any frame rate.
 void StepProblem::reset_memory() {
   memory_.linearised_at.clear();
   const double nowhere = std::numeric_limits<double>::quiet_NaN();  // unequal to any number
@@ -149,7 +149,7 @@ bool StepProblem::find_impacts(const integrator::StagePoint& at, const StepStart
   return any;
 }
 
-// Leaves the terms of pins and attachments alone beside the matrix; the caller adds those of contacts.
+// Replaces all terms of the system by those of pins and attachments; the caller then adds those of contacts.
 void StepProblem::restart_terms(const integrator::StagePoint& at) {
   solver::LinearSystem& system = memory_.system;
   system.terms.clear();

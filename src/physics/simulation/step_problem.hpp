@@ -18,8 +18,8 @@ namespace weft::simulation {
 /// State that evaluations of forces keep for later evaluations. Two evaluations with equal memory and equal arguments
 /// give the same bits.
 struct SolveMemory {
-  // Of all evaluations, only linearisations change the members of this group. A cloth that has hardly moved since its
-  // rows of the matrix were assembled keeps these rows.
+  // Of all evaluations of forces, only StepProblem::linearise() changes the members of this group. A cloth that has
+  // hardly moved since its rows of the matrix were assembled keeps these rows.
   solver::LinearSystem system;
   solver::Assembly assembly;        ///< of the matrix in `system`
   double rate = 0;                  ///< StagePoint::rate for which system and assembly were filled [1/s]; 0: not set

@@ -12,8 +12,9 @@
 
 namespace weft::simulation {
 
+/// Parameters of Newton's method and of its linear solves.
 integrator::NewtonParameters newton_of(const model::Model& model);
-/// Returns nothing if the model has a fixed step instead of a tolerance.
+/// The step control; nothing if the model has a fixed step instead of a tolerance.
 std::optional<integrator::StepControl> step_control_of(const model::Model& model);
 
 /// First particle of each cloth.

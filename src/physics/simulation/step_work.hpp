@@ -10,7 +10,7 @@ namespace weft::simulation {
 /// Work in one step [J].
 struct StepWork {
   double pins = 0;    ///< by pins and keys; includes the change of the kinetic energy of held particles
-  double solver = 0;  ///< by the residual on other particles; 0 if solved exactly, without velocity constraints
+  double solver = 0;  ///< by the residual on other particles; 0 after an exact solve without velocity constraints
 };
 
 /// Work in the last step of the stepper, from `start` to `end`. `pinned`: particles that pins or keys hold. Uses the

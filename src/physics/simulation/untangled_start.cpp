@@ -46,7 +46,7 @@ double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start)
   const auto is_free = [&](std::size_t body) {
     return bodies[body].frame >= 0 && t >= model_.bodies[bodies_[body - cloths]].dynamics->release;
   };
-  const auto height = [&](std::size_t body) {  // of its centre
+  const auto height = [&](std::size_t body) {  // of the body's centre, along `up` [m]
     double sum = 0;
     for (std::size_t k = 0; bodies[body].frame >= 0 && k < mesh::RigidFrame::kParticles; ++k)
       sum += up.dot(start.x[static_cast<std::size_t>(bodies[body].frame) + k]);
