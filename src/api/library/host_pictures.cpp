@@ -1,4 +1,4 @@
-// Decoding of pictures in the shared library: by the function that the program sets with
+// Decoding of pictures in the shared library: it calls the function that the program has set with
 // set_picture_decoder().
 #include <stdexcept>
 #include <utility>

@@ -54,8 +54,8 @@ Scene Scene::parse(std::string_view toml, const std::vector<std::string>& change
 Scene Scene::with(const std::vector<std::string>& changes) const {
   std::vector<std::string> all = data_->changes;
   all.insert(all.end(), changes.begin(), changes.end());
-  // Load with the absolute path, because the working folder may have changed. Mistakes show the path that the caller
-  // gave.
+  // The scene is loaded with its absolute path, because the working folder may have changed. Mistakes show the path
+  // that the caller gave.
   scene::LoadResult loaded = scene::load_text(data_->text, data_->scene.file, all);
   loaded.file = data_->file;
   return Scene(checked(std::move(loaded), std::move(all)));
