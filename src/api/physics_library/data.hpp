@@ -27,7 +27,7 @@ struct Frame::Data {
   std::vector<std::vector<Vec3>> velocities;      ///< per cloth
   std::vector<std::vector<float>> strains;        ///< per cloth
   std::vector<std::vector<Vec3>> contact_forces;  ///< per cloth
-  std::vector<Object> objects;                    ///< they view the members above, and data of `viewed` or `snapshot`
+  std::vector<Object> objects;                    ///< views of the members above, and of `viewed` or `snapshot`
   std::shared_ptr<const void> viewed;             ///< owns positions and meshes; null for a simulation of a Scene
   std::shared_ptr<const frame::FrameSnapshot> snapshot;  ///< for drawing; null for a simulation of a Model
 };
@@ -66,6 +66,7 @@ std::span<const To> view_as(const std::vector<From>& points) {
   return {reinterpret_cast<const To*>(points.data()), points.size()};
 }
 
+/// Converts a report to one of the public interface.
 Report report_of(const simulation::FrameReport& report);
 
 /// Makes a frame of these data. Sets the velocities, strains and contact forces of the first

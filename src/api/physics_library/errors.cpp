@@ -29,8 +29,8 @@ bool is_key(std::string_view text) {
          std::islower(static_cast<unsigned char>(text.front())) != 0;
 }
 
-// Splits a message such as "scenes/a.toml:12:8: cloth.band: expected ..." into file, line, column, key and text. Line
-// and column may be missing, or all parts before the text.
+// Splits a message such as "scenes/a.toml:12:8: cloth.band: expected ..." into file, line, column, key and text. The
+// message may lack line and column, or all parts before the text.
 Mistake mistake_of(std::string_view text) {
   const std::string_view first_line = text.substr(0, text.find('\n'));
   std::size_t end = first_line.find(": ");

@@ -12,7 +12,7 @@ struct MaterialMember {
   double Material::*given;
   double model::Material::*physics;
   double low, high;  ///< bounds, the same as for scenes (src/film/scene/material_rules.cpp)
-  const char* what;  ///< for messages
+  const char* what;  ///< name and unit of the value, for messages
 };
 
 inline constexpr double kAboveZero = 1e-12;  ///< lower bound of a value that must be positive

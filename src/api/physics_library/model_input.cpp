@@ -27,7 +27,7 @@ template <class... Arguments>
 constexpr double kFarthest = 1e5;  // [m]
 constexpr double kFastest = 1e4;   // [m/s]
 
-// False for NaN.
+// Whether the absolute values of all components are at most `largest`; false for NaN.
 bool is_within(const Vec3& x, double largest) {
   return (x.array().abs() <= largest).all();
 }
@@ -84,7 +84,7 @@ model::Material material_of(const Material& given, const std::string& object) {
   return material;
 }
 
-// A vertex that no triangle uses would be a particle without mass.
+// Refuses vertices that no triangle uses, because they would be particles without mass.
 void check_vertices_are_used(const mesh::Mesh& mesh, const std::string& object) {
   std::vector<char> used(mesh.positions.size(), 0);
   for (const mesh::Triangle& t : mesh.topology.triangles)

@@ -9,8 +9,8 @@
 
 namespace weft::library {
 
-/// Converts a pose. If a coordinate is not within ±1e5 m, or if the rotation is no unit quaternion,
-/// throws std::invalid_argument with the name `object`.
+/// Converts a pose. If a coordinate is not within ±1e5 m, or if the rotation is not a unit
+/// quaternion, throws std::invalid_argument with the name `object`.
 motion::Pose pose_of(const Pose& given, const std::string& object);
 
 /// These functions convert gravity [m/s²] and wind [m/s]. If a component is not within ±1e5 m/s² or

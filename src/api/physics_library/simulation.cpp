@@ -115,7 +115,7 @@ namespace weft::library {
 
 std::string heading_of(std::uint64_t hash, const SimulationOptions& options) {
   std::string heading = fmt::format("weft {} {:016x}", kVersion, hash);
-  // Each name with its size, since names may contain any character.
+  // The size of each name comes first, because names may contain any character.
   for (const std::string& name : options.driven) heading += fmt::format(" {}:{}", name.size(), name);
   return heading + '\n';
 }

@@ -50,9 +50,8 @@ class WEFT_API Simulation {
 
   /// During the next frame, moves a driven body to `pose` at constant velocity. Then the body stays
   /// there until another call moves it. Pins that follow the body move with it, so a body that does
-  /// not collide can serve as a handle for cloth. Throws std::invalid_argument if the body is not
-  /// driven, if a coordinate of the position is not within ±1e5 m, or if the rotation is no unit
-  /// quaternion.
+  /// not collide can move cloth. Throws std::invalid_argument if the body is not driven, if a
+  /// coordinate of the position is not within ±1e5 m, or if the rotation is not a unit quaternion.
   void move(std::string_view body, const Pose& pose);
 
   /// Sets gravity [m/s²] and the velocity of the air [m/s] from the next frame on. These values
