@@ -1,4 +1,4 @@
-// The parts of the Python module.
+// The parts of the Python module. Each function below adds the classes and functions of one part to `module`.
 #pragma once
 
 #include <pybind11/pybind11.h>

@@ -46,8 +46,8 @@ std::vector<Row> rows_of(const Array& array, const char* name) {
 
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
-// Converts an array of integers. If the elements are no integers, for example the booleans of a mask, raises ValueError
-// with the type of the elements.
+// Converts an array of integers. If the elements are not integers, for example the booleans of a mask, raises
+// ValueError with the type of the elements.
 Integers integers_of(const py::object& given, const char* name) {
   const py::array array = py::array::ensure(given);
   if (!array) throw py::value_error(fmt::format("{}: expected an array of integers", name));

@@ -28,7 +28,7 @@ namespace {
 std::string toml_of(const py::handle& value, const std::string& path) {
   if (py::hasattr(value, "tolist")) return toml_of(value.attr("tolist")(), path);
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "true" : "false";
-  // Convert to plain numbers first: a subclass may have a repr() that is no TOML.
+  // The value becomes a plain number first, because a subclass may have a repr() that is not TOML.
   if (py::hasattr(value, "__index__")) return py::repr(value.attr("__index__")());
   if (py::hasattr(value, "__float__")) return py::repr(value.attr("__float__")());
   if (py::isinstance<py::dict>(value)) {
@@ -146,7 +146,7 @@ void bind_errors(py::module_& module) {
             const auto& [file, line, column, change, key, text] = state;
             return Mistake{file, line, column, change, key, text};
           }));
-  // Never release these references: the interpreter may end before this library is unloaded.
+  // These references are never released, because the interpreter may end before this library is unloaded.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
   static const py::handle file_error = py::exception<FileError>(module, "FileError", scene_error).release();
   static const py::handle simulation_error =

@@ -54,11 +54,11 @@ ErrorEstimate estimate_error(const Scene& public_scene, bool with_mesh_error) {
   });
 }
 
-/// A frame cache on disk; gives its frames as Frame objects, without velocities, strains and contact forces.
+/// A frame cache on disk. Its frames have no velocities, strains and contact forces.
 class Cache {
  public:
   explicit Cache(const std::filesystem::path& folder)
-      // Use the absolute path, which stays valid after os.chdir().
+      // The absolute path stays valid after os.chdir().
       : reader_(with_public_errors(
             [&] { return std::make_unique<cache::Reader>(std::filesystem::current_path() / folder); })) {}
 
