@@ -181,6 +181,24 @@ TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
   EXPECT_EQ(low.rise, 0);
 }
 
+// A specification of GarmentCode states all girths, also for skirts. The drawn waist is at 1.08 m, the neck at 1.43 m.
+TEST(Fit, HangsWhatEndsAtTheWaistFromItWhateverMeasuresAreStated) {
+  const Wearer wearer = round_wearer();
+  const Measures own = measure(wearer);
+  Pattern pattern;
+  pattern.measures = {*own.chest / 2, *own.waist / 1.2, *own.hip / 1.1, {}, 1.72};
+  Panel& panel = pattern.panels.emplace_back();
+  panel.around = Around::torso;
+  panel.position = Vec2(0, 0.5);
+  panel.edges.push_back({"side", {straight(Vec2(0, 0), Vec2(0, 0.58))}});
+  EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.2, 1.1 / (0.63 * 1.72))).norm(), 0.02);
+  EXPECT_EQ(fit(pattern, wearer, "cloth.c").rise, 0);
+  EXPECT_NE(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
+  panel.position = Vec2(0, 0.84);  // now its top is at the shoulders
+  EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(2, 1.46 / (0.83 * 1.72))).norm(), 1e-12);
+  EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
+}
+
 // The hip joints of the round body are at 0.9 m.
 TEST(Fit, RefusesAWearerThatDoesNotStand) {
   Wearer wearer = round_wearer();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -30,6 +31,9 @@ constexpr double kMaxGirthSlope = 2 * std::numbers::pi;
 // Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at a ratio of 1.05
 // the garment slides down, at 1.16 it stays).
 constexpr double kMinHipToWaistRatio = 1.1;
+
+// Parts around which a garment that hangs from the waist has no panels.
+constexpr std::array kAboveWaist{Around::neck, Around::head, Around::left_arm, Around::right_arm};
 
 // Height of the armpits: the lowest vertex at which skin of an arm joins skin of the trunk; infinite if there is none.
 double armpit_height(const Wearer& wearer) {
@@ -100,9 +104,25 @@ struct Trunk {
   }
 };
 
-// Whether a garment hangs from the waist, as skirts and trousers do.
-bool hangs_from_waist(const Measures& drawn) {
-  return drawn.waist && !drawn.chest;
+// Whether a garment hangs from the waist, as skirts and trousers do: if its highest point starts nearer to the waist of
+// the drawn body than to its neck. Where this height is unknown, because the pattern states no height or seams place a
+// panel, the measures decide.
+bool hangs_from_waist(const Pattern& pattern) {
+  const Measures& drawn = pattern.measures;
+  const bool bent = pattern.has_bent_panels();
+  bool is_known = drawn.height && !pattern.panels.empty();
+  double top = -std::numeric_limits<double>::infinity();
+  for (const Panel& panel : pattern.panels) {
+    if (std::ranges::find(kAboveWaist, panel.around) != kAboveWaist.end()) return false;
+    is_known = is_known && (panel.position || !bent);
+    const Eigen::Rotation2Dd turn(panel.rotation * kDegree);
+    const Vec2 origin = panel.position.value_or(Vec2(0, 0));
+    for (const PanelEdge& edge : panel.edges)
+      for (const Curve& curve : edge.curves)
+        for (const Vec2& p : curve.control) top = std::max(top, origin.y() + Vec2(turn * p).y());
+  }
+  if (!is_known) return drawn.waist && !drawn.chest;
+  return (drawn.waist || drawn.hip) && top < 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *drawn.height;
 }
 
 }  // namespace
@@ -136,10 +156,13 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 "above its lowest point; turn it, or leave out fit",
                 where, trunk.neck, trunk.hips);
   const Measures own = measure(wearer);
+  const bool from_waist = hangs_from_waist(pattern);
   double across = 0, up = 1, rise = 0;
-  for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm})
+  for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm}) {
+    if (from_waist && (girth == &Measures::chest || girth == &Measures::arm)) continue;
     if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
-  if (drawn.height && hangs_from_waist(drawn)) {
+  }
+  if (drawn.height && from_waist) {
     up = trunk.waist() / (kWaistHeightRatio * *drawn.height);
   } else if (drawn.height) {
     const double neck = kNeckHeightRatio * *drawn.height;
@@ -152,7 +175,7 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
 
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
   const Measures& drawn = pattern.measures;
-  if (!hangs_from_waist(drawn)) return {};
+  if (!drawn.waist || !hangs_from_waist(pattern)) return {};
   const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
   if (hips >= kMinHipToWaistRatio * waist) return {};
   return fmt::format(

@@ -24,23 +24,22 @@ struct Fit {
   double rise = 0;     ///< of start positions that were multiplied by `factors` [m]
 };
 
-/// Factors on the lengths of a pattern. Across: the largest ratio wearer's girth
-/// / drawn girth among the girths that the pattern states, so that the garment is nowhere tighter
-/// than drawn. Up: wearer's neck height / neck height of the drawn body (kNeckHeightRatio of its
-/// height), or the ratio of the arms if that is larger, since armholes are drawn along the body. For
-/// garments that hang from the waist (that state a waist, but no chest): the ratio of the heights of
-/// the waists. 1 if the pattern states no height. Neck heights are compared, since the height of the
-/// head varies much between bodies. If the pattern states only a height, both factors are the ratio
-/// of neck heights. The rise puts the neck of the drawn body, multiplied by the factor up, at the
-/// height of the wearer's. `where` names the scene entry for messages. Throws Error(scene_invalid) if the
-/// pattern states no measures, if the wearer's neck is not above its hip joints, or if Tube refuses the
-/// body without the arms.
+/// Factors on the lengths of a pattern. Across: the largest ratio wearer's girth / drawn girth among the
+/// girths that the pattern states, so that the garment is nowhere tighter than drawn. Up: wearer's neck
+/// height / neck height of the drawn body (kNeckHeightRatio of its height), or the ratio of the arms if that
+/// is larger, since armholes are drawn along the body. A garment hangs from the waist if none of its panels
+/// starts nearer to the neck of the drawn body than to its waist, or around neck, head or arms: then the
+/// ratio up is that of the heights of the waists, and chest and arms do not count. 1 if the pattern states no
+/// height. Neck heights are compared, since the height of the head varies much between bodies. If the pattern
+/// states only a height, both factors are the ratio of neck heights. The rise puts the neck of the drawn
+/// body, multiplied by the factor up, at the height of the wearer's. `where` names the scene entry for
+/// messages. Throws Error(scene_invalid) if the pattern states no measures, if the wearer's neck is not above
+/// its hip joints, or if Tube refuses the body without the arms.
 Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
 /// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the
 /// waist girth of the garment after scaling by `factors`: the garment would slide down. Otherwise
-/// returns an empty string. Checks only patterns that state a waist but no chest measure, such as
-/// skirts and trousers.
+/// returns an empty string. Checks only garments that hang from the waist, if the pattern states its girth.
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
 
 }  // namespace weft::garment
