@@ -211,6 +211,18 @@ TEST(Fit, RefusesAWearerThatDoesNotStand) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
+// Thighs of a wearer that sits are in the sections of its hips. Its chest can be measured all the same.
+TEST(Fit, RefusesAWearerThatSitsIfItsHipsOrHeightsCount) {
+  Wearer wearer = round_wearer();
+  wearer.left_leg = Limb{Vec3(0.08, 0, 0.9), Vec3(0.08, -0.4, 0.8), Vec3(0.08, -0.4, 0.4)};
+  Pattern pattern;
+  pattern.measures.chest = 0.88;
+  EXPECT_GT(fit(pattern, wearer, "cloth.c").factors.x(), 0);
+  pattern.measures.height = 1.75;
+  support::expect_error(ExitCode::scene_invalid, "cloth.c.fit: expected a wearer that stands, got one with a thigh",
+                        [&] { fit(pattern, wearer, "cloth.c"); });
+}
+
 // Sections are 10 mm apart: a body of 1.7 km would have 170,000.
 TEST(Fit, RefusesABodyInMillimetres) {
   Wearer wearer = round_wearer();

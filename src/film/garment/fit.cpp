@@ -125,6 +125,14 @@ bool hangs_from_waist(const Pattern& pattern) {
   return (drawn.waist || drawn.hip) && top < 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *drawn.height;
 }
 
+// Whether a thigh is nearer to level than to upright, as of a wearer that sits. Sections at the hips then contain it.
+bool raises_thigh(const Wearer& wearer) {
+  const auto is_raised = [](const std::optional<Limb>& leg) {
+    return leg && ((*leg)[1] - (*leg)[0]).head<2>().norm() > (*leg)[0].z() - (*leg)[1].z();
+  };
+  return is_raised(wearer.left_leg) || is_raised(wearer.right_leg);
+}
+
 }  // namespace
 
 Measures measure(const Wearer& wearer) {
@@ -155,6 +163,11 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 "{}.fit: expected a wearer that stands upright, got one with its neck {:.2f} m and its hips {:.2f} m "
                 "above its lowest point; turn it, or leave out fit",
                 where, trunk.neck, trunk.hips);
+  if ((drawn.hip || drawn.height) && raises_thigh(wearer))
+    throw Error(ExitCode::scene_invalid,
+                "{}.fit: expected a wearer that stands, got one with a thigh nearer to level than to upright; let it "
+                "stand at first, as with stance = \"rest\" and dressing, or leave out fit",
+                where);
   const Measures own = measure(wearer);
   const bool from_waist = hangs_from_waist(pattern);
   double across = 0, up = 1, rise = 0;

@@ -34,7 +34,8 @@ struct Fit {
 /// states only a height, both factors are the ratio of neck heights. The rise puts the neck of the drawn
 /// body, multiplied by the factor up, at the height of the wearer's. `where` names the scene entry for
 /// messages. Throws Error(scene_invalid) if the pattern states no measures, if the wearer's neck is not above
-/// its hip joints, or if Tube refuses the body without the arms.
+/// its hip joints, if hips or heights are compared and a thigh is nearer to level than to upright, or if Tube
+/// refuses the body without the arms.
 Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
 /// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the
