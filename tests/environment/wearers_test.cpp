@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "film/environment/environment.hpp"
 #include "film/garment/fit.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -54,6 +55,20 @@ TEST_F(WearerBodies, HaveArmsIfTheirRigLacksHands) {
     EXPECT_LT(((*arm)[1] - Vec3(side * 0.5, 0, 0.1)).norm(), 1e-6);
     EXPECT_LT(((*arm)[2] - Vec3(side * 0.7, 0, 0.1)).norm(), 1e-6);
   }
+}
+
+// The panels of the skirt start flat, and need no body without `fit`.
+TEST(WearerMissing, IsSaidWithTheReasonForIt) {
+  const auto make_scene = [](const std::string& pattern, const std::string& keys) {
+    return support::scene_of_text("[[cloth]]\nname = 'cloth'\nshape = 'pattern'\nedge_length = 0.1\nfile = '" +
+                                  std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + pattern + "'\n" + keys);
+  };
+  support::expect_error(ExitCode::scene_invalid,
+                        "cloth.cloth: expected a [[character]] that wears the garment, as fit = true scales it to a "
+                        "body; got none; add one, or leave out fit",
+                        [&] { const Environment made(make_scene("skirt.toml", "fit = true\n")); });
+  support::expect_error(ExitCode::scene_invalid, "as its panels start around parts of a body; got none; add one",
+                        [&] { const Environment made(make_scene("shirt.toml", "")); });
 }
 
 // The patterns of scenes/patterns are drawn for a body like the mannequin: 1.75 m tall, 0.88 m around the chest and

@@ -117,10 +117,9 @@ garment::Wearer make_wearer(const StandingBody& standing, const Eigen::Isometry3
 const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string& where) {
   const auto& characters = scene_.characters;
   if (characters.empty())
-    throw Error(
-        ExitCode::scene_invalid,
-        "{}: expected a [[character]] that wears the garment, as its panels start around parts of a body; got none",
-        where);
+    throw Error(ExitCode::scene_invalid, "{}: expected a [[character]] that wears the garment, as {}; got none; {}",
+                where, cloth.fit ? "fit = true scales it to a body" : "its panels start around parts of a body",
+                cloth.fit ? "add one, or leave out fit" : "add one");
   if (cloth.wearer.empty() && characters.size() > 1)
     throw Error(ExitCode::scene_invalid, "{}: expected the wearer, one of {} characters such as {}, got none", where,
                 characters.size(), characters[0].name);
