@@ -211,9 +211,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   if (body.clip)
     if (const auto warning = warn_of_missing_skin(body.character, *body.clip))
       body.warnings.push_back(fmt::format("{}: {} {}", cast.where, body.source, *warning));
-  if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
-    cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
-                                   body.clip->duration, cast.settings.start));
+  if (body.clip && !source.loop) check_start(cast, fmt::format("clip \"{}\"", body.clip->name), body.clip->duration);
   return body;
 }
 
@@ -447,6 +445,7 @@ Actor make_actor_of(const Cast& cast, const scene::MeshSequence& source, std::sp
                     std::span<const ClothAtStart> /*cloths*/) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
+  check_start(cast, "its files", static_cast<double>(loaded.positions.size() - 1) / source.fps);
   if (!cast.settings.parts.empty() || !std::ranges::all_of(following, [](const auto& pin) { return pin.part.empty(); }))
     cast.fail("part", "expected none of a body from a sequence of meshes, which has no bones");
   if (cast.settings.grow > 0) cast.fail("grow", "expected 0 of a body from a sequence of meshes, which has no bones");
@@ -474,6 +473,7 @@ KeyFrameCount count(const Cast& cast, const Source& source) {
 KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
   // The number of vertices after merging depends on all files.
   const auto loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
+  check_start(cast, "its files", static_cast<double>(loaded.positions.size() - 1) / source.fps);
   return count(cast, key_times(cast, source.fps, false), loaded.mesh.positions.size());
 }
 

@@ -19,6 +19,12 @@ Cast make_cast(const scene::Scene& scene, const scene::Character& settings) {
           fmt::format("{}:{}:{}: character.{}", scene.file.string(), settings.line, settings.column, settings.name)};
 }
 
+void check_start(const Cast& cast, const std::string& motion, double duration) {
+  if (cast.settings.start > duration)
+    cast.fail("start",
+              fmt::format("expected a time of {}, at most {:g} s, got {:g}", motion, duration, cast.settings.start));
+}
+
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
   const std::string nearest = nearest_name(name, known);
   return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);

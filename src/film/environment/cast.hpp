@@ -41,6 +41,9 @@ struct Cast {
 
 Cast make_cast(const scene::Scene& scene, const scene::Character& settings);
 
+/// Throws Error(scene_invalid) if the character starts after the end of `motion`, which has this duration [s].
+void check_start(const Cast& cast, const std::string& motion, double duration);
+
 /// "; did you mean ...?" with the most similar of the known names; empty if none is similar.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
