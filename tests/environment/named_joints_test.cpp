@@ -29,5 +29,26 @@ TEST_F(NamedJoints, AreNoOtherJoints) {
   EXPECT_EQ(std::ranges::count(actor.parts[0].vertices, 1), 3);
 }
 
+// A leg whose upper and lower part are one bone has no knee.
+TEST_F(NamedJoints, AreDifferentNodes) {
+  support::write_bytes(folder_ / "rod.x", support::rod_file());
+  scene::Scene scene;
+  scene::Character& character = scene.characters.emplace_back();
+  character.name = "rod";
+  character.parts.emplace_back().name = "legs";
+  scene::CharacterFile file;
+  file.path = folder_ / "rod.x";
+  file.joints = {
+      {"Hips", "Hips", std::nullopt}, {"LeftLowerLeg", "Spine", std::nullopt}, {"LeftUpperLeg", "Spine", std::nullopt}};
+  character.source = file;
+  support::expect_error(ExitCode::scene_invalid,
+                        "character.rod.joint.LeftLowerLeg: expected a node of " + file.path.string() +
+                            " that is no other joint, got \"Spine\", which is LeftUpperLeg too",
+                        [&] { make_actor(scene, character); });
+  file.joints[1].body = "Hips";  // the pelvis may move a leg
+  character.source = file;
+  EXPECT_NO_THROW(make_actor(scene, character));
+}
+
 }  // namespace
 }  // namespace weft::environment

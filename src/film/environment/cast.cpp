@@ -54,11 +54,17 @@ std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNam
                                            did_you_mean(joint.name, character::joint_names())));
     if (joint.*name) named[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
   }
+  constexpr std::size_t kHips = character::joint_index(character::Joint::hips);  // every body must have them
+  for (std::size_t j = 0; j < named.size(); ++j)
+    for (std::size_t i = 0; i < j; ++i)
+      if (named[j] >= 0 && named[i] == named[j] && i != kHips)
+        cast.fail(fmt::format("joint.{}", character::joint_names()[j]),
+                  fmt::format("expected a node of {} that is no other joint, got \"{}\", which is {} too", source,
+                              character.nodes[named[j]].name, character::joint_names()[i]));
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    const bool is_hips = j == character::joint_index(character::Joint::hips);  // every body must have them
     if (named[j] >= 0)
       joints[j] = named[j];
-    else if (!is_hips && std::ranges::find(named, joints[j]) != named.end())
+    else if (j != kHips && std::ranges::find(named, joints[j]) != named.end())
       joints[j] = -1;
   }
   return joints;

@@ -54,8 +54,9 @@ Index named_node(const Cast& cast, const std::string& key, const std::string& na
 
 /// For each of joint_names(), the node of a skeleton with that role; −1 if there is none. The names `given` in the
 /// scene override the nodes that are found by common names; a node that has a name there is no other joint, except the
-/// hips. `name`: the member of JointNames that applies to this file;
-/// `source`: the file, for messages. Throws Error(scene_invalid) for names in the scene that do not exist.
+/// hips. `name`: the member of JointNames that applies to this file; `source`: the file, for messages. Throws
+/// Error(scene_invalid) for names in the scene that do not exist, and for a node that the scene names as two joints,
+/// except the hips.
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source);
