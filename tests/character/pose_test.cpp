@@ -136,6 +136,29 @@ TEST(PoseAt, TurnsTheShortestWayWhateverTheSignOfTheKeys) {
       1e-7);
 }
 
+// glTF states translation, rotation and scale of a node; assimp adds a key for each that a clip lacks and the node has.
+TEST(PoseAt, MirrorsANodeOnceIfAClipHasItsNegativeScale) {
+  Character body = arm();
+  const Mat3 turned = Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (const Mat3& rotation : {Mat3(Mat3::Identity()), turned})
+    for (const Vec3& scale : {Vec3(-1, 1, 1), Vec3(1, -2, 1), Vec3(-1, -1, 1), Vec3(-1, -1, -3)}) {
+      body.nodes[1].local.linear() = rotation * scale.asDiagonal();
+      Clip clip{"shift", 1, {}, {}};
+      Channel elbow;
+      elbow.node = 1;
+      elbow.position = {{0, 1}, {Vec3(1, 0, 0), Vec3(2, 0, 0)}};
+      elbow.scale = {{0}, {scale}};
+      clip.channels.push_back(elbow);
+      const Pose pose = pose_at(body, clip, 1), rest = rest_pose(body);
+      EXPECT_LT((pose.nodes[1].to_affine().linear() - body.nodes[1].local.linear()).norm(), 10 * kRounding)
+          << scale.transpose();
+      EXPECT_EQ(pose.nodes[1].position, Vec3(2, 0, 0));
+      const Placement between = blend(rest, pose, 0.5).nodes[1];
+      EXPECT_LT((between.to_affine().linear() - body.nodes[1].local.linear()).norm(), 10 * kRounding)
+          << scale.transpose();
+    }
+}
+
 TEST(Blend, GoesFromOnePoseToTheOther) {
   const Character body = arm();
   const Pose rest = rest_pose(body), bent = pose_at(body, bending(), 3);

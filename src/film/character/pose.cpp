@@ -78,7 +78,15 @@ Pose pose_at(const Character& character, const Clip& clip, double t) {
     Placement& node = pose.nodes[channel.node];
     if (!channel.position.times.empty()) node.position = value_at(channel.position, t);
     if (!channel.rotation.times.empty()) node.rotation = value_at(channel.rotation, t).normalized();
-    if (!channel.scale.times.empty()) node.stretch = value_at(channel.scale, t).asDiagonal();
+    if (channel.scale.times.empty()) continue;
+    const Vec3 signs = channel.scale.values.front().unaryExpr([](double x) { return x < 0 ? -1.0 : 1.0; });
+    const bool mirrors = signs != Vec3::Ones();
+    // rest_pose() turns negative scales into a rotation, a mirroring or both. The clip has the same scales, so that
+    // only the rotation of the map without them may act.
+    if (mirrors && channel.rotation.times.empty())
+      node.rotation = Quat(rotation_of(character.nodes[channel.node].local.linear() * signs.asDiagonal())).normalized();
+    node.stretch = value_at(channel.scale, t).asDiagonal();
+    if (mirrors) node = to_placement(node.to_affine());  // as at rest, so that both poses can be blended
   }
   for (const MorphChannel& channel : clip.morphs)
     if (!channel.weight.times.empty()) pose.morphs[channel.target] = value_at(channel.weight, t);
