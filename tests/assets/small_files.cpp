@@ -123,6 +123,29 @@ std::string gltf_tetrahedron_of_integers(const std::string& of_primitive, const 
          of_file + "}";
 }
 
+std::string gltf_of_two_skeletons() {
+  std::string buffer;
+  for (std::size_t v = 0; v < 3; ++v) append(buffer, kCorners[v]);
+  for (std::size_t v = 0; v < 3; ++v) append(buffer, std::array<float, 4>{1, 0, 0, 0});  // weights
+  for (std::size_t i = 0; i < 16; ++i) append(buffer, i % 5 == 0 ? 1.0F : 0.0F);         // from mesh to joint
+  buffer.append(12, '\0');                                                               // joints
+  buffer.append(2, '\0');                                                                // to a multiple of three
+  const std::string primitives = R"({"primitives":[{"attributes":{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":3}}]})";
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3]}],
+"nodes":[{"name":"Hips"},{"name":"Hips","translation":[5,0,0]},{"name":"a","mesh":0,"skin":0},
+{"name":"b","mesh":1,"skin":1}],
+"skins":[{"joints":[0],"inverseBindMatrices":2},{"joints":[1],"inverseBindMatrices":2}],
+"meshes":[)" +
+         primitives + "," + primitives +
+         R"(],"buffers":[{"byteLength":162,"uri":"data:application/octet-stream;base64,)" + base64(buffer) + R"("}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":48},
+{"buffer":0,"byteOffset":84,"byteLength":64},{"buffer":0,"byteOffset":148,"byteLength":12}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5126,"count":3,"type":"VEC4"},
+{"bufferView":2,"componentType":5126,"count":1,"type":"MAT4"},
+{"bufferView":3,"componentType":5121,"count":3,"type":"VEC4"}]})";
+}
+
 std::string gltf_camera(bool integers) {
   std::string keys;
   for (const float time : {0.0F, 2.0F}) append(keys, time);

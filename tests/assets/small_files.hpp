@@ -24,6 +24,10 @@ std::string glb_tetrahedron();
 /// `of_file`: more members.
 std::string gltf_tetrahedron_of_integers(const std::string& of_primitive = {}, const std::string& of_file = {});
 
+/// Two triangles with the corners (0, 0, 0), (1, 0, 0) and (0, 1, 0), each bound to a skeleton of one joint called
+/// "Hips"; the second joint is at x = 5.
+std::string gltf_of_two_skeletons();
+
 /// A camera "eye" 1 m above and 3 m along z from a rig that turns by 90 degrees about y in two seconds, as glTF.
 /// `integers`: with shorts as keys of the rotation.
 std::string gltf_camera(bool integers = false);

@@ -13,6 +13,7 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -143,8 +144,8 @@ constexpr double kSplineInterval = 1.0 / 60, kMaxSplinePieces = 1000;
 /// Duration of the change from one value to the next that replaces a step [s]: less than a frame.
 constexpr double kStepDuration = 1e-3;
 
-/// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats, and in which the
-/// values of all animations change linearly.
+/// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats, the values of
+/// all animations change linearly, and joints have names of their own.
 class Rewriter {
  public:
   Rewriter(Json& gltf, std::string data, const std::filesystem::path& file) : gltf_(gltf), file_(file) {
@@ -153,6 +154,7 @@ class Rewriter {
 
   /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
+    const bool renamed = name_joints_apart();
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
         use_floats(list_of(primitive, "attributes"));
@@ -163,7 +165,7 @@ class Rewriter {
         make_linear(sampler);
         use_floats(sampler);
       }
-    if (new_accessors_.empty() && floats_.empty()) return std::nullopt;
+    if (!renamed && new_accessors_.empty() && floats_.empty()) return std::nullopt;
     return to_binary();
   }
 
@@ -171,6 +173,37 @@ class Rewriter {
   static Json& list_of(Json& json, const char* key) {
     static Json nothing;
     return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
+  }
+
+  /// Gives each joint of a skin a name that no other joint has, and no other node without a mesh or camera: assimp
+  /// names the node of a bone by its name alone. Of several joints with one name, the first keeps it; names of meshes
+  /// and cameras stay, as scenes state them. Returns whether a name has changed.
+  bool name_joints_apart() {
+    Json& nodes = list_of(gltf_, "nodes");
+    if (!nodes.is_array()) return false;
+    std::vector<std::size_t> order;  // joints first
+    std::vector<bool> is_joint(nodes.size(), false);
+    for (const Json& skin : part_of(gltf_, "skins"))
+      for (const Json& joint : part_of(skin, "joints")) {
+        const std::size_t n = joint.is_number_unsigned() ? joint.get<std::size_t>() : nodes.size();
+        if (n >= nodes.size() || is_joint[n]) continue;
+        is_joint[n] = true;
+        order.push_back(n);
+      }
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+      if (!is_joint[n] && !nodes[n].contains("mesh") && !nodes[n].contains("camera")) order.push_back(n);
+    std::set<std::string> names;  // of joints
+    bool changed = false;
+    for (const std::size_t n : order) {
+      if (!nodes[n].is_object()) continue;
+      std::string name = value_or<std::string>(nodes[n], "name", "");
+      if (is_joint[n] ? !name.empty() && names.insert(name).second : !names.contains(name)) continue;
+      name = fmt::format("{}_{}", name.empty() ? "joint" : name, n);
+      while (!names.insert(name).second) name += '_';
+      nodes[n]["name"] = name;
+      changed = true;
+    }
+    return changed;
   }
 
   /// Replaces accessors of integers by new accessors of floats. Joints and colours keep their integers, since assimp
