@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -73,6 +75,40 @@ std::string usual_bvh_header(std::string_view line) {
   return std::string(line);
 }
 
+// A joint of BVH: the number of its values in each frame, and the values that follow them in the rewritten file.
+struct BvhJoint {
+  std::size_t values = 0;
+  std::string added;
+};
+
+// A line of channels of BVH, completed to three positions and three rotations if it has positions: assimp reads the
+// positions of a joint only if it has six channels. Missing positions are those of the joint's `offset`, missing
+// rotations 0. Appends the joint to `joints`, unless it has no channels.
+std::string with_all_channels(const std::string& line, const std::array<std::string, 3>& offset,
+                              std::vector<BvhJoint>& joints) {
+  constexpr std::array<std::string_view, 6> kChannels{"Xposition", "Yposition", "Zposition",
+                                                      "Xrotation", "Yrotation", "Zrotation"};
+  const std::vector<std::string_view> words = words_of(line);
+  BvhJoint joint;
+  if (words.size() > 1) std::from_chars(words[1].data(), words[1].data() + words[1].size(), joint.values);
+  if (joint.values == 0) return line;
+  std::string completed = "CHANNELS 6";
+  for (std::size_t w = 2; w < words.size(); ++w) completed += ' ' + std::string(words[w]);
+  std::size_t missing = 0, missing_positions = 0;
+  for (std::size_t k = 0; k < kChannels.size(); ++k) {
+    if (std::ranges::find(words, kChannels[k]) != words.end()) continue;
+    ++missing;
+    missing_positions += k < offset.size() ? 1 : 0;
+    completed += ' ' + std::string(kChannels[k]);
+    joint.added += (k < offset.size() ? offset[k] : "0") + ' ';
+  }
+  const bool has_each_once = words.size() == 2 + joint.values && missing + joint.values == kChannels.size();
+  const bool completes = missing > 0 && missing_positions < offset.size() && has_each_once;
+  if (!completes) joint.added.clear();
+  joints.push_back(joint);
+  return completes ? completed : line;
+}
+
 template <class Change>
 std::string change_lines(std::string_view text, const Change& change) {
   std::string changed;
@@ -90,13 +126,30 @@ std::string change_lines(std::string_view text, const Change& change) {
 
 std::string usual_bvh(std::string_view text) {
   enum class Part { hierarchy, header, frames } part = Part::hierarchy;
+  std::array<std::string, 3> offset{"0", "0", "0"};
+  std::vector<BvhJoint> joints;
+  std::size_t joint = 0, value = 0;  // of the next value in the frames
   return change_lines(text, [&](std::string_view line) -> std::string {
     if (part == Part::hierarchy) {
       std::string usual = usual_bvh_line(line);
       if (usual == "MOTION") part = Part::header;
-      return usual;
+      const std::vector<std::string_view> words = words_of(usual);
+      if (usual.starts_with("OFFSET"))
+        for (std::size_t k = 1; k < std::min(words.size(), offset.size() + 1); ++k) offset[k - 1] = words[k];
+      return usual.starts_with("CHANNELS") ? with_all_channels(usual, offset, joints) : usual;
     }
-    if (part == Part::frames) return std::string(line);
+    if (part == Part::frames) {
+      if (std::ranges::all_of(joints, [](const BvhJoint& each) { return each.added.empty(); }))
+        return std::string(line);
+      std::string completed;
+      for (const std::string_view word : words_of(line)) {
+        completed += std::string(word) + ' ';
+        if (++value < joints[joint].values) continue;
+        completed += joints[joint].added;
+        joint = (joint + 1) % joints.size(), value = 0;
+      }
+      return completed;
+    }
     std::string usual = usual_bvh_header(line);
     if (usual.starts_with("Frame Time:")) part = Part::frames;
     return usual;
