@@ -155,6 +155,16 @@ TEST_F(Specification, LegsApartAreWornAlongTheLegs) {
   }
 }
 
+// Turned by 20 degrees, the rise of such a leg crosses the middle of the body by 6 mm.
+TEST_F(Specification, LegsMayCrossTheMiddleALittle) {
+  std::string crossing =
+      changed(kLegs, "[[2, 0], [24, 0], [26, 80], [2, 80]]", "[[2, 0], [44, 0], [46, 80], [-0.6, 80]]");
+  crossing = changed(crossing, "[[2, 0], [2, 80], [26, 80], [24, 0]]", "[[2, 0], [-0.6, 80], [46, 80], [44, 0]]");
+  const Pattern pattern = read(crossing).pattern;
+  EXPECT_EQ(pattern.panels[0].around, Around::left_leg);
+  EXPECT_EQ(pattern.panels[1].around, Around::left_leg);
+}
+
 TEST_F(Specification, IsSewnAroundTheWearer) {
   support::write_bytes(folder_ / "a_specification.json", kSpecification);
   scene::Scene scene = support::scene_of_text(

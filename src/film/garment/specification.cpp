@@ -35,6 +35,9 @@ constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .
 // heights of the file, is below kMinLowestPanel [m]. The limit is negative, since flat trousers of GarmentCode may end
 // below the floor.
 constexpr double kMinLowestPanel = -0.2;
+// Maximum distance by which a leg panel crosses the middle of the body, relative to the distance of its own middle from
+// there. Trousers of the predecessor for legs apart cross by 2 %.
+constexpr double kMaxMiddleCrossing = 0.05;
 // Minimum height above the floor at which the lowest point of a GarmentCode pattern starts [m].
 constexpr double kMinStartHeight = 0.02;
 
@@ -259,7 +262,8 @@ class Reader {
     for (const auto& points : panel.points)
       for (const Vec2& each : points) {
         const Vec3 x = panel.in_space(each);
-        if (x.x() * panel.middle.x() < -1e-3) return false;  // the panel crosses the middle of the body
+        // The panel crosses the middle of the body, by more than the rise of trousers that are drawn with spread legs.
+        if (x.x() * panel.middle.x() < -kMaxMiddleCrossing * panel.middle.x() * panel.middle.x()) return false;
         inner = std::min(inner, std::abs(x.x())), outer = std::max(outer, std::abs(x.x()));
         low = std::min(low, x.y()), high = std::max(high, x.y());
       }
