@@ -159,14 +159,16 @@ double distance_sq(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (a + fraction * side - p).squaredNorm();
 }
 
-// Whether p lies inside the outline (even-odd rule).
-bool contains(std::span<const Vec2> outline, const Vec2& p) {
-  bool inside = false;
+// The places along x, ascending, at which the horizontal line at y crosses the outline. A point on this line is inside
+// the outline if an odd number of them is below its x (even-odd rule).
+std::vector<double> crossings_at(std::span<const Vec2> outline, double y) {
+  std::vector<double> crossings;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && (orientation(a, b, p) > 0) == (b.y() > a.y())) inside = !inside;
+    if ((a.y() > y) != (b.y() > y)) crossings.push_back(a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
   }
-  return inside;
+  std::ranges::sort(crossings);
+  return crossings;
 }
 
 bool is_far_from(std::span<const Vec2> outline, const Vec2& p, double distance) {
@@ -200,13 +202,17 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
   const Vec2 first = 0.5 * (low + high) - 0.5 * spacing * Vec2(count[0], count[1]);
   std::vector<Vec2> inside;
   std::vector<Vec2> exact(outline.begin(), outline.end());
-  for (int j = 0; j <= count[1]; ++j)
+  // The outline is searched once for each row: a narrow diagonal panel has few of the lattice points around it.
+  for (int j = 0; j <= count[1]; ++j) {
+    const std::vector<double> crossings = crossings_at(rotated, first.y() + spacing * j);
     for (int i = 0; i <= count[0]; ++i) {
       const Vec2 p = first + spacing * Vec2(i, j);
-      if (!contains(rotated, p) || !is_far_from(rotated, p, kMinOutlineDistance * spacing)) continue;
+      const auto below = std::ranges::lower_bound(crossings, p.x()) - crossings.begin();
+      if (below % 2 == 0 || !is_far_from(rotated, p, kMinOutlineDistance * spacing)) continue;
       inside.emplace_back(p.x() + j * kRowShift * spacing, p.y());
       exact.emplace_back(p.x() * Vec2(warp.y(), -warp.x()) + p.y() * warp);
     }
+  }
   FlatMesh mesh = triangulate(rotated, inside);
   mesh.points = std::move(exact);
   return mesh;
