@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "film/environment/environment.hpp"
+#include "film/environment/made_cloth.hpp"
 #include "film/garment/fit.hpp"
+#include "physics/mesh/geometry.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
@@ -85,6 +87,26 @@ TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
     EXPECT_NEAR(fit.factors.x(), 1, 0.06) << name;
     EXPECT_NEAR(fit.factors.y(), 1, 0.02) << name;
     EXPECT_NEAR(fit.rise, 0, 1e-12) << name;
+  }
+}
+
+// The top of the T-shirt starts 6 cm above the neck, that of the skirt 4 cm above the waist. A scale of 1.2 makes these
+// distances longer by a fifth; it lifted both tops by more than 20 cm.
+TEST(MannequinAsWearer, HasAScaledGarmentAtItsNeckOrWaistIfItIsFitted) {
+  const scene::Scene scene = support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n");
+  Wearers wearers(scene);
+  for (const char* name : {"tshirt", "skirt"}) {
+    scene::Cloth cloth;
+    cloth.name = name;
+    cloth.shape = scene::ClothShape::pattern;
+    cloth.file = std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml";
+    cloth.edge_length = 0.06;
+    cloth.fit = true;
+    const auto top = [&] { return mesh::bounding_box(make_cloth(scene, cloth, wearers).cloth.start).max().z(); };
+    const double as_drawn = top();
+    cloth.scale = 1.2;
+    EXPECT_NEAR(top(), as_drawn, 0.04) << name;
   }
 }
 

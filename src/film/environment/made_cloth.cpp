@@ -96,7 +96,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
         fit.factors.x(), fit.factors.y(), *own.chest, *own.waist, *own.hip,
         own.arm ? fmt::format("{:.2f} around the arms, ", *own.arm) : "", *own.height);
     factors = factors.cwiseProduct(fit.factors);
-    rise = cloth.scale * fit.rise;
+    rise = cloth.scale * fit.rise + (1 - cloth.scale) * fit.anchor;
     if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, body);
         !warning.empty() && cloth.pins.empty())
       made.details.warnings.push_back(fmt::format("{}: {}", where, warning));

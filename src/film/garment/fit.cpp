@@ -170,20 +170,22 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 where);
   const Measures own = measure(wearer);
   const bool from_waist = hangs_from_waist(pattern);
-  double across = 0, up = 1, rise = 0;
+  double across = 0, up = 1, rise = 0, anchor = 0;
   for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm}) {
     if (from_waist && (girth == &Measures::chest || girth == &Measures::arm)) continue;
     if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
   }
   if (drawn.height && from_waist) {
-    up = trunk.waist() / (kWaistHeightRatio * *drawn.height);
+    anchor = trunk.waist();
+    up = anchor / (kWaistHeightRatio * *drawn.height);
   } else if (drawn.height) {
     const double neck = kNeckHeightRatio * *drawn.height;
     up = wearer.neck / neck;
     if (drawn.arm && own.arm) up = std::max(up, *own.arm / *drawn.arm);
-    rise = wearer.neck - up * neck;
+    anchor = wearer.neck;
+    rise = anchor - up * neck;
   }
-  return {{across > 0 ? across : up, up}, rise};
+  return {{across > 0 ? across : up, up}, rise, anchor};
 }
 
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {

@@ -22,6 +22,9 @@ Measures measure(const Wearer& wearer);
 struct Fit {
   Vec2 factors{1, 1};  ///< on lengths of the pattern, across and up
   double rise = 0;     ///< of start positions that were multiplied by `factors` [m]
+  /// Height of the wearer's neck or, for garments that hang from the waist, of its waist [m]: a further scale leaves
+  /// the garment there. 0 if the pattern states no height.
+  double anchor = 0;
 };
 
 /// Factors on the lengths of a pattern. Across: the largest ratio wearer's girth / drawn girth among the
