@@ -33,6 +33,14 @@ TEST_F(TwoSkeletons, MayHaveJointsWithoutNames) {
   EXPECT_NEAR(width_of(gltf), 6, 1e-6);
 }
 
+// The matrix of a joint is then the identity, as it is in the file.
+TEST_F(TwoSkeletons, MayLackBindMatrices) {
+  std::string gltf = gltf_of_two_skeletons();
+  const std::string matrices = R"(,"inverseBindMatrices":2)";
+  for (int skin = 0; skin < 2; ++skin) gltf.erase(gltf.find(matrices), matrices.size());
+  EXPECT_NEAR(width_of(gltf), 6, 1e-6);
+}
+
 TEST_F(TwoSkeletons, KeepTheNameOfTheFirst) {
   support::write_bytes(folder_ / "two.gltf", gltf_of_two_skeletons());
   std::string names;

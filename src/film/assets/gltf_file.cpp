@@ -134,6 +134,7 @@ std::size_t size_of(const Json& json, const char* key) {
 std::size_t components_of(const Json& accessor) {
   const std::string type = value_or<std::string>(accessor, "type", "");
   if (type == "SCALAR") return 1;
+  if (type == "MAT4") return 16;
   if (type.size() == 4 && type.starts_with("VEC") && type[3] >= '2' && type[3] <= '4')
     return static_cast<std::size_t>(type[3] - '0');
   throw std::runtime_error(fmt::format("expected SCALAR or VEC2 to VEC4 as the type of integers, got \"{}\"", type));
@@ -155,6 +156,7 @@ class Rewriter {
   /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
     const bool renamed = name_joints_apart();
+    add_bind_matrices();
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
         use_floats(list_of(primitive, "attributes"));
@@ -204,6 +206,19 @@ class Rewriter {
       changed = true;
     }
     return changed;
+  }
+
+  /// Adds the matrices of skins that have none: the identity for each joint, which glTF prescribes then. assimp would
+  /// read a null pointer.
+  void add_bind_matrices() {
+    for (Json& skin : list_of(gltf_, "skins")) {
+      if (!skin.is_object() || skin.contains("inverseBindMatrices")) continue;
+      std::vector<double> matrices(16 * part_of(skin, "joints").size(), 0.0);
+      for (std::size_t i = 0; i < matrices.size(); ++i) matrices[i] = i % 16 % 5 == 0 ? 1 : 0;
+      Json accessor;
+      accessor["type"] = "MAT4";
+      skin["inverseBindMatrices"] = append_floats(std::move(accessor), matrices);
+    }
   }
 
   /// Replaces accessors of integers by new accessors of floats. Joints and colours keep their integers, since assimp
