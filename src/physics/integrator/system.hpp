@@ -61,7 +61,8 @@ class System {
 
   /// Adds the contact part of forces() [N] at each particle: friction to `friction`, all other
   /// contact forces to `push`, and the largest friction that the current normal forces allow to
-  /// `limit`. Returns false, and adds nothing, if there is no contact.
+  /// `limit`, of which only sums over diagonal blocks have a meaning. Returns false, and adds
+  /// nothing, if there is no contact.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                               std::span<double> limit) const {
     (void)at, (void)push, (void)friction, (void)limit;
