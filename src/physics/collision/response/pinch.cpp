@@ -26,6 +26,18 @@ std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase&
   return faces;
 }
 
+// Point of the limb of a corner that is nearest to its particle. `towards`: as in nearest_point().
+SurfacePoint PinchedPairs::nearest_on_limb(const Corner& corner, const BroadPhase& surfaces, std::span<const Vec3> x,
+                                           const Vec3& towards) const {
+  return nearest_point(x[corner.particle], surfaces, corner.body, x, towards, belongs_to_limb(corner.limb));
+}
+
+// Whether the particle of a corner is on the side of the limb on which the limb reached the cloth.
+bool PinchedPairs::is_on_its_side(const Corner& corner, const Origin& origin, const BroadPhase& surfaces,
+                                  std::span<const Vec3> x) const {
+  return origin.side * nearest_on_limb(corner, surfaces, x).height > 0;
+}
+
 bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const {
   return std::ranges::all_of(faces_near(key, surfaces, x), [&](const Triangle& face) {
     return find_separating_plane({key.cloth, face}, x, x).has_value();
@@ -74,9 +86,7 @@ void PinchedPairs::list_particles() {
 void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0) {
   for (auto& [key, origin] : origins_) {
     if (origin.side != 0) continue;
-    const Vec3& corner = x_t0[key.cloth[0]];
-    origin.side =
-        nearest_point(corner, surfaces, key.body, x_t0, Vec3::Zero(), belongs_to_limb(key.limb)).height < 0 ? -1 : 1;
+    origin.side = nearest_on_limb({key.cloth[0], key.body, key.limb}, surfaces, x_t0).height < 0 ? -1 : 1;
   }
   list_particles();
 }
@@ -94,10 +104,7 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
   }
   std::erase_if(around, [&](const auto& pinched) {
     const auto& [key, origin] = pinched;
-    return is_apart(key, surfaces, x) &&
-           origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x, Vec3::Zero(), belongs_to_limb(key.limb))
-                             .height >
-               0;
+    return is_apart(key, surfaces, x) && is_on_its_side({key.cloth[0], key.body, key.limb}, origin, surfaces, x);
   });
   for (auto& [key, origin] : around)
     if (!origins_.contains(key)) origin.faces = faces_reaching(key, origin, surfaces, x);
@@ -105,11 +112,8 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
   list_particles();
   returned_.clear();
   if (is_repeated) return;
-  for (const auto& [corner, origin] : particles_) {
-    const auto& [particle, body, limb] = corner;
-    const double height = nearest_point(x[particle], surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb)).height;
-    if (origin.side * height > 0) returned_.insert(corner);
-  }
+  for (const auto& [corner, origin] : particles_)
+    if (is_on_its_side(corner, origin, surfaces, x)) returned_.insert(corner);
 }
 
 // Finds the faces for the Origin of a neighbour that is added to the set: those that the neighbour crosses and whose
@@ -132,17 +136,15 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
   std::vector<Push> pushes;
   std::map<Corner, bool> is_back;
   for (const auto& [corner, origin] : particles_) {
-    const auto& [particle, body, limb] = corner;
-    const Vec3& p = x[particle];
-    SurfacePoint nearest = nearest_point(p, surfaces, body, x, Vec3::Zero(), belongs_to_limb(limb));
+    const Vec3& p = x[corner.particle];
+    SurfacePoint nearest = nearest_on_limb(corner, surfaces, x);
     is_back[corner] = origin.side * nearest.height > 0;
     // The nearest point may be on a side of the limb from which the cloth did not come.
-    if (!is_back[corner])
-      nearest = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), belongs_to_limb(limb));
+    if (!is_back[corner]) nearest = nearest_on_limb(corner, surfaces, x, outward(p, origin.faces, x));
     const double height = origin.side * nearest.height;
     if (height >= max_height) continue;
     const Vec3 exit_direction = origin.side * nearest.normal;
-    pushes.push_back({{{particle, nearest.face[0], nearest.face[1], nearest.face[2]},
+    pushes.push_back({{{corner.particle, nearest.face[0], nearest.face[1], nearest.face[2]},
                        {1, -nearest.weights[0], -nearest.weights[1], -nearest.weights[2]},
                        exit_direction,
                        height},

@@ -124,6 +124,10 @@ class PinchedPairs {
   CountsFace belongs_to_limb(Index limb) const {
     return [this, limb](const Triangle& face) { return limb_of_[face[0]] == limb; };
   }
+  SurfacePoint nearest_on_limb(const Corner& corner, const BroadPhase& surfaces, std::span<const Vec3> x,
+                               const Vec3& towards = Vec3::Zero()) const;
+  bool is_on_its_side(const Corner& corner, const Origin& origin, const BroadPhase& surfaces,
+                      std::span<const Vec3> x) const;
   std::vector<Triangle> faces_near(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
   std::vector<Triangle> faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
                                        std::span<const Vec3> x) const;
