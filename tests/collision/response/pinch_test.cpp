@@ -97,6 +97,26 @@ TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
   for (const auto& [push, has_room] : pushes) EXPECT_FALSE(has_room);
 }
 
+// The cloth was in the lower box and is now above it. Only the upper box can block the way back into the lower one.
+TEST_F(PinchedTriangle, HasRoomInTheContainerFromWhichItCame) {
+  move_cloth_to(0.09);
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  move_cloth_to(0.11);
+  for (const bool is_blocked : {false, true}) {
+    const std::vector<PinchedPairs::Push> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
+    ASSERT_EQ(pushes.size(), 3U);
+    for (const auto& [push, has_room] : pushes) {
+      EXPECT_LT((push.normal + Vec3::UnitZ()).norm(), 1e-12);
+      EXPECT_EQ(has_room, !is_blocked);
+    }
+    // The upper box comes down into the lower one.
+    for (Index v = surfaces_[2].first_vertex; v < surfaces_[2].first_vertex + surfaces_[2].vertex_count; ++v)
+      x_[v].z() -= 0.06;
+    move_cloth_to(0.11);
+  }
+}
+
 TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);

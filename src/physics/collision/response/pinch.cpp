@@ -45,11 +45,17 @@ bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::spa
 }
 
 // Whether no obstacle contains `place`, to which a push leads. Example: if a hand is inside the
-// hip, the hip blocks the exit from the hand.
-bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
-                                 std::span<const Vec3> x) const {
-  for (std::size_t surface = 0; surface < surfaces.size(); ++surface)
-    if (is_obstacle(surfaces.surface(surface)) && is_inside(place, outward, surfaces, surface, x)) return false;
+// hip, the hip blocks the exit from the hand. The body that the cloth is exempt from does not count
+// if it is one limb, in which the cloth was: cloth of a closed container returns into it.
+bool PinchedPairs::is_exit_clear(const Vec3& place, const Vec3& outward, const Corner& corner, int side,
+                                 const BroadPhase& surfaces, std::span<const Vec3> x) const {
+  const auto returns_into = [&](std::size_t body) {
+    return side < 0 && body == corner.body &&
+           std::ranges::all_of(surfaces.surface(body).triangles, belongs_to_limb(corner.limb));
+  };
+  for (std::size_t body = 0; body < surfaces.size(); ++body)
+    if (is_obstacle(surfaces.surface(body)) && is_inside(place, outward, surfaces, body, x) && !returns_into(body))
+      return false;
   return true;
 }
 
@@ -144,11 +150,12 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
     const double height = origin.side * nearest.height;
     if (height >= max_height) continue;
     const Vec3 exit_direction = origin.side * nearest.normal;
-    pushes.push_back({{{corner.particle, nearest.face[0], nearest.face[1], nearest.face[2]},
-                       {1, -nearest.weights[0], -nearest.weights[1], -nearest.weights[2]},
-                       exit_direction,
-                       height},
-                      is_exit_clear(p + (max_height - height) * exit_direction, exit_direction, surfaces, x)});
+    pushes.push_back(
+        {{{corner.particle, nearest.face[0], nearest.face[1], nearest.face[2]},
+          {1, -nearest.weights[0], -nearest.weights[1], -nearest.weights[2]},
+          exit_direction,
+          height},
+         is_exit_clear(p + (max_height - height) * exit_direction, exit_direction, corner, origin.side, surfaces, x)});
   }
   for (const auto& [key, origin] : origins_) {
     const auto back = [&, &key = key](Index v) { return is_back.at({v, key.body, key.limb}); };
@@ -163,7 +170,8 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
                          {(*weights)[0], (*weights)[1], (*weights)[2], -1},
                          exit_direction,
                          0},
-                        is_exit_clear(place + max_height * exit_direction, exit_direction, surfaces, x)});
+                        is_exit_clear(place + max_height * exit_direction, exit_direction,
+                                      {key.cloth[0], key.body, key.limb}, origin.side, surfaces, x)});
     }
   }
   return pushes;

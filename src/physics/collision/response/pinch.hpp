@@ -47,7 +47,8 @@ class PinchedPairs {
   /// triangle and one corner of the face that it crosses.
   struct Push {
     FeaturePair exit_pair;
-    bool is_exit_clear = false;  ///< no obstacle contains the point to which the push leads
+    bool is_exit_clear = false;  ///< no obstacle contains the point to which the push leads, except a container
+                                 ///< of the cloth
   };
 
   PinchedPairs() = default;
@@ -132,7 +133,8 @@ class PinchedPairs {
   std::vector<Triangle> faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
                                        std::span<const Vec3> x) const;
   bool is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
-  bool is_exit_clear(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces, std::span<const Vec3> x) const;
+  bool is_exit_clear(const Vec3& place, const Vec3& outward, const Corner& corner, int side, const BroadPhase& surfaces,
+                     std::span<const Vec3> x) const;
 
   Index first_obstacle_ = 0;
   std::span<const std::size_t> body_of_;
