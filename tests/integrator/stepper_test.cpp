@@ -120,6 +120,30 @@ TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
   EXPECT_LT(strict.step(spring, now, 0.01, Vec3::Zero(), {}, next).allowed, 1e-8);
 }
 
+/// A weak spring with a matrix that is a hundred times too stiff: each Newton iteration reduces the error by 4 %.
+class Sluggish final : public Spring {
+ public:
+  Sluggish() : Spring(1) {}
+
+ protected:
+  Mat3 stiffness_of(const Vec3&) const override { return 1e6 * Mat3::Identity(); }
+};
+
+// After twenty iterations, a velocity is allowed that is not visible. Beside a tolerance of positions, the bound
+// follows from that tolerance, and like the other bounds it is multiplied by that of Newton's method.
+TEST(Stepper, LeavesOfASlowSolveBesideAToleranceOnlyItsShare) {
+  Sluggish system;
+  const State now{{Vec3::Zero()}, {Vec3::Zero()}};
+  State next;
+  const double tolerance = 0.01, of_positions = 1e-6;
+  Stepper stepper(Method::implicit_euler, {tolerance, 1000, 1e-12, 1000, of_positions});
+  const StepReport report = stepper.step(system, now, 0.01, Vec3(0, 0, -0.02), {}, next);
+  ASSERT_EQ(report.verdict, Verdict::solved);
+  EXPECT_GT(report.newton_iterations, 20);
+  // Computed by hand: 1.0e-8 m after 84 iterations; without the factor, 1.3e-7 m after 20.
+  EXPECT_LE(report.solver_error, 1.001 * tolerance * std::max(of_positions, report.local_error));
+}
+
 // Two uncoupled springs; records where Newton's method evaluated them.
 class TwoParts : public testing::Particles {
  public:

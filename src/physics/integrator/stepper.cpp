@@ -192,10 +192,10 @@ void Stepper::bound_work(std::span<const double> masses, const State& now) {
 }
 
 bool Stepper::is_solved(int iterations) const {
-  double unseen_speed =
-      iterations < numerics.newton.slow_after ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity();
+  double unseen_speed = iterations < numerics.newton.slow_after ? 0 : numerics.newton.unseen_velocity();
   if (parameters_.position_tolerance > 0)
     unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
+  unseen_speed *= parameters_.tolerance;
   return std::ranges::all_of(
       blocks_, [&](const BlockState& part) { return part.error() <= std::max(part.allowed, unseen_speed); });
 }
