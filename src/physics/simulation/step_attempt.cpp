@@ -237,12 +237,12 @@ double StepLoop::energy(const SystemState& moment) const {
 }
 
 // Difference between the energy of `next_` and `before` [J], relative to the kinetic and elastic energy at the start of
-// the step. The kinetic energy counts as at least that of a free fall from rest over h [s], so that the ratio is
-// bounded for cloth at rest.
+// the step. The kinetic energy counts as at least that of a free fall from rest over h [s], with at least 1 m/s² as in
+// step_control_of(), so that the ratio is bounded for cloth at rest, also without gravity.
 double StepLoop::added_energy_ratio(double before, double h) const {
   double mass = 0;
   for (const double m : cloth_.masses()) mass += m;
-  const double fall = h * gravity_.norm();
+  const double fall = h * std::max(gravity_.norm(), 1.0);
   const double motion = std::max(cloth_.kinetic_energy(progress_.now.v), 0.5 * mass * fall * fall);
   return (energy(next_) - before) / (motion + cloth_.elastic_energy(progress_.now.particles()));
 }
