@@ -230,17 +230,19 @@ class CountedSpring final : public testing::HardeningSpring {
   std::vector<int> iterations;
 };
 
-TEST(Stepper, DoesNotContinueAStepThatItHasReturnedFrom) {
+TEST(Stepper, DoesNotContinueAStepThatItHasReturnedFromOrDiscarded) {
   const State now{{{2, 0, 0}}, {{0, 3, 0}}};
-  CountedSpring spring;
-  Stepper stepper(Method::implicit_euler, kTight);
-  State next = now;
-  const auto start = Stepper::Start::unchanged_velocity;
-  ASSERT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, next, start, 2).verdict, Verdict::unfinished);
-  stepper.return_to(stepper.history());
-  spring.iterations.clear();
-  stepper.step(spring, now, 1, Vec3::Zero(), {}, next, Stepper::Start::next);
-  EXPECT_EQ(spring.iterations.front(), 0);
+  for (const bool is_discarded : {false, true}) {
+    CountedSpring spring;
+    Stepper stepper(Method::implicit_euler, kTight);
+    State next = now;
+    const auto start = Stepper::Start::unchanged_velocity;
+    ASSERT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, next, start, 2).verdict, Verdict::unfinished);
+    is_discarded ? stepper.discard_unfinished_step() : stepper.return_to(stepper.history());
+    spring.iterations.clear();
+    stepper.step(spring, now, 1, Vec3::Zero(), {}, next, Stepper::Start::next);
+    EXPECT_EQ(spring.iterations.front(), 0);
+  }
 }
 
 /// Needs 5 ms to find that there is no impact.

@@ -130,10 +130,12 @@ class Stepper {
     double h = 0;  ///< its length [s]; 0: no history
   };
   const History& history() const { return history_; }
-  /// Returns to an earlier history. A step that is unfinished is discarded: step() does not continue it.
+  /// Discards a step that is unfinished: the next call of step() does not continue it.
+  void discard_unfinished_step() { iterations_before_pause_ = 0; }
+  /// Returns to an earlier history, and discards a step that is unfinished.
   void return_to(History history) {
     history_ = std::move(history);
-    iterations_before_pause_ = 0;
+    discard_unfinished_step();
   }
 
   /// Longest step [s] that may follow the last accepted one; infinite without a history, or if the method has no bound.

@@ -20,7 +20,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     const Attempt attempt{t, h, rejections, is_last, tries > numerics.repair.max_retries};
     pins_.begin_step(t, h, progress_.now.x);
     const Start start = begin_attempt(attempt, report);
-    if (!collisions_) return rejection_of(solve(h, start, false, report));
+    if (!collisions_) return rejection_of(solve(attempt, start, false, report));
 
     const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
     Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
@@ -57,12 +57,20 @@ StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& rep
     const Stopwatch watch(report.collide);
     if (collisions_->begin_step(t, h, held_, progress_.now, next_, attempt.rejections > 0)) start = Start::next;
   }
-  // Forces that change with time are those of the time of the stage (integrator::Stepper), which follows from method()
-  // and thus from the contacts. Held particles, contacts and attachments have their positions at the end of the step.
-  const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
-  problem_.begin_step(t + until_stage - start_, progress_.now.particles(), held_, pins_.pulls());
-  update_weather(t, until_stage);
+  begin_solve(attempt);
   return start;
+}
+
+// Begins the first solve of a step, or that in which contacts replace its method. Forces that change with time are
+// those of the time of the stage (integrator::Stepper), which follows from method() and thus from the contacts. Held
+// particles, contacts and attachments have their positions at the end of the step.
+void StepLoop::begin_solve(const Attempt& attempt) {
+  stepper_.set_method(method());
+  stepper_.discard_unfinished_step();
+  const double until_stage = stepper_.method() == integrator::Method::implicit_midpoint ? 0.5 * attempt.h : attempt.h;
+  problem_.begin_step(attempt.t + until_stage - start_, progress_.now.particles(), std::span(held_).first(pinned_),
+                      pins_.pulls());
+  update_weather(attempt.t, until_stage);
 }
 
 // Sets gravity and the air velocity at the time t + until_stage of the step's stage. Evaluates the air velocity at the
@@ -153,7 +161,7 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
   collisions_->append_prescribed_particles(held_);
-  integrator::StepReport step = solve(attempt.h, start, check_early, report);
+  integrator::StepReport step = solve(attempt, start, check_early, report);
   // Normal forces and friction depend on each other, and can increase each other without bound. If
   // the first solve of a step is unfinished and has added much energy, a second solve uses fixed
   // normal forces: friction then has a potential, and dissipates. (Measured without the second
@@ -161,7 +169,7 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
   if (is_first && step.verdict == integrator::Verdict::unfinished &&
       added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.diverged_energy_ratio) {
     problem_.fix_normal_forces();
-    step = solve(attempt.h, Start::unchanged_velocity, check_early, report);
+    step = solve(attempt, Start::unchanged_velocity, check_early, report);
   }
   if (Rejection rejection = rejection_of(step)) {
     progress_.longest = 0.5 * attempt.h;
@@ -173,10 +181,10 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
 
 // `check_early`: the solve pauses after `numerics.newton.check_after` iterations, so that contacts on the new
 // trajectory are found early.
-integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, FrameReport& report) {
-  stepper_.set_method(method());
+integrator::StepReport StepLoop::solve(const Attempt& attempt, Start start, bool check_early, FrameReport& report) {
+  if (stepper_.method() != method()) begin_solve(attempt);
   const integrator::StepReport step =
-      stepper_.step(problem_, progress_.now, h, gravity_, held_, next_, start,
+      stepper_.step(problem_, progress_.now, attempt.h, gravity_, held_, next_, start,
                     check_early ? numerics.newton.check_after : std::numeric_limits<int>::max());
   if (collisions_) collisions_->place_rigid_vertices(next_);
   report.newton_iterations += step.newton_iterations;

@@ -135,12 +135,13 @@ class StepLoop {
   // One attempt at a step, which writes `next_`: step_attempt.cpp.
   Rejection attempt(double t, double h, int rejections, bool is_last, FrameReport& report);
   Start begin_attempt(const Attempt& attempt, FrameReport& report);
+  void begin_solve(const Attempt& attempt);
   void update_weather(double t, double until_stage);
   Rejection solve_with_springs(const Attempt& attempt, Start start, FrameReport& report);
   Rejection solve_with_velocity_constraints(const Attempt& attempt, Start start, FrameReport& report);
   Rejection solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early, bool& solved,
                            FrameReport& report);
-  integrator::StepReport solve(double h, Start start, bool check_early, FrameReport& report);
+  integrator::StepReport solve(const Attempt& attempt, Start start, bool check_early, FrameReport& report);
   integrator::Method method() const;
   Rejection push_apart(const Attempt& attempt);
   bool may_release_pins(const Attempt& attempt) const;
