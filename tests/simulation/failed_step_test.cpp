@@ -1,9 +1,12 @@
 // Steps that cannot be solved: what a failed frame leaves, and halving.
 #include <gtest/gtest.h>
 
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "core/stop.hpp"
 #include "film/environment/environment.hpp"
 #include "film/production/scene_simulation.hpp"
 #include "physics/simulation/step_loop.hpp"
@@ -153,6 +156,36 @@ TEST(FailedStep, TakesBackPinchedClothAndPinsThatLag) {
       advance(frame);
       found = take_obstructions();
     }
+  }
+}
+
+// A box under a sheet is driven down; the program is interrupted within the step, and drives the box up instead.
+TEST(FailedStep, LeavesNoBodyWhereItWasDrivenThen) {
+  scene::Scene scene = sheet_alone(0.4, 5, 0.11);
+  scene.time.step = 0.04;
+  scene.contact.obstacles = true;
+  scene.obstacles.push_back(testing::obstacle("box", scene::BoxShape{{0.6, 0.6, 0.2}}));
+  scene.obstacles[0].motion.keys = {{0, scene::Pose{}}, {9, scene::Pose{}}};  // it may be driven
+  const model::Model model = environment::Environment(scene).model;
+  Simulation whole(model), interrupted(model);
+  const auto drive = [](Simulation& simulation, double z) {
+    motion::Pose end;
+    end.position.z() = z;
+    simulation.drive(0, end);
+  };
+  for (Simulation* simulation : {&whole, &interrupted}) simulation->allow_drive(0);
+  drive(interrupted, -0.05);
+  host_check = [] { throw std::runtime_error("interrupted"); };
+  EXPECT_THROW(interrupted.advance(), std::runtime_error);
+  host_check = nullptr;
+  for (Simulation* simulation : {&whole, &interrupted}) {
+    drive(*simulation, 0.05);
+    simulation->advance();
+  }
+  const std::span<const Vec3> x = interrupted.state().positions, expected = whole.state().positions;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_GT(x[i].z(), 0.15);
+    EXPECT_LT((x[i] - expected[i]).norm(), 1e-12);
   }
 }
 

@@ -315,6 +315,8 @@ StepLoop::Checkpoint StepLoop::checkpoint() {
 void StepLoop::return_to(Checkpoint checkpoint) {
   before_release_.reset();
   progress_ = std::move(checkpoint.progress);
+  // What was aborted within a step has placed bodies in `next_` by motions that Simulation::drive() may replace.
+  next_ = progress_.now;
   stepper_.return_to(std::move(checkpoint.history));
   stepper_.set_method(checkpoint.method);
   ByteReader parts{checkpoint.parts};
