@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/numerics.hpp"
+#include "physics/simulation/step_settings.hpp"
 #include "simulation/scenes.hpp"
 
 namespace weft::simulation {
@@ -113,6 +115,30 @@ TEST_F(CollisionStages, TellAContinuationThatLeadsBackToItsStart) {
   EXPECT_FALSE(stage_->restarts_at(next_)) << "one particle is elsewhere";
   stage_->begin_step(0.2, 0.005, {}, now_, next_);
   EXPECT_FALSE(stage_->restarts_at(next_)) << "a new attempt";
+}
+
+// In 0.1 s the blade turns by half a turn, so its vertices would move straight through its middle. The block is beside
+// the middle, in reach of the turning blade, or out of it, or it is not released yet.
+TEST(TurningObstacle, IsSeenByBodiesThatForcesMove) {
+  const auto turns_too_far = [](double y, double release) {
+    scene::Scene scene;
+    scene.time.step = 0.1;
+    scene.obstacles.push_back(testing::obstacle("blade", scene::BoxShape{{0.3, 0.02, 0.02}}));
+    scene.obstacles[0].motion.interpolation = scene::Interpolation::linear;
+    const Quat half_a_turn(Eigen::AngleAxisd(std::numbers::pi, Vec3::UnitZ()));
+    scene.obstacles[0].motion.keys = {{0, scene::Pose{}}, {0.1, {Vec3::Zero(), half_a_turn}}};
+    scene.obstacles.push_back(testing::obstacle("block", scene::BoxShape{{0.02, 0.02, 0.02}}, {0, y, 0}));
+    scene.obstacles[1].mass = 0.1;
+    scene.obstacles[1].release = release;
+    const model::Model model = environment::Environment(scene).model;
+    const ClothSystem cloth(model);
+    SystemState now = start_of(model, cloth, 0);
+    const CollisionStage stage(model, cloth, now);
+    return stage.obstacle_turns_too_far(0, 0.1, now);
+  };
+  EXPECT_TRUE(turns_too_far(0.1, 0));
+  EXPECT_FALSE(turns_too_far(0.5, 0));
+  EXPECT_FALSE(turns_too_far(0.1, 1));
 }
 
 }  // namespace

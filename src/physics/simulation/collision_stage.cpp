@@ -249,7 +249,7 @@ bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemStat
     double angle = 0;
     for (const double fraction : {0.0, 0.5, 1.0})
       angle = std::max(angle, h * model_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
-    if (sagitta(radii_[b], angle) > max_sagitta && cloth_comes_near(b, t, h, angle, now)) return true;
+    if (sagitta(radii_[b], angle) > max_sagitta && solved_surface_comes_near(b, t, h, angle, now)) return true;
   }
   return false;
 }
@@ -280,11 +280,11 @@ bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemS
   return true;
 }
 
-// Whether the obstacle `body`, which turns by `angle` [rad] from t to t + h, may come near cloth:
-// whether the box that it sweeps, enlarged by the detection distance, overlaps the box that a
-// triangle of cloth sweeps at unchanged velocity.
-bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle,
-                                      const SystemState& now) const {
+// Whether the obstacle `body`, which turns by `angle` [rad] from t to t + h, may come near cloth or
+// a body that forces move: whether the box that it sweeps, enlarged by the detection distance,
+// overlaps the box that a triangle of them sweeps at unchanged velocity.
+bool CollisionStage::solved_surface_comes_near(std::size_t body, double t, double h, double angle,
+                                               const SystemState& now) const {
   constexpr double kMaxPieceAngle = 0.25;  // [rad]
   const int pieces = 1 + static_cast<int>(std::min(angle, 100.0) / kMaxPieceAngle);
   Box3 box;
@@ -297,14 +297,23 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
       engine_.detection_distance() + std::min(1.0, sagitta(1, angle / pieces)) * boxes_[body].diagonal().norm();
   box.min().array() -= margin;
   box.max().array() += margin;
+  std::vector<Vec3> end(now.x.begin(), now.x.begin() + rigid_.end());
+  for (std::size_t i = 0; i < particles_; ++i) end[i] += h * now.v[i];
+  rigid_.place(end);
   const auto meets = [&](const collision::Triangle& triangle) {
     Box3 swept;
-    for (Index v : triangle) swept.extend(now.x[v]), swept.extend(Vec3(now.x[v] + h * now.v[v]));
+    for (Index v : triangle) swept.extend(now.x[v]), swept.extend(end[v]);
     return swept.intersects(box);
   };
-  return std::ranges::any_of(engine_.bodies().deformable(), [&](const collision::Surface& cloth) {
-    return std::ranges::any_of(cloth.triangles, meets);
-  });
+  const std::span<const collision::Surface> surfaces = engine_.bodies().surfaces();
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    if (s >= model_.cloths.size()) {
+      const model::Dynamics* moved = model_.bodies[bodies_[s - model_.cloths.size()]].dynamics.get();
+      if (moved == nullptr || t < moved->release) continue;
+    }
+    if (std::ranges::any_of(surfaces[s].triangles, meets)) return true;
+  }
+  return false;
 }
 
 // Rigid motion of a body from t to t + h; the identity for bodies that do not move, that deform, or that forces move.

@@ -66,9 +66,9 @@ class CollisionStage {
   bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, SystemState& now,
                   SystemState& next, bool is_repeated = false);
 
-  /// The search for contacts assumes that vertices move on straight lines. Returns whether an obstacle near cloth turns
-  /// so far between t and t + h [s] that its vertices may deviate from such lines by more than
-  /// `numerics.contact.margin` detection distances.
+  /// The search for contacts assumes that vertices move on straight lines. Returns whether an obstacle near cloth, or
+  /// near a body that forces move, turns so far between t and t + h [s] that its vertices may deviate from such lines
+  /// by more than `numerics.contact.margin` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether all key-framed bodies have the same positions at t0 and t1 [s], the times of `now` and `next`. Bodies that
@@ -160,7 +160,7 @@ class CollisionStage {
   const std::vector<Vec3>& append_bodies(SystemState& start) const;
   bool is_dynamic(std::size_t body) const { return model_.bodies[bodies_[body]].dynamics != nullptr; }
   void place_bodies(double t, SystemState& moment) const;
-  bool cloth_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
+  bool solved_surface_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
   std::string describe(const collision::CornerPair& pair, const SystemState& moment) const;
   std::string describe(const collision::Pinch& pinch) const;
