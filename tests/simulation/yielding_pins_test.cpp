@@ -216,6 +216,25 @@ TEST(LaggingPin, IsPulledWithTheWeightOfItsClothUnderThePresentGravity) {
   EXPECT_NEAR(damping() / before, 2, 1e-12);
 }
 
+// A pin that lags until its release has not reached its target.
+TEST(LaggingPin, IsNotSaidToBeAtItsTargetWhenItIsReleased) {
+  for (const bool is_released : {false, true}) {
+    const model::Model model =
+        environment::Environment(support::scene_of_text(hanging(1, is_released ? "release = 0.01" : "", ""))).model;
+    const ClothSystem cloth(model);
+    YieldingPins pins(model, {0}, cloth.masses());
+    const std::vector<Vec3>& x = model.cloths[0].start;
+    pins.begin_step(0, 0.01, x);
+    pins.release_particle(pins.held().front().constraint.particle, "'box' near (0, 0, 0) m");
+    pins.begin_step(0, 0.01, x);
+    pins.accept();
+    EXPECT_EQ(pins.take_lags().messages.size(), 1u) << "it yields";
+    pins.begin_step(0.01, 0.01, x);
+    pins.accept();
+    EXPECT_EQ(pins.take_lags().messages.size(), is_released ? 0u : 1u);
+  }
+}
+
 // The upper row is held. A pull that fades over 0.2 m draws the particles below to where the rigid motion of that row
 // takes them. At the end of a fast swing they are closer to these places than without the pull, the more so the nearer
 // they are to the row. Farther below nothing is pulled.

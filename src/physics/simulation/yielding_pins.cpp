@@ -153,7 +153,9 @@ void YieldingPins::accept() {
 
 YieldingPins::Lags YieldingPins::take_lags() {
   for (std::size_t pin : lagging_before_) {
-    if (lagging_.contains(pin)) continue;
+    const auto is_of_pin = [&](const auto& target) { return pin_of(target.constraint.particle) == pin; };
+    const bool holds = std::ranges::any_of(targets_, is_of_pin);  // else it was released meanwhile
+    if (lagging_.contains(pin) || !holds) continue;
     seen_.messages.push_back(fmt::format("{}: is at its target again", name_of(model_, pins_.info(pin))));
   }
   lagging_before_ = std::move(lagging_);
