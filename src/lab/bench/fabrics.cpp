@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/temporary_file.hpp"
 #include "core/timer.hpp"
 #include "lab/bench/plot.hpp"
 #include "lab/bench/report.hpp"
@@ -67,7 +68,8 @@ FabricRun test_fabric(const scene::Fabric& fabric, const std::filesystem::path& 
   constexpr int kRings = 14;
   const double cpu_start = process_cpu_seconds();
   FabricRun run{.fabric = fabric};
-  const std::filesystem::path file = folder / (fabric.material.fabric + "_specimen.obj");
+  const TemporaryName specimens(folder / "specimens", TemporaryName::Kind::folder);
+  const std::filesystem::path file = specimens.path() / "disc.obj";
   for (int seed : {1, 2}) {
     const cusick::Specimen disc = cusick::rings(kRings, seed);
     const scene::Scene scene = cusick::scene_of(disc, fabric.material, file);
@@ -75,7 +77,6 @@ FabricRun test_fabric(const scene::Fabric& fabric, const std::filesystem::path& 
     run.drape[at] = cusick::drape(scene, disc.triangles).coefficient;
     run.drape_in_scenes[at] = cusick::drape(scene, disc.triangles, cusick::Solved::with_default_tolerance).coefficient;
   }
-  std::filesystem::remove(file);
   scene::Material elastic = fabric.material;
   elastic.bend_friction = 0;
   run.elastic = cantilever(elastic);
