@@ -262,5 +262,26 @@ TEST_F(Staged, PanelsThatDifferInTheirBacksAloneHaveBothInTheScriptForBlender) {
   EXPECT_NE(support::read_bytes(request_.folder / "red-dress.obj").find("usemtl red-dress_1_back"), std::string::npos);
 }
 
+// Blender keeps 63 bytes of the name of a material, with ".001" behind it if the name is in use.
+TEST_F(Staged, MaterialsOfLongNamesKeepTheirNumberInTheScriptForBlender) {
+  frame::Surface dress = *surfaces_[0];
+  dress.name = std::string(64, 'a');
+  dress.parts = {{std::string(40, 'p'), dress.appearance}, {std::string(40, 'p'), dress.appearance}};
+  for (std::size_t p = 0; p < 2; ++p) dress.parts[p].appearance.back_color = {0, 0, 0.5 + 0.1 * static_cast<double>(p)};
+  surfaces_[0] = std::make_shared<frame::Surface>(dress);
+  const std::string text = written(Format::blender, "1st film.py");
+  const auto start = text.find("r\"\"\"") + 4;
+  const auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  const nlohmann::json& backs = film["objects"][0]["backs"];
+  ASSERT_EQ(backs.size(), 2u) << backs;
+  for (std::size_t p = 0; p < 2; ++p) {
+    const std::string name = std::string(48, 'a') + fmt::format("_{}_pppppppp", p);
+    EXPECT_EQ(name.size(), 59u);
+    EXPECT_TRUE(backs.contains(name)) << backs;
+    EXPECT_NE(support::read_bytes(request_.folder / (dress.name + ".obj")).find("usemtl " + name + "\n"),
+              std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace weft::exporter

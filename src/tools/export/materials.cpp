@@ -20,6 +20,11 @@ namespace {
 using Alpha = frame::Paint::Alpha;
 using Wrap = frame::Paint::Wrap;
 
+// Of the name of a material. Blender keeps 63 bytes of a name, including the number that it adds to a name in use
+// (".001"), and its script finds materials by their names. The name of the object is cut first, so that the number of
+// the part remains.
+constexpr std::size_t kMaxNameBytes = 59, kMaxObjectBytes = 48;
+
 const std::array<double, 256>& linear_of_bytes() {
   static const auto kTable = [] {
     std::array<double, 256> table;
@@ -130,10 +135,10 @@ std::size_t Materials::of_triangle(const frame::Surface& surface, std::size_t tr
 
 Materials materials_of(const frame::Surface& surface) {
   Materials materials;
-  const std::string name = plain_name(surface.name);
+  const std::string name = plain_name(surface.name).substr(0, kMaxObjectBytes);
   const auto add = [&](const std::string& material, const frame::Appearance& look) {
     Material made = material_of(surface, look, materials);
-    made.name = material;
+    made.name = material.substr(0, kMaxNameBytes);
     const auto first =
         std::ranges::find_if(materials.all, [&](const Material& each) { return look_alike(each, made); });
     made.alike = static_cast<std::size_t>(first - materials.all.begin());

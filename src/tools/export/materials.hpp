@@ -30,7 +30,7 @@ struct PictureFile {
 
 struct Material {
   static constexpr std::size_t kNoPicture = static_cast<std::size_t>(-1);
-  std::string name;                  ///< letters, digits, - and _
+  std::string name;                  ///< at most 59 letters, digits, - and _; unique within the object
   Vec3 color;                        ///< linear; if there is a picture, its pixels already include this colour
   double roughness = 0, metal = 0;   ///< 0 to 1
   std::size_t picture = kNoPicture;  ///< index in Materials::pictures
