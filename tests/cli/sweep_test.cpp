@@ -268,6 +268,23 @@ TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", "w2", "--set", kRadius}, folder_).exit_code, 6);
 }
 
+// Results do not depend on the number of threads, which `farm submit` does not pass on.
+TEST_F(Sweeps, GoOnWithAnotherNumberOfThreads) {
+  ASSERT_EQ(sweep({"--set", "time.duration=0.08", "--threads", "2"}).exit_code, 0);
+  for (const Arguments& threads : {Arguments{}, Arguments{"--threads", "1"}}) {
+    Arguments arguments{"--set", "time.duration=0.08"};
+    arguments.insert(arguments.end(), threads.begin(), threads.end());
+    const Outcome again = sweep(arguments);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.err.find("duration=0.08: done already\n"), std::string::npos) << again.err;
+  }
+  const Outcome farm = run_weft({"farm", "submit", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft",
+                                 "--set", "time.duration=0.08", "--dry-run"},
+                                folder_);
+  EXPECT_EQ(farm.exit_code, 0) << farm.err;
+  EXPECT_NE(farm.err.find("all runs are done"), std::string::npos) << farm.err;
+}
+
 TEST_F(Sweeps, AFolderInThePlaceOfAVideoIsNoRunThatIsDone) {
   const Arguments arguments{"--set", "time.duration=0.08"};
   EXPECT_EQ(sweep(arguments).exit_code, 0);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/json.hpp"
@@ -17,6 +19,17 @@ namespace weft::cli {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+// Without --threads, on which results do not depend.
+std::vector<std::string> options_of_results(std::vector<std::string> passed_on) {
+  if (const auto threads = std::ranges::find(passed_on, "--threads"); threads != passed_on.end())
+    passed_on.erase(threads, threads + std::min<std::ptrdiff_t>(2, passed_on.end() - threads));
+  return passed_on;
+}
+
+}  // namespace
 
 std::vector<std::string> SweepJob::overrides() const {
   std::vector<std::string> texts;
@@ -74,7 +87,8 @@ void check_sweep_folder(const SweepOptions& options, PathLedger& paths, bool can
                 folder.string());
   std::vector<std::string> words;
   for (const Json& word : before["options"]) words.push_back(word.is_string() ? word.get<std::string>() : word.dump());
-  if (!options.overwrite && words != options.passed_on)
+  words = options_of_results(std::move(words));
+  if (!options.overwrite && words != options_of_results(options.passed_on))
     throw Error(ExitCode::output_failed, "{}: holds runs with other options ({}); give the same options{} another name",
                 folder.string(), fmt::join(words, " "), can_overwrite ? ", --overwrite to start again, or" : " or");
 }

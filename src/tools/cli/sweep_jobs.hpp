@@ -43,8 +43,9 @@ struct SweepJob {
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
 /// Registers the output folder in `paths`. Throws Error(output_failed) unless the folder is new, empty, or that of a
-/// sweep with the same `passed_on` options; with `overwrite`, of any sweep. Also throws if the review page `page` in
-/// the folder cannot be replaced. `can_overwrite`: whether the command has --overwrite, which the message then names.
+/// sweep with the same `passed_on` options, --threads aside; with `overwrite`, of any sweep. Also throws if the review
+/// page `page` in the folder cannot be replaced. `can_overwrite`: whether the command has --overwrite, which the
+/// message then names.
 void check_sweep_folder(const SweepOptions& options, PathLedger& paths, bool can_overwrite);
 
 /// Writes the index file (review::kSweepName), which also marks the folder as that of a sweep.
