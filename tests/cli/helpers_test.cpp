@@ -116,10 +116,31 @@ TEST_F(Helpers, WatchOfSomeDrawingsHasTheExitCodeOfTheLast) {
 
 TEST_F(Helpers, WatchOfTheStartReplacesNoForeignPicture) {
   fs::create_directories(folder_ / "output");
-  support::write_bytes(folder_ / "output/s.start.png", "precious");
+  support::write_bytes(folder_ / "output/s.start.watch.png", "precious");
   const Outcome refused = run_weft({"watch", "s.toml", "--start", "--times", "1"}, folder_);
   EXPECT_EQ(refused.exit_code, 6) << refused.err;
-  EXPECT_EQ(support::read_bytes(folder_ / "output/s.start.png"), "precious");
+  EXPECT_EQ(support::read_bytes(folder_ / "output/s.start.watch.png"), "precious");
+}
+
+// `weft thumbnail` leaves its picture under the usual name.
+TEST_F(Helpers, WatchOfAStillReplacesNoThumbnail) {
+  const Arguments small{"--size", "64x36", "--quality", "draft", "--frame", "0"};
+  Arguments thumbnail{"thumbnail", "s.toml"}, watch{"watch", "s.toml", "--times", "1"};
+  for (Arguments* command : {&thumbnail, &watch}) command->insert(command->end(), small.begin(), small.end());
+  ASSERT_EQ(run_weft(thumbnail, folder_).exit_code, 0);
+  const auto written = fs::last_write_time(folder_ / "output/s.png");
+  for (int call = 0; call < 2; ++call) {
+    const Outcome watched = run_weft(watch, folder_);
+    EXPECT_EQ(watched.exit_code, 0) << watched.err;
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "output/s.watch.png"));
+  watch.insert(watch.end(), {"-o", "output/s.png"});
+  const Outcome refused = run_weft(watch, folder_);
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_NE(refused.err.find("give a name that ends in .watch.png"), std::string::npos) << refused.err;
+  EXPECT_EQ(fs::last_write_time(folder_ / "output/s.png"), written);
+  watch.back() = "output";
+  EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
 }
 
 // `weft run` leaves its film under the usual name.

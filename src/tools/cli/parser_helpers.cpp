@@ -49,7 +49,7 @@ void Parser::add_watch() {
     });
   };
   const auto anything = [](const std::string&) {};
-  passed_on("--output,-o", "FILE.png|FILE.mp4", "Picture or video [output/<scene>.png, with --film .watch.mp4]",
+  passed_on("--output,-o", "FILE.png|FILE.mp4", "Picture or video [output/<scene>.watch.png, with --film .watch.mp4]",
             anything);
   passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
   passed_on("--camera", "NAME", "Camera of the scene that draws [render.camera, the first one, or automatic framing]",
@@ -68,11 +68,11 @@ void Parser::add_watch() {
             [this](const std::string& text) { watch.times = parse_integer("--times", text, 1, 1'000'000'000); });
   command.footer(
       "\nExamples:\n"
-      "  weft watch dress.toml --frame 20 --quality draft -o dress.png\n"
+      "  weft watch dress.toml --frame 20 --quality draft -o dress.watch.png\n"
       "  weft watch dress.toml --film --quality draft --size 320x180\n"
       "\nIf a file changes during a drawing, that drawing is stopped and a new one begins. Viewers that follow the\n"
-      "output file show the last complete one. A video that exists before the first drawing is replaced only if its\n"
-      "name ends in .watch.mp4, .watch.mov or .watch.mkv.");
+      "output file show the last complete one. A file that exists before the first drawing is replaced only if its\n"
+      "name ends in .watch.png, .watch.mp4, .watch.mov or .watch.mkv.");
 }
 
 void Parser::add_completion() {

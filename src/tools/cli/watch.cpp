@@ -38,25 +38,30 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 
 class Watch {
  public:
-  explicit Watch(const WatchOptions& options) : options_(options) {
-    // Each drawing replaces the output. Checks that an existing output is an earlier drawing of the scene. Films of
-    // `weft watch` are recognised by their names, because `weft run` makes the same ones.
-    const auto option = std::ranges::find(options.passed_on, "--output");
-    const bool start = std::ranges::find(options.passed_on, "--start") != options.passed_on.end();
+  explicit Watch(const WatchOptions& options) : options_(options), passed_on_(options.passed_on) {
+    const bool start = std::ranges::find(passed_on_, "--start") != passed_on_.end();
     const std::string scene = options.scene.stem().string();
-    const char* ending = options.film ? ".watch.mp4" : start ? ".start.png" : ".png";
-    const fs::path output =
-        option != options.passed_on.end() ? fs::path(*(option + 1)) : fs::path("output") / (scene + ending);
+    fs::path output = "output";
+    if (const auto option = std::ranges::find(passed_on_, "--output"); option != passed_on_.end()) {
+      output = *(option + 1);
+      passed_on_.erase(option, option + 2);
+    }
+    if (!output.has_extension())
+      output /= scene + (start ? ".start" : "") + (options.film ? ".watch.mp4" : ".watch.png");
+    passed_on_.insert(passed_on_.end(), {"--output", output.string()});
+    // Each drawing replaces the output. Drawings of earlier calls are recognised by their names, because `weft run` and
+    // `weft thumbnail` make the same videos and pictures.
     std::error_code ignored;
-    if (fs::exists(fs::symlink_status(output, ignored)) && !is_output_of(output, scene))
-      throw Error(ExitCode::output_failed, "{}: exists already, and is no picture of {}; give another name",
-                  output.string(), scene);
-    if (options.film && fs::exists(output, ignored) && output.stem().extension() != ".watch")
+    if (!fs::exists(fs::symlink_status(output, ignored))) return;
+    const std::string kind = options.film ? "film" : "picture";
+    if (!is_output_of(output, scene))
+      throw Error(ExitCode::output_failed, "{}: exists already, and is no {} of {}; give another name", output.string(),
+                  kind, scene);
+    if (output.stem().extension() != ".watch")
       throw Error(ExitCode::output_failed,
-                  "{}: exists already, and may be a film of weft run; give a name that ends in .watch{}, which is "
-                  "replaced, or remove the film",
-                  output.string(), output.extension().string());
-    if (options.film && option == options.passed_on.end()) film_output_ = {"--output", output.string()};
+                  "{}: exists already, and may be a {} of weft {}; give a name that ends in .watch{}, which is "
+                  "replaced, or remove the {}",
+                  output.string(), kind, options.film ? "run" : "thumbnail", output.extension().string(), kind);
   }
 
   /// Returns the exit code of the last drawing if the number of drawings is limited, and `ok` after a stop request.
@@ -86,8 +91,7 @@ class Watch {
                                    "--overwrite",
                                    "--progress",
                                    "none"};
-    words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
-    words.insert(words.end(), film_output_.begin(), film_output_.end());
+    words.insert(words.end(), passed_on_.begin(), passed_on_.end());
     for (const std::string& text : options_.overrides) words.insert(words.end(), {"--set", text});
     const pid_t process = start_process(words, "");
     bool is_killed = false;
@@ -104,7 +108,7 @@ class Watch {
   }
 
   const WatchOptions& options_;
-  std::vector<std::string> film_output_;  // option for the default name of a film; empty if a name is given
+  std::vector<std::string> passed_on_;  // those of options_, with the output as a file
   const StopSignals stop_{"ending"};
   std::vector<fs::path> files_;
   Stamps drawn_;
