@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "review/made_runs.hpp"
 
 namespace weft::review {
@@ -65,6 +67,19 @@ TEST_F(FindRuns, PicturesNamedByNumbersAloneAreNamedAsTheirFolder) {
   write("p/1.png");
   EXPECT_EQ(found(), "p: 0.png 1.png\n");
   for (const char* folder : {"p", "p/", "p/."}) EXPECT_EQ(found(folder), "p: 0.png 1.png\n") << folder;
+}
+
+// Decisions are stored by key: those on the pictures would count for the video.
+TEST_F(FindRuns, OfOneNameHaveKeysOfTheirOwn) {
+  for (const char* file : {"band.mp4", "film.mp4", "band/0.png", "band/1.png", "band_0.png", "band_1.png"}) write(file);
+  write("band.json", statistics("film.mp4"));
+  std::vector<std::string> keys;
+  for (const RunFiles& run : find_runs(folder_)) {
+    EXPECT_EQ(run.name, "band");
+    keys.push_back(run.key);
+  }
+  std::ranges::sort(keys);
+  EXPECT_EQ(keys, (std::vector<std::string>{"band", "band (pictures)", "band (pictures) 2", "band (video)"}));
 }
 
 TEST_F(FindRuns, OfASweepAreInItsOrderAndHaveItsValues) {

@@ -142,10 +142,15 @@ class Search {
       runs_.push_back(std::move(run));
     }
     for (const auto& [prefix, files] : pictures_) add_pictures(prefix, files);
+    std::set<std::string> keys;
     for (RunFiles& run : runs_) {
       find_effective(run);
       run.folder = folder_;
+      // Decisions are stored by key. Runs with statistics come first, and keep their names as keys.
       run.key = run.name;
+      if (keys.contains(run.key)) run.key += run.video.empty() ? " (pictures)" : " (video)";
+      const std::string key = run.key;
+      for (int i = 2; !keys.insert(run.key).second; ++i) run.key = fmt::format("{} {}", key, i);
       if (const auto found = swept_.find(fs::path(run.name).parent_path()); found != swept_.end())
         run.values = found->second.values;
     }

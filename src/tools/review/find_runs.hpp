@@ -14,8 +14,11 @@ using Json = nlohmann::ordered_json;
 /// The files of one run. A member is empty if the file was not found.
 struct RunFiles {
   std::filesystem::path folder;  ///< folder that was searched
-  std::string key;               ///< path below `folder` without extension, such as "stiff/falling_band"
-  std::string name;  ///< `key`; if several folders are searched, with the name of `folder` and a slash before it
+  /// Path below `folder` without extension, such as "stiff/falling_band"; if another run of `folder` has this path too,
+  /// with " (pictures)" or " (video)" behind it.
+  std::string key;
+  std::string
+      name;  ///< the path alone; if several folders are searched, with the name of `folder` and a slash before it
   std::filesystem::path video;                  ///< MP4
   std::vector<std::filesystem::path> pictures;  ///< numbered PNG files in order, if there is no video
   std::filesystem::path stats;                  ///< JSON file of --stats
