@@ -200,6 +200,15 @@ TEST_F(Completeness, RenderDoesNotTakeAThumbnailWithAnotherCameraForAPictureOfTh
   expect_well(render);
 }
 
+// Frame 0 follows after untangling and preroll.
+TEST_F(Completeness, RenderDoesNotTakeAPictureOfTheStartForFrame0) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"thumbnail", "s.toml", "--start", "-o", "p/00000.png"});
+  const Outcome refused = weft({"render", "c", "-o", kPicturesInP, "--frames", ":1", "--resume"});
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "p/00000.png: exists already")) << refused.err;
+}
+
 TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   Subprocess process({"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none", "--log-json", "-"},

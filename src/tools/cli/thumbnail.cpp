@@ -103,7 +103,10 @@ void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   const image::Image image = start.places.empty()
                                  ? pictures.front().image
                                  : image::contact_sheet(pictures, 2, summary.substr(0, summary.find(':')) + ", in red");
-  image::write_png(file, image, describe_thumbnail(*stills, *start.snapshot, *painter));
+  // No film has this picture: frame 0 follows after untangling and preroll, and has another camera if it is computed.
+  Metadata about = describe_thumbnail(*stills, *start.snapshot, *painter);
+  about["state"] = "the start as given";
+  image::write_png(file, image, about);
   log::info(fmt::format("{}: the start: {}", file.string(), summary));
   check_stopped(options, *stills);
 }

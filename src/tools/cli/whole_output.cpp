@@ -19,7 +19,7 @@ bool agrees(const Metadata& found, Metadata expected) {
   expected.erase("gl");
   // Weft writes these entries only if the setting has a value. If the current setting has no value,
   // the output must not have the entry.
-  for (const char* option : {"camera", "camera_frames", "look", "motion_blur"})
+  for (const char* option : {"camera", "camera_frames", "look", "motion_blur", "state"})
     if (found.contains(option) && !expected.contains(option)) return false;
   return std::ranges::all_of(expected, [&](const auto& entry) {
     const auto here = found.find(entry.first);
