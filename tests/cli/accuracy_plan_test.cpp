@@ -87,14 +87,19 @@ TEST(AccuracyPlan, SolvesNothingLessExactlyThanTheScene) {
   plan.steps = {1};
   plan.tolerances.emplace();
   plan.meshes = {1};
-  int references = 0;
+  int references = 0, looser = 0;
   const auto check = [&](const bench::Run& run, double) {
-    EXPECT_LE(run.setting.newton_tolerance, kScene);
+    if (run.setting.newton_tolerance > kScene) ++looser;
     if (run.setting.step < 0.01) ++references;
   };
   const Accuracy accuracy =
       measure_accuracy(tiny_sheet({fmt::format("solver.newton_tolerance={}", kScene)}), check, plan);
   EXPECT_GT(references, 0);
+  EXPECT_EQ(looser, 2) << "one for each reference, by which the error of its solver is known";
+  EXPECT_GT(at(accuracy.reference.solver, Quantity::position), 0);
+  for (const bench::Run& run : accuracy.runs) EXPECT_LE(run.setting.newton_tolerance, kScene);
+  for (const Candidate* each : {&accuracy.reference, &accuracy.second})
+    EXPECT_LE(each->setting.newton_tolerance, kScene);
   EXPECT_FALSE(runs_of_axis(accuracy, Axis::mesh).empty());
 }
 

@@ -240,10 +240,16 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
 // until the result hardly changes: by at most the spread over the starts, or by at most a tenth of
 // the change expected from halving the step. Also stops at kMinNewtonTolerance, or if a run fails.
 // `coarse`: run of `twice`; replaced by the last successful run. Returns the last change. Throws if
-// the run after the first division fails, or if a run with twice the step of `twice` fails.
+// the run after the first division fails, or if a run with twice the step of `twice` fails. If the newton_tolerance is
+// at kMinNewtonTolerance already, returns the change from ten times its value.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
+  if (twice.newton_tolerance <= kMinNewtonTolerance) {
+    Setting looser = twice;
+    looser.newton_tolerance /= kDecade;
+    return difference(*made(looser), *coarse);
+  }
   for (Errors change{};;) {
     Run tighter{.setting = twice};
     tighter.setting.newton_tolerance = tighter_newton_tolerance(twice.newton_tolerance, kDecade);
