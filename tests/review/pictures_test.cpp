@@ -102,6 +102,18 @@ TEST_F(Pictures, AreComparedMomentByMoment) {
   EXPECT_EQ(later[1].verdict, compare::Verdict::differs) << "frame 2 against frame 4";
 }
 
+// Frames 2 and 3 of the run and frame 5 of the reference are missing.
+TEST_F(Pictures, AreComparedWithThoseOfTheSameNumberIfSomeAreMissing) {
+  RunFiles run = stills("a", 8), reference = stills("b", 8);
+  run.pictures.erase(run.pictures.begin() + 2, run.pictures.begin() + 4);
+  reference.pictures.erase(reference.pictures.begin() + 5);
+  const auto pairs = compare_with_reference(run, picture_times(run), reference, picture_times(reference), {0, 2, 3, 4});
+  ASSERT_EQ(pairs.size(), 3u) << "frames 0, 4 and 6";
+  for (const PairComparison& pair : pairs) EXPECT_EQ(pair.verdict, compare::Verdict::same) << pair.picture;
+  EXPECT_EQ(pairs[1].reference, 4);
+  EXPECT_EQ(pairs[2].reference, 5);
+}
+
 TEST_F(Pictures, VideoAndStillsCanBeCompared) {
   write_video("a.mp4", 6);
   RunFiles video;

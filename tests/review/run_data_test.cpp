@@ -108,11 +108,14 @@ TEST_F(RunData, NumberedPicturesTellTheirFrames) {
 TEST_F(RunData, MissingPicturesBetweenOthersAreNamed) {
   for (const char* picture : {"f_000.png", "f_001.png", "f_004.png", "f_005.png"}) write(picture);
   EXPECT_EQ(only_run().at("problems").at(1),
-            "f_004.png: expected a number 1 above that of the picture before it, got 3 above: it and those after it "
-            "have the frames and times of missing pictures");
+            "f_004.png: expected a number 1 above that of the picture before it, got 3 above: pictures "
+            "between them are missing");
+  const PictureTimes times = picture_times(find_runs(folder_).at(0));
+  EXPECT_EQ(times.frames, (std::vector<long long>{0, 1, 4, 5}));
   std::filesystem::remove(folder_ / "f_001.png");
   std::filesystem::remove(folder_ / "f_005.png");
   EXPECT_EQ(only_run().at("problems").dump().find("f_004.png"), std::string::npos);
+  EXPECT_TRUE(picture_times(find_runs(folder_).at(0)).frames.empty()) << "every fourth frame";
 }
 
 TEST_F(RunData, WholeRunHasNoProblems) {

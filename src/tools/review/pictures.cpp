@@ -88,10 +88,15 @@ Survey survey(const RunFiles& run) {
 }
 
 long long index_at_same_time(long long k, const PictureTimes& from, const PictureTimes& to) {
-  if (!(from.fps > 0 && to.fps > 0)) return k;
-  const auto step = static_cast<double>(from.step), other_step = static_cast<double>(to.step);
-  const double time = (static_cast<double>(from.first) / step + static_cast<double>(k)) / from.fps;
-  return std::llround(time * to.fps - static_cast<double>(to.first) / other_step);
+  if (!from.frames.empty()) k = (from.frames[static_cast<std::size_t>(k)] - from.first) / from.step;
+  if (from.fps > 0 && to.fps > 0) {
+    const auto step = static_cast<double>(from.step), other_step = static_cast<double>(to.step);
+    const double time = (static_cast<double>(from.first) / step + static_cast<double>(k)) / from.fps;
+    k = std::llround(time * to.fps - static_cast<double>(to.first) / other_step);
+  }
+  if (to.frames.empty()) return k;
+  const auto found = std::ranges::find(to.frames, to.first + k * to.step);
+  return found == to.frames.end() ? -1 : found - to.frames.begin();
 }
 
 std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,

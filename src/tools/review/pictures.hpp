@@ -45,7 +45,8 @@ std::vector<PairComparison> compare_with_reference(const RunFiles& run, const Pi
                                                    const std::vector<long long>& at);
 
 /// Index of the picture of `to` that is closest in time to picture k of `from`; the index may be negative or beyond the
-/// last picture of `to`. Returns k if either frame rate is unknown.
+/// last picture of `to`. Returns k if either frame rate is unknown. If pictures are missing (PictureTimes::frames),
+/// counts them; returns -1 if the picture of `to` is missing.
 long long index_at_same_time(long long k, const PictureTimes& from, const PictureTimes& to);
 
 }  // namespace weft::review

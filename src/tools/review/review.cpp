@@ -198,6 +198,7 @@ class Page {
     pictures["step"] = entry.times.step;
     pictures["count"] = entry.times.count;
     pictures["fps"] = entry.times.fps;
+    if (!entry.times.frames.empty()) pictures["frames"] = entry.times.frames;
     return entry;
   }
 

@@ -169,7 +169,12 @@ PictureTimes picture_times(const RunFiles& run) {
   PictureTimes times;
   times.count = static_cast<long long>(shown.size());
   if (times.count > 0) times.first = shown.front();
-  if (times.count > 1) times.step = std::max(1ll, shown[1] - shown[0]);
+  for (std::size_t k = 1; k < shown.size(); ++k) {
+    const long long distance = std::max(1ll, shown[k] - shown[k - 1]);
+    times.step = k == 1 ? distance : std::min(times.step, distance);
+  }
+  if (!run.pictures.empty() && times.count > 0 && shown.back() != times.first + (times.count - 1) * times.step)
+    times.frames = std::move(shown);
   if (!run.stats.empty()) times.fps = number_or_zero(run.stats_json, "fps") / static_cast<double>(times.step);
   return times;
 }
@@ -194,8 +199,8 @@ std::string gap_in_pictures(const RunFiles& run) {
     const long long distance = picture_number(run.pictures[k]) - picture_number(run.pictures[k - 1]);
     if (distance != step)
       return fmt::format(
-          "{}: expected a number {} above that of the picture before it, got {} above: it and those after it have the "
-          "frames and times of missing pictures",
+          "{}: expected a number {} above that of the picture before it, got {} above: pictures between them are "
+          "missing",
           run.pictures[k].filename().string(), step, distance);
   }
   return {};

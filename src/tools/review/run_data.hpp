@@ -17,14 +17,16 @@ Json frame_columns(const Json& frames);
 /// without numbers are omitted.
 Json column_digest(const Json& columns);
 
-/// The frames shown by the pictures of a run: picture k shows frame first + k * step.
+/// The frames shown by the pictures of a run: picture k shows frame first + k * step, if no picture is missing.
 struct PictureTimes {
   long long first = 0, step = 1, count = 0;
   double fps = 0;  ///< pictures per second; 0 if unknown
+  std::vector<long long> frames =
+      {};  ///< frame of each picture, ascending, if some are missing between others; else empty
 };
 
-/// Takes `first`, `step` and `count` from the names of the numbered pictures. If there are none,
-/// takes them from the written frames of the statistics, without those that the metadata of the video
+/// Takes `first`, `count`, `step` (the smallest distance) and `frames` from the names of the numbered pictures. If
+/// there are none, takes them from the written frames of the statistics, without those that the metadata of the video
 /// exclude. `fps` is the frame rate in the statistics divided by `step`; 0 if there are no statistics.
 PictureTimes picture_times(const RunFiles& run);
 

@@ -1,7 +1,7 @@
 // The runs of this page; index.html contains their data.
 //
 // A *frame* is a state of the simulation, at frame / fps. A *picture* is what the video or the stills show of it: the
-// k-th picture shows frame first + k * step. All parts of the page use the time of the frame.
+// k-th picture shows frame frames[k] or, if no picture is missing, first + k * step. All parts of the page use the time of the frame.
 "use strict";
 {
   const { known, plural } = review.format;
@@ -79,13 +79,16 @@
       return this.pictures.kind !== "none" && (this.pictures.count > 0 || this.pictures.kind === "video");
     }
     frameOf(picture) {
-      return this.pictures.first + picture * this.pictures.step;
+      return this.pictures.frames?.[picture] ?? this.pictures.first + picture * this.pictures.step;
     }
     timeOf(picture) {
       return this.frameOf(picture) / (this.fps * this.pictures.step);
     }
     pictureAt(time) {
-      const picture = Math.round((time * this.fps * this.pictures.step - this.pictures.first) / this.pictures.step);
+      const { frames, first, step } = this.pictures;
+      const frame = time * this.fps * step;
+      if (frames) return frames.reduce((best, each, at) => (Math.abs(each - frame) < Math.abs(frames[best] - frame) ? at : best), 0);
+      const picture = Math.round((frame - first) / step);
       return Math.max(0, Math.min(this.pictures.count - 1, picture));
     }
     pictureOfFrame(frame) {
