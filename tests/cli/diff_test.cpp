@@ -321,11 +321,12 @@ TEST_F(Diff, PageShowsBeforeAfterAndDifferenceOfWhatDiffers) {
 }
 
 TEST_F(Diff, SaysWhatHasChangedInTheSceneBetweenTwoRuns) {
-  const auto draw = [&](const char* name, std::uint8_t level, const char* hash, const char* gl) {
+  const auto draw = [&](const char* name, std::uint8_t level, const char* hash, const char* gl,
+                        const char* frame = "1") {
     image::Image image(32, 24);
     std::fill(image.rgb.begin(), image.rgb.end(), level);
     std::filesystem::create_directories((folder_ / name).parent_path());
-    image::write_png(folder_ / name, image, {{"scene", "s"}, {"scene_hash", hash}, {"gl", gl}});
+    image::write_png(folder_ / name, image, {{"scene", "s"}, {"scene_hash", hash}, {"gl", gl}, {"frame", frame}});
   };
   draw("ref/00001.png", 100, "1", "Mesa 22");
   draw("out/00001.png", 130, "2", "Mesa 22");
@@ -340,6 +341,8 @@ TEST_F(Diff, SaysWhatHasChangedInTheSceneBetweenTwoRuns) {
   expect({"diff", "ref", "out", "--json"}, 7, "\"origin\": \"the scene has changed: cloth.flag.over");
   draw("out/00001.png", 130, "1", "Mesa 25");
   expect({"diff", "ref", "out"}, 7, "; the scene is the same; gl: Mesa 22 -> Mesa 25\n");
+  draw("out/00001.png", 130, "1", "Mesa 22", "2");
+  expect({"diff", "ref", "out"}, 7, "; the scene is the same; frame: 1 -> 2\n");
   draw("out/00001.png", 100, "2", "Mesa 22");
   expect({"diff", "ref", "out"}, 0, "00001.png: same\n");
 }

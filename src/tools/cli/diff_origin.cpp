@@ -64,7 +64,8 @@ std::string describe_origin_changes(const fs::path& reference, const fs::path& t
   }
   // The scene is the same, so compares program and drawing settings.
   KeyedValues old_program, new_program;
-  for (const char* key : {"weft_version", "gl", "quality", "look", "camera", "camera_frames", "motion_blur", "state"})
+  for (const char* key :
+       {"weft_version", "gl", "quality", "look", "camera", "camera_frames", "motion_blur", "state", "frame", "frames"})
     if (before[key] != after[key]) old_program[key] = before[key], new_program[key] = after[key];
   if (old_program.empty()) return "the scene is the same";
   return "the scene is the same; " + join_some(list_changes(old_program, new_program));
