@@ -78,6 +78,7 @@ const PaintTexture& Paints::of(const frame::Paint& paint) {
   gl_->TextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_S, gl_wrap(paint.wrap_u));
   gl_->TextureParameteri(name, GL_TEXTURE_WRAP_T, gl_wrap(paint.wrap_v));
+  check_errors(*gl_, "uploading a picture");
   gl_->TextureParameterf(name, kMaxAnisotropy, kAnisotropy);
   gl_->GetError();  // clears the error if OpenGL has no anisotropic filtering
   if (paint.alpha == Alpha::cutout) made.opacity.emplace(std::move(levels), paint.wrap_u, paint.wrap_v);

@@ -1,5 +1,7 @@
 #include "film/render/gl/objects.hpp"
 
+#include <new>
+
 #include "core/error.hpp"
 
 namespace weft::render {
@@ -20,8 +22,6 @@ const char* error_name(GLenum error) {
       return "GL_INVALID_VALUE";
     case GL_INVALID_OPERATION:
       return "GL_INVALID_OPERATION";
-    case GL_OUT_OF_MEMORY:
-      return "GL_OUT_OF_MEMORY";
     case GL_INVALID_FRAMEBUFFER_OPERATION:
       return "GL_INVALID_FRAMEBUFFER_OPERATION";
     default:
@@ -47,6 +47,7 @@ void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char*
 
 void check_errors(const Gl& gl, const char* what) {
   const GLenum error = gl.GetError();
+  if (error == GL_OUT_OF_MEMORY) throw std::bad_alloc();
   if (error != GL_NO_ERROR) throw Error(ExitCode::internal, "{}: OpenGL reports {}", what, error_name(error));
 }
 

@@ -90,7 +90,8 @@ void upload(const Gl& gl, const Buffer& buffer, std::span<const T> data) {
   gl.NamedBufferData(buffer.name(), static_cast<GLsizeiptr>(data.size_bytes()), data.data(), GL_STREAM_DRAW);
 }
 
-/// If OpenGL has recorded an error since the last call, throws Error(internal) that names `what` and this error.
+/// If OpenGL has recorded an error since the last call, throws std::bad_alloc if memory ran out, else Error(internal)
+/// that names `what` and the error.
 void check_errors(const Gl& gl, const char* what);
 
 }  // namespace weft::render
