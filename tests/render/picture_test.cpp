@@ -302,20 +302,23 @@ TEST(Picture, ThinSheetDoesNotShadeItself) {
 }
 
 TEST(Picture, LayerTwoMillimetresAboveShadesTheOneBelow) {
-  frame::FrameSnapshot snapshot;
-  snapshot.stage = stage_without_sky();
-  add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 0.3);
-  // A pixel is 0.8 mm: the shadow is about five pixels wide.
-  snapshot.cameras = {camera_at(Vec3(0, -0.15, 0.15), Vec3::Zero(), 40)};
-  snapshot.lights = {sun(Vec3(0.2, 0.95, -0.3))};
-  Renderer renderer(settings());
-  const int open = renderer.draw(snapshot).pixel(160, 100)[1];
-  // The edge is 3 mm from the middle, toward the light. The light falls by 0.3 for each 0.95 along y, so that the
-  // shadow extends 6.3 mm further, past the middle.
-  add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, -0.103, 0.002), Vec3::UnitZ(), Vec3::UnitX(), 0.1);
-  const int shaded = renderer.draw(snapshot).pixel(160, 100)[1];
-  EXPECT_GT(open, 90);
-  EXPECT_LT(shaded, open / 2);
+  for (const double scale : {1.0, 0.03}) {
+    frame::FrameSnapshot snapshot;
+    snapshot.stage = stage_without_sky();
+    add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 0.3 * scale);
+    // A pixel is 0.8 mm: the shadow is about five pixels wide.
+    snapshot.cameras = {camera_at(scale * Vec3(0, -0.15, 0.15), Vec3::Zero(), 40)};
+    snapshot.lights = {sun(Vec3(0.2, 0.95, -0.3))};
+    Renderer renderer(settings());
+    const int open = renderer.draw(snapshot).pixel(160, 100)[1];
+    // The edge is 3 mm from the middle, toward the light. The light falls by 0.3 for each 0.95 along y, so that the
+    // shadow extends 6.3 mm further, past the middle.
+    add_square(snapshot, frame::ObjectKind::cloth, scale * Vec3(0, -0.103, 0.002), Vec3::UnitZ(), Vec3::UnitX(),
+               0.1 * scale);
+    const int shaded = renderer.draw(snapshot).pixel(160, 100)[1];
+    EXPECT_GT(open, 90) << scale;
+    EXPECT_LT(shaded, open / 2) << scale;
+  }
 }
 
 TEST(Picture, HeatShowsTheEndsAndTheMiddleOfTheScale) {

@@ -391,5 +391,27 @@ TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
   }
 }
 
+// Far from the origin, coordinates in single precision are multiples of 0.5 mm.
+TEST(TracedLight, SheetFarFromTheOriginDoesNotShadeItself) {
+  const Vec3 normal = Vec3(0.3, -1, 0.4).normalized(), along = normal.cross(Vec3::UnitZ()).normalized();
+  const auto draw = [&](const Vec3& place) {
+    frame::FrameSnapshot snapshot;
+    snapshot.stage = stage_without_sky();
+    add_square(snapshot, frame::ObjectKind::cloth, place, normal, along, 0.3).appearance.color = Vec3(0.6, 0.6, 0.6);
+    snapshot.cameras = {camera_at(place - 2 * Vec3::UnitY(), place, 40)};
+    snapshot.lights = {sun(-0.3 * normal + 0.95 * along)};
+    Settings settings;
+    settings.width = 320;
+    settings.height = 200;
+    return Renderer(settings).draw(snapshot);
+  };
+  const image::Image near = draw(Vec3::Zero()), far = draw(Vec3(4321.1, -4567.3, 5432.7));
+  int largest = 0;
+  for (int y = 80; y < 120; ++y)
+    for (int x = 140; x < 180; ++x) largest = std::max(largest, std::abs(near.pixel(x, y)[1] - far.pixel(x, y)[1]));
+  EXPECT_GT(near.pixel(160, 100)[1], 60);
+  EXPECT_LE(largest, 6) << "shadow acne changes tens of levels";
+}
+
 }  // namespace
 }  // namespace weft::render

@@ -19,10 +19,6 @@ inline Mask mask(const Eigen::Array<bool, kLanes, 1>& conditions) {
   return -conditions.cast<int>();
 }
 
-/// Rays that leave a surface start at this distance from it [m]: more than rounding errors, less than the gap between
-/// layers of cloth.
-inline constexpr float kRayStart = 3e-4f;
-
 /// Eight vectors.
 struct Lanes3 {
   Lanes x = Lanes::Zero(), y = Lanes::Zero(), z = Lanes::Zero();

@@ -14,6 +14,9 @@ using Eigen::Vector3f;
 // because only rays to lamps are traced from there.
 constexpr float kOpenAtHits = 0.6f;
 constexpr float kMinSlope = 0.02f;  // the floor is ignored for rays that descend less steeply [m/m]
+// ReflectedLight::ray_start() in usual scenes [m], its largest ratio to the size of the scene, and its smallest ratio
+// to the distance from the origin (8 rounding errors of single precision).
+constexpr float kRayStart = 3e-4f, kMaxRayStartRatio = 1e-3f, kMinRayStartRatio = 1e-6f;
 
 Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
   return (c[0][k] + n.x * c[1][k] + n.y * c[2][k] + n.z * c[3][k] + n.x * n.y * c[4][k] + n.y * n.z * c[5][k] +
@@ -92,17 +95,23 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
 }
 
 ReflectedLight::ReflectedLight(const RayScene& rays, std::vector<ReflectingSurface> surfaces, std::vector<Lamp> lamps,
-                               const Irradiance& around, const std::optional<Floor>& floor, const Vector3f& floor_color)
+                               const Irradiance& around, const std::optional<Floor>& floor, const Vector3f& floor_color,
+                               double scene_size)
     : rays_(&rays),
       surfaces_(std::move(surfaces)),
       lamps_(std::move(lamps)),
       has_floor_(floor.has_value()),
-      floor_color_(floor_color) {
+      floor_color_(floor_color),
+      least_ray_start_(std::min(kRayStart, kMaxRayStartRatio * static_cast<float>(scene_size))) {
   for (std::size_t k = 0; k < around.size(); ++k) around_[k] = around[k].cast<float>();
   if (floor) {
     floor_normal_ = floor->normal.cast<float>();
     floor_height_ = floor_normal_.dot(floor->point.cast<float>());
   }
+}
+
+Lanes ReflectedLight::ray_start(const Lanes3& points) const {
+  return (kMinRayStartRatio * dot(points, points).sqrt()).max(least_ray_start_);
 }
 
 Lanes3 ReflectedLight::surroundings(const Lanes3& normal) const {
@@ -121,7 +130,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     if (rays.wanted[lane] == 0) continue;
     const Vector3f start = rays.origin.at(lane), way = rays.direction.at(lane);
     const float down = -floor_normal_.dot(way), height = floor_normal_.dot(start) - floor_height_;
-    const bool meets_floor = has_floor_ && down >= kMinSlope * way.norm() && height >= 2 * kRayStart;
+    const bool meets_floor = has_floor_ && down >= kMinSlope * way.norm() && height >= 2 * least_ray_start_;
     // `rays_` has no floor: the floor hides surfaces below it.
     if (hits.mesh[lane] != Hits::kNone && !(meets_floor && height < down * hits.distance[lane])) {
       const auto& ranges = surfaces_[static_cast<std::size_t>(hits.mesh[lane])].ranges;
@@ -132,18 +141,19 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
       ends[lane] = End::surface;
       normal.set(lane, facing);
       albedo.set(lane, back ? range->back : range->front);
-      point.set(lane, start + hits.distance[lane] * way + kRayStart * facing);
+      point.set(lane, start + hits.distance[lane] * way);
     } else {
       result.open[lane] = 1;
       if (!meets_floor) continue;
       ends[lane] = End::floor;
       normal.set(lane, floor_normal_);
       albedo.set(lane, floor_color_);
-      point.set(lane, start + height / down * way + kRayStart * floor_normal_);
+      point.set(lane, start + height / down * way);
     }
     any = true;
   }
   if (!any) return result;
+  point = point + ray_start(point) * normal;
 
   Lanes on_surface, on_floor;  // 1 or 0
   for (int lane = 0; lane < kLanes; ++lane) {

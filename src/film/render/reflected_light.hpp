@@ -51,12 +51,17 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
 
 class ReflectedLight {
  public:
-  /// `surfaces`: one per mesh of `rays`, in the same order. `floor_color`: linear.
+  /// `surfaces`: one per mesh of `rays`, in the same order. `floor_color`: linear. `scene_size`: see ray_start() [m].
   ReflectedLight(const RayScene& rays, std::vector<ReflectingSurface> surfaces, std::vector<Lamp> lamps,
-                 const Irradiance& around, const std::optional<Floor>& floor, const Eigen::Vector3f& floor_color);
+                 const Irradiance& around, const std::optional<Floor>& floor, const Eigen::Vector3f& floor_color,
+                 double scene_size = 1);
 
   const RayScene& rays() const { return *rays_; }
   std::span<const Lamp> lamps() const { return lamps_; }
+
+  /// Rays that leave a surface at `points` start at these distances from it [m]: more than rounding errors, which grow
+  /// with the distance from the origin, less than the gap between layers of cloth, which is smaller in small scenes.
+  Lanes ray_start(const Lanes3& points) const;
 
   struct Arriving {
     Lanes open = Lanes::Zero();  ///< 1 if the ray hits no surface; the floor counts as part of the surroundings
@@ -77,6 +82,7 @@ class ReflectedLight {
   bool has_floor_;
   Eigen::Vector3f floor_normal_ = Eigen::Vector3f::UnitZ(), floor_color_;
   float floor_height_ = 0;  // position of the floor's plane along its normal [m]
+  float least_ray_start_;   // [m]
 };
 
 }  // namespace weft::render

@@ -244,8 +244,8 @@ ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
   Eigen::Vector3f floor_color = Eigen::Vector3f::Zero();
   if (plan.floor)
     floor_color = (plan.lighting.style.floor_tint * image::linear_from_srgb(plan.floor->look.color)).cast<float>();
-  return {passes->rays, std::move(surfaces), std::move(lamps), irradiance_of(plan.lighting.around),
-          plan.floor,   floor_color};
+  return ReflectedLight(passes->rays, std::move(surfaces), std::move(lamps), irradiance_of(plan.lighting.around),
+                        plan.floor, floor_color, plan.surroundings.diagonal().norm());
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {

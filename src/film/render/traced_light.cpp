@@ -262,8 +262,9 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
           // Rays start at the smooth surface, on the side that faces the lamp. If they started at the flat triangle,
           // neighbouring triangles would block them.
           const Lanes facing = (side < 0).select(Lanes::Constant(-1), Lanes::Constant(1));
-          const Lanes lift = facing * (kRayStart + (facing * points.rises(x, y)).max(0.0f));
-          packet.origin = points.positions(x, y) + lift * normal;
+          const Lanes3 positions = points.positions(x, y);
+          const Lanes lift = facing * (light.ray_start(positions) + (facing * points.rises(x, y)).max(0.0f));
+          packet.origin = positions + lift * normal;
           if (lamp.is_spot()) packet.end.setOnes();
           Lanes hits = Lanes::Zero();
           for (int k = first_ray; k < last_ray; ++k) {
@@ -307,7 +308,8 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
           const Lanes3 normal = points.normals(x, y);
           Lanes3 first, second;
           across<Lanes, Lanes3>(normal, first, second);
-          packet.origin = points.positions(x, y) + (kRayStart + points.rises(x, y).max(0.0f)) * normal;
+          const Lanes3 positions = points.positions(x, y);
+          packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * normal;
           for (int k = 0; k < rays; ++k) {
             Lanes3 local;
             for (int lane = 0; lane < kLanes; ++lane)
@@ -350,7 +352,8 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
           packet.wanted[lane] = alpha[lane] >= 0 ? -1 : 0;
         }
         if ((packet.wanted == 0).all()) continue;
-        packet.origin = points.positions(x, y) + (kRayStart + points.rises(x, y).max(0.0f)) * points.normals(x, y);
+        const Lanes3 positions = points.positions(x, y);
+        packet.origin = positions + (light.ray_start(positions) + points.rises(x, y).max(0.0f)) * points.normals(x, y);
         for (int k = 0; k < kMirrorRays; ++k) {
           for (int lane = 0; lane < kLanes; ++lane) {
             if (packet.wanted[lane] == 0) continue;
