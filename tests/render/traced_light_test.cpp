@@ -367,26 +367,30 @@ TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
   snapshot.lights = {sun(Vec3(0, 0, -1))};
   snapshot.lights[0].softness = 8;
   constexpr int kPixels = 200, kRows = 20;
-  const Vec3 eye(0, -1.2, 0.6);
-  snapshot.cameras = {camera_at(eye, Vec3::Zero(), 12)};
-  const double tangent = std::tan(6 * std::numbers::pi / 180), radius = std::tan(4 * std::numbers::pi / 180);
-  const Vec3 forward = -eye.normalized(), up = Vec3::UnitX().cross(forward);
+  const double radius = std::tan(4 * std::numbers::pi / 180);
   const double lit = image::linear_from_srgb(Vec3::Constant(0.5)).x();
-  for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
-    Settings settings;
-    settings.width = settings.height = kPixels;
-    settings.quality = quality;
-    const image::Image image = Renderer(settings).draw(snapshot);
-    for (int x = 0; x < kPixels; ++x) {
-      double found = 0, expected = 0;
-      for (int y = kPixels / 2 - kRows / 2; y < kPixels / 2 + kRows / 2; ++y) {
-        const Vec3 ray = forward + tangent * (1 - 2 * (y + 0.5) / kPixels) * up;
-        const double place = eye.z() / -ray.z() * tangent * (2 * (x + 0.5) / kPixels - 1);
-        found += image::linear_from_srgb(Vec3::Constant(image.pixel(x, y)[1] / 255.0)).x() / lit / kRows;
-        expected += beyond_line(-place / radius) / kRows;
+  // The whole penumbra, which is 100 pixels wide, and the lit half of one of 300 pixels.
+  for (const auto& [field_of_view, aim] : {std::pair(12.0, 0.0), std::pair(4.0, 0.05)}) {
+    const Vec3 target(aim, 0, 0), away(0, -1.2, 0.6);
+    snapshot.cameras = {camera_at(target + away, target, field_of_view)};
+    const double tangent = std::tan(0.5 * field_of_view * std::numbers::pi / 180);
+    const Vec3 forward = -away.normalized(), up = Vec3::UnitX().cross(forward);
+    for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
+      Settings settings;
+      settings.width = settings.height = kPixels;
+      settings.quality = quality;
+      const image::Image image = Renderer(settings).draw(snapshot);
+      for (int x = 0; x < kPixels; ++x) {
+        double found = 0, expected = 0;
+        for (int y = kPixels / 2 - kRows / 2; y < kPixels / 2 + kRows / 2; ++y) {
+          const Vec3 ray = forward + tangent * (1 - 2 * (y + 0.5) / kPixels) * up;
+          const double place = aim + away.z() / -ray.z() * tangent * (2 * (x + 0.5) / kPixels - 1);
+          found += image::linear_from_srgb(Vec3::Constant(image.pixel(x, y)[1] / 255.0)).x() / lit / kRows;
+          expected += beyond_line(-place / radius) / kRows;
+        }
+        // The filter spans at most 25 of 100 pixels; 4 rays for each of 400 pixels leave a noise below 0.01.
+        EXPECT_NEAR(found, expected, 0.03) << field_of_view << ", " << static_cast<int>(quality) << ": " << x;
       }
-      // The filter spans at most 25 of some 100 pixels; 4 rays for each of 400 pixels leave a noise below 0.01.
-      EXPECT_NEAR(found, expected, 0.03) << static_cast<int>(quality) << ": " << x;
     }
   }
 }

@@ -237,8 +237,10 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   std::vector<Vector3f> places;
   for (int turn = 0; turn < kTurns; ++turn) {
     for (int k = 0; k < rays; ++k) {
-      // In this order, the first half of the rays is already spread over the disc.
-      const auto order = static_cast<float>((k * 5 + rays / 2) % rays);
+      // In this order, the first half of the rays is already spread over the disc. The distance of the first ray from
+      // the centre depends on the rotation: if it were the same for all points, no first ray would find the rims of
+      // wide penumbrae.
+      const auto order = static_cast<float>((k * 5 + turn) % rays);
       const Vector2f at = on_disc(order, rays, static_cast<float>(turn) / kTurns, 0.5f);
       places.emplace_back(center + radius * (at.x() * first + at.y() * second));
     }
