@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <new>
 #include <set>
+#include <stdexcept>
 
 #include "tools/cli/failure.hpp"
 
@@ -280,6 +282,15 @@ TEST(Film, StopDuringTheLastFrameIsNoInterruption) {
   script.stop = &stop;
   script.stop_at = 9;
   EXPECT_FALSE(play(script, {0, 10, 1}).interrupted);
+}
+
+TEST(ReplayFailure, IsThatOfTheCacheUnlessMemoryRunsOut) {
+  const auto failure = [](auto exception) { return describe_replay_failure(std::make_exception_ptr(exception), "c"); };
+  EXPECT_EQ(failure(std::logic_error("no such vertex")).code, ExitCode::asset_unreadable);
+  EXPECT_EQ(failure(std::logic_error("no such vertex")).text, "c: broken: unexpected: no such vertex");
+  EXPECT_EQ(failure(std::bad_alloc()).code, ExitCode::internal);
+  EXPECT_EQ(failure(std::bad_alloc()).text, "out of memory; a smaller scene or picture may fit");
+  EXPECT_EQ(failure(Error(ExitCode::output_failed, "disk full")).code, ExitCode::output_failed);
 }
 
 }  // namespace

@@ -57,6 +57,18 @@ Failure describe_failure(const std::exception_ptr& exception) {
   }
 }
 
+Failure describe_replay_failure(const std::exception_ptr& exception, const std::string& cache) {
+  Failure failure = describe_failure(exception);
+  if (failure.code != ExitCode::internal) return failure;
+  try {
+    std::rethrow_exception(exception);
+  } catch (const std::bad_alloc&) {
+    return failure;
+  } catch (...) {
+    return {ExitCode::asset_unreadable, fmt::format("{}: broken: {}", cache, failure.text)};
+  }
+}
+
 void report(const Failure& failure) {
   // Mistakes of a scene get no prefix: they begin with file and line, as compiler messages do, so
   // that editors can jump there.

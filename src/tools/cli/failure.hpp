@@ -17,6 +17,10 @@ struct Failure {
 /// name is too long. Any other exception is an internal error.
 Failure describe_failure(const std::exception_ptr& exception);
 
+/// The same for frames that are only read from `cache`. An internal error in drawing them means that the cache is
+/// broken (asset_unreadable), except if memory has run out.
+Failure describe_replay_failure(const std::exception_ptr& exception, const std::string& cache);
+
 /// Prints the message on standard error.
 void report(const Failure& failure);
 

@@ -263,11 +263,8 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
     report_.output_bytes = error ? 0 : bytes;
   }
   if (result.failure) {
-    Failure failure = describe_failure(result.failure);
-    // If frames are only read, an internal error in drawing them means that the cache is broken.
-    if (report_.replayed && failure.code == ExitCode::internal)
-      failure = {ExitCode::asset_unreadable,
-                 fmt::format("{}: broken: {}", options_.common.scene.string(), failure.text)};
+    const Failure failure = report_.replayed ? describe_replay_failure(result.failure, options_.common.scene.string())
+                                             : describe_failure(result.failure);
     report_.exit_code = failure.code;
     report_.message =
         failure.code == ExitCode::simulation_failed ? "the simulation failed: " + failure.text : failure.text;
