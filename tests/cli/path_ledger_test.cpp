@@ -76,6 +76,15 @@ TEST_F(Ledger, RefusesWhatExistsUnlessItMayBeReplaced) {
   support::expect_error(ExitCode::output_failed, "is a folder", [&] { paths_.check_absent(true); });
 }
 
+// As the name of the effective scene beside a film whose own name just fits.
+TEST_F(Ledger, RefusesNamesThatAreTooLongBeforeTheWork) {
+  EXPECT_NO_THROW(paths_.writes("--stats", folder_ / std::string(255, 'x')));
+  EXPECT_NO_THROW(paths_.check_absent(false));
+  paths_.writes("-o, for the effective scene,", folder_ / std::string(256, 'x'));
+  for (const bool overwrite : {false, true})
+    support::expect_error(ExitCode::usage, "its name is too long", [&] { paths_.check_absent(overwrite); });
+}
+
 TEST_F(Ledger, LeavesAFileThatHoldsTheSameAlready) {
   support::write_bytes(folder_ / "effective", "same");
   paths_.writes_content("-o", folder_ / "effective", "same");

@@ -97,12 +97,15 @@ void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
   for (const Output& output : outputs_) {
     const bool is_gone_on_with = own.contains(output.name);
     for (const fs::path& file : output.files) {
-      std::error_code ignored;  // if the path cannot be accessed, writing it reports the error
-      if (fs::is_directory(file, ignored))
+      std::error_code error;  // if the path cannot be accessed, writing it reports the error
+      if (fs::is_directory(file, error))
         throw Error(ExitCode::output_failed, "{}: is a folder, expected a file name", file.string());
+      // Temporary names are shorter: without this check, such a file would fail when it is complete.
+      if (error == std::errc::filename_too_long)
+        throw Error(ExitCode::usage, "{}: its name is too long; give a shorter one", file.string());
       // A symbolic link counts as an existing file even if its target does not exist.
       if (overwrite) continue;
-      if (!fs::exists(fs::symlink_status(file, ignored))) {
+      if (!fs::exists(fs::symlink_status(file, error))) {
         protect_missing_file(file);
         continue;
       }

@@ -38,7 +38,7 @@ class PathLedger {
   /// exists and `overwrite` is false. An existing file is allowed if it has the content given to
   /// writes_content(), or if its output is in `own` and `is_own` returns true for the file. `own`:
   /// outputs() of the run that is resumed. If `overwrite` is false, the command also does not
-  /// replace files that other processes create after this call.
+  /// replace files that other processes create after this call. Throws Error(usage) if a name is too long.
   void check_absent(bool overwrite, const std::set<std::string>& own = {},
                     const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) if the first file of an output cannot be written.
