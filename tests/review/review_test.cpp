@@ -216,6 +216,22 @@ TEST_F(Review, ReferenceIsTheRunOfTheSamePathElseTheOnlyOneOfItsName) {
   EXPECT_TRUE(fs::exists(folder_ / "page/references/a/video.mp4"));
 }
 
+TEST_F(Review, AVideoAndPicturesOfOneNameHaveReferencesOfTheirKind) {
+  for (const char* folder : {"in", "ref"})
+    for (int k = 0; k < 2; ++k) image::write_png(folder_ / folder / fmt::format("a/{}.png", k), picture(k));
+  write_video("ref/a.mp4", 2);
+  Request with = request();
+  with.reference = folder_ / "ref";
+  write_review(with);
+  const Json page = data();
+  Json kinds;
+  for (const Json& reference : page.at("references"))
+    kinds[reference.at("id").get<std::string>()] = reference.at("pictures").at("kind");
+  ASSERT_EQ(page.at("runs").size(), 2u);
+  for (const Json& run : page.at("runs"))
+    EXPECT_EQ(kinds[run.at("reference").get<std::string>()], run.at("pictures").at("kind")) << run.at("key");
+}
+
 TEST_F(Review, PicturesAreComparedWithThoseOfTheReference) {
   write_video("in/b.mp4", 2);
   write_video("in/c.mp4", 2, 200, 48);

@@ -178,8 +178,8 @@ class Search {
 
   std::tuple<std::string, std::size_t, std::string> place_of(const RunFiles& run) const {
     const auto found = swept_.find(fs::path(run.name).parent_path());
-    if (found == swept_.end()) return {run.name, 0, {}};
-    return {found->second.sweep, found->second.place, run.name};
+    if (found == swept_.end()) return {run.name, 0, run.key};
+    return {found->second.sweep, found->second.place, run.key};
   }
 
   RunFiles named(const fs::path& file) const {

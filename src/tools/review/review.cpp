@@ -48,14 +48,16 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference with the name `run.name`, else with the name `run.key`. If there is neither, the reference whose name
-// has the same part after the last slash; null if no reference or several have it.
+// The reference with the name `run.name` (if there are several, that with the key `run.key`), else with the key
+// `run.key`. If there is neither, the reference whose name has the same part after the last slash; null if no reference
+// or several have it.
 const RunFiles* find_reference(const std::vector<RunFiles>& references, const RunFiles& run) {
-  for (const std::string& name : {run.name, run.key}) {
-    const auto same = std::ranges::find(references, name, &RunFiles::name);
-    if (same != references.end()) return &*same;
-  }
   const RunFiles* found = nullptr;
+  for (const RunFiles& reference : references)
+    if (reference.name == run.name && (found == nullptr || reference.key == run.key)) found = &reference;
+  if (found != nullptr) return found;
+  const auto same = std::ranges::find(references, run.key, &RunFiles::key);
+  if (same != references.end()) return &*same;
   for (const RunFiles& reference : references) {
     if (last_part(reference.name) != last_part(run.name)) continue;
     if (found != nullptr) return nullptr;
