@@ -12,16 +12,16 @@ namespace {
 
 // Maximum displacement of a particle at the start, in the companion for ErrorSource::start [m].
 constexpr double kStartDisplacement = 1e-6;
-// The motion is chaotic if this displacement grows more than tenfold, and to more than kChaosRatio times the step and
-// solver errors.
+// The motion is chaotic if the difference in position due to kStartDisplacement exceeds both ten times
+// kStartDisplacement and kChaosRatio times the step and solver errors.
 constexpr double kChaosRatio = 0.3;
-// The motion is also chaotic if the displacement grows by more than this factor, however large step and solver errors
-// are.
+// The motion is also chaotic if this difference exceeds kMaxAmplification times kStartDisplacement, whatever the step
+// and solver errors are.
 constexpr double kMaxAmplification = 1e3;
 constexpr double kCompanionToleranceRatio = 0.1;  // newton_tolerance of the companion, relative to the run's
-// Lower bound of observed orders, relative to the expected order; the expected order is the upper bound. Stiff waves
-// and borders lower the order. At an order below the lower bound, the difference of the companions hardly depends on
-// step or spacing.
+// Observed orders are limited to the range from kMinOrderRatio times the expected order to the expected order. Stiff
+// waves and borders of the cloth lower the observed order. Below the limit, the two companions differ from the run by
+// nearly the same amount, which says little about the order.
 constexpr double kMinOrderRatio = 0.5;
 // Fraction of the expected order that is assumed if there is only one companion.
 constexpr double kAssumedOrderRatio = 0.75;

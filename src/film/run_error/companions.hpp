@@ -11,7 +11,7 @@
 
 namespace weft::run_error {
 
-/// The cause of an error.
+/// Causes of an error. start: start positions that differ by up to 1 µm.
 enum class ErrorSource { steps, solver, mesh, start };
 inline constexpr std::size_t kErrorSources = 4;
 std::string_view name_of(ErrorSource source);
@@ -29,15 +29,15 @@ struct ErrorEstimate {
   /// and at most 1 mm.
   bool is_chaotic = false;
   /// The step error does not follow the order of the method: the companion with twice the step fails, or its difference
-  /// to the run is too small compared with the difference of the companion with half the step.
+  /// to the run is too small compared with that of the companion with half the step.
   bool steps_irregular = false;
   std::vector<ErrorPart> parts;
   Errors all{};  ///< root of the sum of squares over all parts; unknown errors count as 0
   /// CPU time of all companions that have not failed [s].
   double cpu_s = 0;
 
-  /// Whether the known errors are only lower bounds: is_chaotic, steps_irregular, or the errors of a
-  /// part are not known.
+  /// Whether the known errors are only lower bounds, because is_chaotic or steps_irregular is true, or because the
+  /// errors of a part are not known.
   bool is_lower_bound() const;
   /// The part with the largest error in position.
   const ErrorPart& largest() const;
@@ -53,8 +53,8 @@ struct CompanionOptions {
 /// - start: particles displaced at random by up to 1 µm along each axis at the start,
 /// - solver: a tenth of solver.newton_tolerance; unless this companion fails, the companions below use this tolerance,
 ///   too, and are compared with this companion,
-/// - steps: half of the step, and about twice the step unless a step is as long as a frame; if the
-///   scene has time.tolerance, the tolerances that halve and double the steps,
+/// - steps: half of the step, and about twice the step unless a step is as long as a frame; if the scene has
+///   time.tolerance, the tolerances that halve and double the steps,
 /// - mesh: half of the cells along each side, and a quarter if this leaves whole numbers of cells, at least four.
 /// Richardson extrapolation gives the errors of steps and mesh. It uses the observed order, limited to 0.5 to 1 times
 /// the expected order; if a source has only one companion, 0.75 times the expected order. Only the frames in `run` are

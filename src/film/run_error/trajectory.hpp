@@ -17,8 +17,8 @@ namespace weft::run_error {
 /// is chaotic, and these two errors do not converge. The other quantities are functionals of the whole motion, which
 /// converge even with contact.
 enum class Quantity : std::size_t {
-  position,  ///< of all particles; mass-weighted root mean square error, maximum over all frames [m]
-  velocity,  ///< of all particles; measured as for `position` [m/s]
+  position,  ///< mass-weighted root mean square error of all particles, maximum over all frames [m]
+  velocity,  ///< as `position`, but error of the velocities [m/s]
   energy,    ///< kinetic + elastic + gravitational; maximum error over all frames, relative to energies_in_play
   drift,     ///< as `energy`, but error in the last frame
   centre,    ///< centre of mass in the last frame [m]
@@ -45,10 +45,10 @@ inline double at(const Errors& errors, Quantity quantity) {
 struct Functionals {
   std::vector<double> energy;   ///< kinetic + elastic + gravitational energy of each frame [J]
   double energies_in_play = 0;  ///< largest kinetic + largest elastic energy + range of gravitational energy [J]
-  double shadow = 0;            ///< this and the members below: see Quantity
-  double top = 0;               ///< [m]
-  double rest_energy = 0;       ///< [J]
-  Vec3 centre{0, 0, 0};         ///< [m]
+  double shadow = 0;            ///< ratio of areas, see Quantity::shadow
+  double top = 0;               ///< see Quantity::top [m]
+  double rest_energy = 0;       ///< see Quantity::rest_energy, but not relative [J]
+  Vec3 centre{0, 0, 0};         ///< see Quantity::centre [m]
 };
 
 /// Cost of a run.
@@ -57,13 +57,13 @@ struct Work {
   int steps = 0, rejected_steps = 0, newton_iterations = 0, linear_iterations = 0;
 };
 
-/// Motion and cost of a run; frame 0 and the preroll are not included.
+/// Motion and cost of a run without frame 0 and the preroll.
 struct Trajectory {
   struct Frame {
-    std::vector<Vec3> x, v;  ///< of all particles [m, m/s]; `v` is empty if the velocities are not known
+    std::vector<Vec3> x, v;  ///< positions [m] and velocities [m/s] of all particles; `v` may be empty: not known
   };
   std::vector<Frame> frames;
-  std::vector<double> masses;  ///< of all particles [kg]
+  std::vector<double> masses;  ///< masses of all particles [kg]
   Functionals functionals;
   Work work;
 };
@@ -82,8 +82,8 @@ class Recorder {
  private:
   std::size_t cloths_;
   Vec3 up_;
-  // Surface area of all cloths in frame 0 [m²]. Largest kinetic, largest elastic, lowest and highest gravitational
-  // energy so far [J].
+  // start_area_: surface area of all cloths in frame 0 [m²]. kinetic_, elastic_: largest energy so far [J]. low_,
+  // high_: lowest and highest gravitational energy so far [J].
   double start_area_, kinetic_, elastic_, low_, high_;
   frame::SnapshotPtr last_;
   Trajectory trajectory_;
@@ -113,7 +113,7 @@ double cloth_size(const frame::FrameSnapshot& snapshot);
 Functionals median(const std::vector<Functionals>& samples);
 
 /// Whether refine() can be used: all cloths are grids, `refinement` is a multiple of 1/8, and each side gets a whole
-/// number of cells, at least two.
+/// number of cells, two or more.
 bool can_refine(const scene::Scene& scene, double refinement);
 /// Multiplies the number of cells along each side of all cloths that are grids; other cloths and ropes do not change.
 void refine(scene::Scene& scene, double refinement);
