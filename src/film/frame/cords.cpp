@@ -12,10 +12,9 @@ namespace {
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kStrands = 3;
 constexpr double kHalfGrooveDepth = 0.1;  // half the depth of the grooves between strands [radii of the rope]
-// A ring is a polygon: a cross-section of the tube. kSidesOfStrands: its number of sides for ropes
-// with strands; kSidesOfCord: for ropes without strands.
+// Number of sides of a ring, the polygonal cross-section of a tube, for ropes with and without strands.
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
-constexpr int kRingsPerStrandTurn = 8;
+constexpr int kRingsPerStrandTurn = 8;  // minimum, unless kMaxRingsPerPiece allows fewer
 constexpr int kMaxRingsPerPiece = 12;
 // Maximum number of rings of a rope with strands. If the strands need more rings, they are too fine
 // to be visible, and the rope is drawn without strands.
@@ -129,10 +128,9 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
   for (std::size_t r = 1; r < middles.size(); ++r)
     normals.push_back(transport_normal(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
 
-  // `turn`: angle by which the strands wind around the rope from its start to its end [rad]. On a
-  // closed rope, the strands must continue from the last ring to the first. `turn` is then a number
-  // of whole turns plus `off`. This is the angle between two normals at the start of the rope: from
-  // the one that has been transported around the whole rope to normals[0].
+  // `turn`: angle by which the strands wind around the rope from its start to its end [rad]. On a closed rope, the
+  // strands must continue from the last ring to the first. `turn` is then a number of whole turns plus `off`, which is
+  // the angle at ring 0 from the normal that was transported around the whole rope to normals[0].
   const double lay = look.thread_spacing, length = tube.chain->uv[1].x() * pieces;
   const bool has_strands = tube.sides == kSidesOfStrands && lay > 0;
   double turn = has_strands ? kTurn * length / lay : 0;

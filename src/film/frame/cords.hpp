@@ -8,10 +8,9 @@
 
 namespace weft::frame {
 
-/// Whether a surface is a chain: the particles of a rope, with one triangle (a, b, b) for each
-/// piece of the rope, from particle a to particle b. In the appearance of a chain, `thickness` is
-/// the diameter of the rope, and `thread_spacing` is the lay length of its strands (0: a round cord
-/// without strands).
+/// Whether a surface is a chain: the particles of a rope, with one triangle (a, b, b) for each piece of the rope, from
+/// particle a to particle b. In the appearance of a chain, `thickness` is the diameter of the rope, and
+/// `thread_spacing` is the length along which a strand turns once around the rope (0: a rope without strands) [m].
 inline bool is_chain(const Surface& surface) {
   return surface.kind == ObjectKind::rope && surface.appearance.thickness > 0;
 }

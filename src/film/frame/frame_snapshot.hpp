@@ -1,5 +1,4 @@
-// The data of one frame: all data that the renderer, the mesh writer and the frame cache get from
-// the simulation.
+// The data of one frame: all that the renderer and the mesh writer get from the simulation.
 #pragma once
 
 #include <algorithm>
@@ -32,10 +31,11 @@ struct Texture {
 
 /// A picture on a surface, and how it is mapped and blended.
 struct Paint {
-  /// How the picture continues beyond its edge. once: it does not; the area beyond is transparent.
+  /// What is drawn beyond the edge of the picture: the picture again (repeat), its border pixels (clamp), the mirrored
+  /// picture (mirror), or nothing, as if the picture were transparent there (once).
   enum class Wrap { repeat, clamp, mirror, once };
-  /// Effect of the alpha channel. ignored: the whole picture is opaque. over_color: transparent
-  /// parts show the colour of the surface. cutout: transparent parts are holes in the surface.
+  /// Effect of the alpha channel. ignored: the whole picture is opaque. over_color: transparent parts show the colour
+  /// of the surface. cutout: transparent parts are holes in the surface.
   enum class Alpha { ignored, over_color, cutout };
   std::shared_ptr<const Texture> texture;
   /// Maps (u, v, 1) of the surface to coordinates of the picture: 0 to 1 from left to right and from bottom to top.
@@ -48,7 +48,7 @@ struct Paint {
 struct Finish {
   double gloss = 0.15;         ///< strength of the highlights of threads, wide across the threads and narrow along them
   double warp_fraction = 0.5;  ///< fraction of warp among the threads on top: 0.5 for a plain weave, more for satin
-  double fuzz = 0.4;           ///< amount of protruding fibres, which scatter light at grazing angles
+  double fuzz = 0.4;           ///< amount of fibres that stand out from the cloth and scatter light at grazing angles
   double sheer = 0.25;         ///< strength of the light that passes through the cloth; above 0.5: see-through
   Threads threads = Threads::plain;
 };
@@ -65,11 +65,10 @@ struct Appearance {
   double thickness = 0;       ///< thickness of cloth, visible at its borders, or diameter of a rope [m]; 0: none
   double hem = 0;             ///< width of the folded and sewn borders of cloth [m]; 0: cut borders without hem
   bool checker = false;       ///< faint checkerboard of 0.5 m tiles on the floor, which shows the scale
-  /// If the picture's alpha is over_color, or if its alpha is ignored and its wrap is `once`, the
-  /// picture covers `color`. Otherwise, the picture is multiplied by `color`.
+  /// The picture covers `color` if its alpha is over_color, or if its alpha is ignored and its wrap is `once`.
+  /// Otherwise, the picture is multiplied by `color`.
   Paint paint;
-  /// Whether the back of cloth shows the picture, too, paler by `back_paleness`. If false, the back
-  /// has `back_color`.
+  /// Whether the back of cloth also shows the picture, paler by `back_paleness`. If false, the back has `back_color`.
   bool back_painted = true;
   double back_paleness = 0;  ///< from 0 (as the front) to 1 (white)
 };
@@ -85,13 +84,13 @@ struct Surface {
   std::string name;
   ObjectKind kind = ObjectKind::cloth;
   bool visible = true;
-  bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon; computed cameras ignore it
+  bool infinite_floor = false;                  ///< a floor drawn to the horizon; computed cameras ignore it
   std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise seen from the front; of a rope: see is_chain()
   std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 if nothing collides with it; empty: all 0
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if they are quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; may be empty
-  /// Bounding box in world space [m]: of a body over its prescribed motion from time 0 to the end
-  /// of the scene, or of a cloth at its start. Absent: unknown.
+  /// Bounding box in world space [m]: of a body over its prescribed motion from time 0 to the end of the scene, or of a
+  /// cloth at its start. Absent: unknown.
   std::optional<Box3> run_bounds;
   /// An edge is drawn sharp if the normals of its two faces differ by more than this angle [degrees]. 180: all edges
   /// are smooth, as for cloth.
@@ -99,13 +98,12 @@ struct Surface {
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles have `appearance`
   std::vector<std::int32_t> part_of_triangle;  ///< per triangle: index into `parts`; empty if there are no parts
-  /// Per triangle: (u, v) of its corners for Paint::texture_from_uv, such as metres along the grain
-  /// of a panel. Empty: pictures are mapped by `uv`.
+  /// Per triangle: (u, v) of its corners, which Paint::texture_from_uv maps to the picture; on panels of a garment, in
+  /// metres along weft and warp. Empty: `uv` applies.
   std::vector<std::array<Vec2, 3>> paint_uv;
 };
 
-/// Whether a surface or one of its parts has a picture, or a part has colours that differ from
-/// those of the surface.
+/// Whether a surface or one of its parts has a picture, or a part has other colours than the surface.
 inline bool is_painted(const Surface& surface) {
   const Appearance& own = surface.appearance;
   return own.paint.texture || std::ranges::any_of(surface.parts, [&](const SurfacePart& part) {
@@ -117,7 +115,7 @@ inline bool is_painted(const Surface& surface) {
 /// The data of an object that change from frame to frame.
 struct SurfaceState {
   std::vector<Vec3> positions;  ///< world space [m], one per vertex
-  std::vector<float> heat;      ///< of cloth and ropes, per vertex: quantity of Stage::heat
+  std::vector<float> heat;      ///< of cloth and ropes, per vertex: value of the quantity Stage::heat
                                 ///< (strain, or speed [m/s]); empty for Heat::none
 };
 
@@ -130,26 +128,24 @@ struct Camera {
   double aperture = 0;        ///< f-number for a film 24 mm high; 0: everything is sharp
   double focus = 0;           ///< distance of the plane in focus along the view axis [m]; 0: distance of the target
 
-  /// placed: the camera has the values above. Cameras of the other kinds are computed from all
-  /// frames of a run, so that the subjects are in view. whole: stands still or, if `azimuth`
-  /// differs between frames, orbits. follow: moves along with the subjects at a constant distance.
-  /// close: moves along with the subjects at a distance that changes smoothly and is as small as
-  /// possible. track: stands at `position` and turns toward the subjects.
+  /// placed: the camera has the values above. Cameras of the other kinds are computed from all frames of a run, so that
+  /// the subjects are in view. whole: stands still or, if `azimuth` differs between frames, orbits. follow: moves along
+  /// with the subjects at a constant distance. close: moves along with the subjects at a distance that changes smoothly
+  /// and is as small as possible. track: stands at `position` and turns toward the subjects.
   enum class Kind { placed, whole, follow, close, track };
   Kind kind = Kind::placed;
   /// Names of the surfaces to keep in view. If empty: for `whole`, all visible surfaces except infinite floors; for the
   /// other kinds, all characters; without characters, all cloths; without both, as for `whole`.
   std::vector<std::string> subjects = {};
-  /// Horizontal direction from the subjects to the camera [degrees]: 0 is the direction −y if z is
-  /// up, or +z if y is up; 90 is +x.
+  /// Horizontal direction from the subjects to the camera [degrees]. 0: along −y if z is up, along +z if y is up; 90:
+  /// along +x.
   double azimuth = 33;
   double elevation = 17;   ///< angle of the direction from the subjects to the camera above the horizontal [degrees]
   double margin = 0.14;    ///< free space around the subjects, as a fraction of half the picture's width or height
   double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
 };
 
-/// Maximum number of lights of a picture, because each light takes rays at every pixel. Further
-/// lights are ignored.
+/// Maximum number of lights of a picture, because each light takes rays at every pixel. Further lights are ignored.
 inline constexpr int kMaxLights = 4;
 
 /// A light at one time. Sun: parallel light along `direction`. Spot: from `position` toward `target`.
@@ -185,15 +181,15 @@ struct Stage {
   double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each frame
 };
 
-/// One frame, never changed after it is made.
+/// The data of one frame. Never changes after it is made, so that threads can share it.
 struct FrameSnapshot {
   int frame = 0;    ///< number k, from 0
   double time = 0;  ///< k / fps [s]
   std::shared_ptr<const Stage> stage;
   std::vector<std::shared_ptr<const Surface>> surfaces;
   std::vector<SurfaceState> states;  ///< one per surface
-  std::vector<Camera> cameras;       ///< of the scene; may be empty
-  std::vector<Light> lights;         ///< of the scene; may be empty
+  std::vector<Camera> cameras;       ///< cameras of the scene; may be empty
+  std::vector<Light> lights;         ///< lights of the scene; may be empty
 };
 
 using SnapshotPtr = std::shared_ptr<const FrameSnapshot>;
