@@ -16,16 +16,16 @@
 namespace weft::production {
 namespace {
 
-// A pin whose keys begin farther than this from its particles gets a warning [m].
+// A pin gets a warning if its keys begin farther than this from its particles [m].
 constexpr double kMinJump = 1e-3;
 // Maximum distance without a warning between a pin and the body that it follows, at the start [m]. Pins of capes start
 // up to 0.05 m away.
 constexpr double kMaxPinDistance = 0.1;
-// Minimum depth in an obstacle from which a particle counts as inside [m].
+// A particle counts as inside an obstacle from this depth below its surface on [m].
 constexpr double kEntryDepth = 1e-3;
-// Number of sampled times per frame.
+// Number of times per frame at which the positions of pins are tested.
 constexpr int kSamplesPerFrame = 4;
-// Maximum number of sampled particles of one pin; held_regions() adds its last particle.
+// Maximum number of particles of a pin that are tested; held_regions() adds the last particle of the pin.
 constexpr std::size_t kMaxSampledParticles = 41;
 
 using simulation::kMaxHoldSpeed;
@@ -76,13 +76,14 @@ struct MovingPins {
   }
 };
 
-// Sampled particles of a pin without a strength on a rectangular cloth.
+// Tested particles of one pin. Only for pins without a strength, on rectangular cloth.
 struct HeldRegion {
   std::vector<Vec3> x;     // positions at one time [m]
   std::vector<Vec2> rest;  // rest coordinates [m]
 };
 
-// Returns one region per pin, at the time t [s]. Regions of pins with a strength, and of other cloth, are empty.
+// Returns one region per pin, at the time t [s]. The regions of pins with a strength, and of pins on cloth that is not
+// rectangular, are empty.
 std::vector<HeldRegion> held_regions(const scene::Scene& scene, const environment::Environment& environment,
                                      const MovingPins& moving, const HeldParticles& held, double t) {
   std::vector<HeldRegion> regions(moving.pins.size());
@@ -118,7 +119,7 @@ double stretch_between(const HeldRegion& a, const HeldRegion& b) {
   return max_ratio;
 }
 
-// The times to sample [s]: several in each frame, and the middle between each two neighbouring keys of a pin.
+// The times to test [s]: kSamplesPerFrame in each frame, and the middle between each two neighbouring keys of a pin.
 std::vector<double> times_of(const scene::Scene& scene) {
   std::set<double> times;
   const int samples = kSamplesPerFrame * (scene.frame_count() - 1);
@@ -164,8 +165,8 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
     for (const integrator::HeldParticle& particle : held) {
       const std::size_t number = moving.pins.pin_of(particle.constraint.particle, t);
       Vec3& x = before[static_cast<std::size_t>(particle.constraint.particle)];
-      // Also test the mean speed since the last sample: the velocity of a target does not show a jump between two
-      // samples.
+      // Also tests the mean speed since the previous time: if a target jumps between two times, its velocities at these
+      // times do not show the jump.
       const double mean = t > last && last >= 0 ? (particle.x_end - x).norm() / (t - last) : 0;
       const double speed = std::max(particle.v_end.norm(), mean);
       x = particle.x_end;
@@ -273,7 +274,7 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       const bool may_be_in = box.contains(p) || body.infinite_floor;
       return may_be_in ? collision::nearest_point(p, body.mesh.topology.triangles, x).height : 1;
     };
-    // Test the start positions, too, because keys may begin inside of the body.
+    // Also tests the start positions, because keys may begin inside the body.
     const double start = -scene.preroll_frames() / scene.time.fps;
     sample_at(start);
     for (const integrator::HeldParticle& particle : held)

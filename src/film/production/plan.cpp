@@ -20,7 +20,8 @@ using scene::Scene;
 
 constexpr const char* kNoCloth = "no cloth";
 
-// Item of a part that some cloths use. The reason is "2 of 3 cloths", or `absent` if no cloth uses it.
+// Item for a part that some cloths use. Its reason is, for example, "2 of 3 cloths"; or `absent` if no cloth uses the
+// part.
 template <class Test>
 PlanItem cloth_item(std::string part, const Scene& scene, Test needs, std::string_view absent) {
   const auto count = std::count_if(scene.cloths.begin(), scene.cloths.end(), needs);
@@ -171,8 +172,8 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                           fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));
 }
 
-// Adds where the rest shape of each mesh comes from, and the fit of each fitted pattern. Builds these cloths, because
-// the scene does not state either.
+// Adds an item with the source of the rest shape for each cloth from a mesh file, and an item with the fit for each
+// fitted pattern. Builds these cloths to find both.
 void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
   environment::Wearers wearers(scene);
   for (const Cloth& cloth : scene.cloths)
@@ -207,8 +208,8 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
                           "time.preroll is 0"));
 }
 
-// Adds the parts of each character that do not collide, and the size of its key frames. Reads the files of characters,
-// because the scene does not state either.
+// Adds an item for each part of a character that does not collide, and one with the size of the key frames of each
+// character. Reads the files of characters to find both.
 void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
   for (const scene::Character& character : scene.characters) {

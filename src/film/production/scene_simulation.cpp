@@ -30,7 +30,7 @@ struct SceneSimulation::Start {
       const auto growing = environment::with_growing_wearers(posed ? *posed : scene, environment, notes);
       if (!growing) throw;
       environment::Environment grown(*growing);
-      Simulation simulation(grown.model);  // throws if other cloth than that of the wearers is refused
+      Simulation simulation(grown.model);  // throws if another cloth, without a growing wearer, cannot be untangled
       for (const std::string& note : notes) log::note(note);
       return {scene, std::move(grown), std::move(simulation)};
     }
@@ -54,8 +54,8 @@ frame::SnapshotPtr SceneSimulation::snapshot() const {
   return current_;
 }
 
-// The quantity that heat colours show, per cloth and particle; empty without heat colours, and
-// until all cloths are put on.
+// The quantity that heat colours show, per cloth and particle. Empty without heat colours, and until all cloths are put
+// on.
 std::vector<std::vector<float>> SceneSimulation::heat() const {
   std::vector<std::vector<float>> heat;
   for (std::size_t c = 0; c < model().cloths.size() && heat_ != scene::HeatQuantity::none && all_put_on(); ++c) {

@@ -12,19 +12,22 @@
 
 namespace weft::production {
 
+/// The simulation of a scene's model, which also makes the snapshots of its frames.
 class SceneSimulation : public simulation::Simulation {
  public:
-  /// If the arms of a wearer (a character in a garment) go through the garment at the start, poses them in its sleeves
-  /// or off the body. If a garment cannot be untangled from its wearer, lets the wearer grow into the garment. For
-  /// both, see film/environment/growing.hpp. Logs the warnings of find_undrawn() (plan.hpp) and find_jumps()
-  /// (pin_warnings.hpp). Throws Error with the code asset_unreadable or scene_invalid.
+  /// If the arms of a wearer (a character in a garment) go through the garment at the start, poses the arms in the
+  /// sleeves or away from the body. If a garment cannot be untangled from its wearer, lets the wearer grow into the
+  /// garment. For both, see film/environment/growing.hpp. Logs the warnings of find_undrawn() (plan.hpp) and
+  /// find_jumps() (pin_warnings.hpp). Throws Error with the code asset_unreadable or scene_invalid.
   explicit SceneSimulation(const scene::Scene& scene);
 
-  /// Snapshot of the current frame; made anew only if the simulation has changed since the last call. After
-  /// construction, this is frame 0 or, with a preroll, the first frame of the preroll, whose number is negative.
+  /// Snapshot of the current frame. A new one is made only if the simulation has changed since the last call. After
+  /// construction, the current frame is frame 0 or, with a preroll, the first frame of the preroll, whose number is
+  /// negative.
   frame::SnapshotPtr snapshot() const;
   /// As SnapshotMaker::with_looks().
   frame::SnapshotPtr with_looks(const frame::FrameSnapshot& snapshot) const { return maker_.with_looks(snapshot); }
+  /// All objects: cloths and ropes, then obstacles and characters.
   std::vector<frame::ObjectInfo> objects() const;
 
  private:
@@ -45,7 +48,7 @@ struct StartView {
   std::string description;                            ///< describes `places` for a message; empty if there are none
 };
 
-/// Shows the start as the scene gives it: neither untangles cloth nor poses wearers, and accepts surfaces that touch or
+/// The start exactly as in the scene: neither untangles cloth nor poses wearers, and accepts surfaces that touch or
 /// cross. Throws Error with the code asset_unreadable or scene_invalid.
 StartView view_start(const scene::Scene& scene);
 

@@ -21,13 +21,13 @@ namespace {
 using CameraValue = motion::Spline<7>::Value;
 using LightValue = motion::Spline<10>::Value;
 
-// Maximum angle between the normals of two faces of a character at which their edge is shaded smoothly [degrees].
+// The edge between two faces of a character is drawn sharp if their normals differ by more than this [degrees].
 constexpr double kCharacterCrease = 80;
 
-// The roll of a camera from a file is ignored; above this angle, with a warning [degrees].
+// The roll of a camera from a file is ignored. If it is larger than this angle, there is a warning [degrees].
 constexpr double kMaxIgnoredRoll = 0.1;
 
-// The default colour of the back of a cloth lies this fraction of the way from the colour of the front to white.
+// The default colour of the back of a cloth is the colour of the front, mixed with this fraction of white.
 constexpr double kBackPaleness = 0.35;
 
 frame::Appearance appearance(const scene::Look& look) {
@@ -48,11 +48,11 @@ constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Ratio of thickness to density of cloth without a named fabric [m per kg/m²], estimated from the named fabrics.
 constexpr double kThicknessPerDensity = 2.2e-3;
 // kStrandTurnLength: length of a rope along which a strand turns once around the rope [diameters]. kMinTwistedDiameter:
-// minimum diameter of ropes that are drawn with strands [m], because strands finer than a pixel would flicker.
+// minimum diameter of ropes that are drawn with strands [m]; thinner strands would be finer than a pixel and flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
 
-/// The look of a cloth or rope. Values of a cloth that the scene does not set come from the fabric; the width of hems
-/// also depends on the shape.
+/// The look of a cloth or rope. The fabric determines the values of a cloth that the scene does not set; the width of
+/// hems also depends on the shape.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
   if (cloth.rope) {
@@ -92,8 +92,8 @@ void apply_paint(frame::Appearance& look, const scene::Paint& paint, Pictures& p
   if (paint.cutout) look.color.setOnes();
 }
 
-/// Makes the picture on a floor opaque. Sets the floor's colour, with which the floor lights other objects, to the mean
-/// of the picture in linear light.
+/// Makes the picture on a floor opaque: blends its transparent parts with the floor's colour. Then sets this colour,
+/// with which the floor lights other objects, to the mean of the picture in linear light.
 void make_opaque(frame::Appearance& look) {
   auto filled = std::make_shared<frame::Texture>(*look.paint.texture);
   const Vec3 below = image::linear_from_srgb(look.color);
@@ -118,18 +118,19 @@ void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pict
   apply_paint(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth && surface.kind != frame::ObjectKind::rope)
     surface.appearance.thread_spacing = 0;
-  // The texture coordinates of obstacles are in units of the picture already.
+  // The texture coordinates of obstacles already are coordinates of the picture (place_picture()).
   if (surface.kind == frame::ObjectKind::obstacle) {
     surface.appearance.paint.texture_from_uv.setIdentity();
     surface.appearance.coat = look.gloss.value_or(0);
   }
   if (surface.infinite_floor && look.image) make_opaque(surface.appearance);
-  // Keep the materials of the character's file, which the parts of the surface have already.
+  // The parts of the surface already have the materials of the character's file. Keeps them.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
     const frame::Paint figure = part.appearance.paint;
     part.appearance = surface.appearance;
-    // Keep the texture of a character's part, such as the mannequin's hair, face and shoes, whatever its colour.
+    // Keeps the texture of a part of a character, such as the mannequin's hair, face and shoes. The scene sets only the
+    // colour.
     if (surface.kind == frame::ObjectKind::character) part.appearance.paint = figure;
     for (const scene::PanelPaint& panel : look.panels)
       if (panel.name == part.name) apply_paint(part.appearance, panel, pictures);
@@ -208,7 +209,7 @@ std::shared_ptr<frame::Surface> make_body_surface(const model::Body& body, const
   return surface;
 }
 
-/// Texture coordinates of the picture of an obstacle; the obstacle must have one.
+/// Texture coordinates of the picture of an obstacle. The obstacle must have a picture.
 environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obstacle& obstacle, Pictures& pictures) {
   std::optional<Vec2> tile;
   if (obstacle.look.tile_width) {
@@ -338,7 +339,7 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment& environm
                                                                     : camera_track(camera));
     orbits_.push_back(camera.orbit);
     sensor_heights_.push_back(sensor_height(camera, scene.render));
-    // The renderer assumes a film 24 mm high. Scale the f-number so that the aperture has the same diameter there.
+    // The renderer assumes a film 24 mm high. Scales the f-number so that the aperture has the same diameter with it.
     constexpr double kFilmHeight = 24;  // [mm]
     if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilmHeight / sensor_heights_.back();
   }

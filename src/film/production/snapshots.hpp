@@ -21,7 +21,8 @@ namespace weft::production {
 /// Textures from picture files. Decodes each file once.
 class Pictures {
  public:
-  /// Throws Error(scene_invalid) if the file cannot be read, such as after a change since the scene was checked.
+  /// Throws Error(scene_invalid) if the file cannot be read. This happens if it has changed since the scene was
+  /// checked.
   std::shared_ptr<const frame::Texture> of_file(const std::filesystem::path& file);
 
  private:
@@ -34,7 +35,8 @@ class Looks {
  public:
   Looks(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// Sets stage, cameras and lights of a snapshot. Its time and the positions of its objects must be set already.
+  /// Sets stage, cameras and lights of a snapshot. The time of the snapshot and the positions of its objects must
+  /// already be set.
   void surround(frame::FrameSnapshot& snapshot) const;
   /// Sets the texture coordinates of an obstacle that has a picture; does not change other surfaces.
   void place_picture(frame::Surface& surface) const;
@@ -53,22 +55,23 @@ class Looks {
   // Values of light tracks: direction, position, target, intensity.
   std::vector<motion::Spline<10>> light_tracks_;
   std::vector<double> orbits_;          // rate of the azimuth of each camera [degrees/s]
-  std::vector<double> sensor_heights_;  // of each camera [mm]; 0 if the camera has a field of view
+  std::vector<double> sensor_heights_;  // height of each sensor [mm]; 0 for cameras with a field of view
   std::optional<CameraMounts> mounts_;
 };
 
-/// Makes the snapshots of a run. Makes data that do not change during the run once; all snapshots share them.
+/// Makes the snapshots of a run. All snapshots share the data that do not change during the run.
 class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// `model`: that of the simulation, with the current motions. `particles`: positions of all cloths [m]. `heat`: per
-  /// cloth, one value per particle (see frame::Stage::Heat); or no lists. `moved`: per body, the positions of its
-  /// vertices if forces have moved the body [m], otherwise an empty list; or no lists, if forces move no body.
+  /// `model`: the model of the simulation, with the current motions. `particles`: positions of the particles of all
+  /// cloths [m]. `heat`: per cloth, one value per particle (see frame::Stage::Heat); empty without heat colours.
+  /// `moved`: per body, the positions of its vertices [m] if forces have moved the body, otherwise an empty list; may
+  /// be empty if forces move no body.
   frame::SnapshotPtr make(int frame, double time, const model::Model& model, std::span<const Vec3> particles,
                           std::vector<std::vector<float>> heat, std::vector<std::vector<Vec3>> moved = {}) const;
-  /// Returns a copy of a snapshot with surfaces, cameras and lights as make() makes them. The snapshot must be of a
-  /// scene whose simulation is the same, but which may have had other looks or another duration.
+  /// Returns a copy of a snapshot with the surfaces, cameras and lights of this scene. The scene of the snapshot must
+  /// have the same simulation; its looks and its duration may differ.
   frame::SnapshotPtr with_looks(const frame::FrameSnapshot& snapshot) const;
 
  private:
