@@ -75,8 +75,8 @@ void serialize_optional(Archive& archive, std::optional<Value>& value) {
   serialize_finite(archive, *value);
 }
 
-// Serialises entries as byte planes (codec.hpp), without their number. For reading, the list must
-// already have its final size.
+// Serialises the entries of a list as byte planes (codec.hpp), without their number. For reading, the list must already
+// have its final size.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();
@@ -139,7 +139,7 @@ Textures textures_of(const Surfaces& surfaces) {
 
 template <class Archive>
 void serialize(Archive& archive, Textures& textures) {
-  constexpr std::size_t kMinTextureBytes = 16;  // [bytes]
+  constexpr std::size_t kMinTextureBytes = 16;  // size of the smallest stored texture [bytes]
   serialize_each(
       archive, textures,
       [&](std::shared_ptr<const frame::Texture>& pointer) {
@@ -151,7 +151,7 @@ void serialize(Archive& archive, Textures& textures) {
                            texture.height < kMaxTextureSide;
         if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
           throw std::runtime_error("a picture has the wrong number of bytes");
-        // Only reading replaces the pointer: when writing, paints find their textures by this pointer.
+        // Only reading sets the pointer. Writing must keep it, because paints find their textures by this pointer.
         if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
       },
       kMinTextureBytes);
@@ -195,7 +195,7 @@ void serialize(Archive& archive, frame::Appearance& look, const Textures& textur
 
 template <class Archive>
 void serialize(Archive& archive, frame::Surface& surface, const Textures& textures) {
-  constexpr std::size_t kMinPartBytes = 100;  // [bytes]
+  constexpr std::size_t kMinPartBytes = 100;  // lower bound of the size of a stored part [bytes]
   serialize_plain(archive, surface.name);
   serialize_byte(archive, surface.kind, frame::ObjectKind::rope);
   serialize_flag(archive, surface.visible);
@@ -287,7 +287,7 @@ struct FrameHead {
 
 template <class Archive>
 void serialize(Archive& archive, FrameHead& head) {
-  constexpr std::size_t kMinCameraBytes = 121, kMinLightBytes = 129;  // [bytes], with empty texts and lists
+  constexpr std::size_t kMinCameraBytes = 121, kMinLightBytes = 129;  // sizes with empty texts and lists [bytes]
   serialize_finite(archive, head.time);
   serialize_each(
       archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kMinCameraBytes);
@@ -351,7 +351,7 @@ std::string encode_surfaces(const Surfaces& surfaces) {
 }
 
 Surfaces decode_surfaces(std::string_view payload) {
-  constexpr std::size_t kMinSurfaceBytes = 200;  // [bytes], with empty texts and lists
+  constexpr std::size_t kMinSurfaceBytes = 200;  // lower bound of the size with empty texts and lists [bytes]
   ByteReader reader{payload};
   frame::Stage stage;
   serialize(reader, stage);

@@ -37,21 +37,22 @@ struct Surfaces {
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  std::uint64_t scene_hash = 0;  ///< of the scene for which the frame was written; set by Reader
+  std::uint64_t scene_hash = 0;  ///< hash of the scene for which the frame was written; set by Reader
 };
 
+/// The shared data of a run, from its frame 0.
 Surfaces surfaces_of(const frame::FrameSnapshot& first);
 std::string encode_surfaces(const Surfaces& surfaces);
 
-/// Throws std::runtime_error with the defect.
+/// Throws std::runtime_error that describes the defect.
 Surfaces decode_surfaces(std::string_view payload);
 
-/// `surfaces`: of frame 0 of the same run. Throws std::logic_error if a surface of the snapshot has
-/// another number of vertices.
+/// `surfaces`: of frame 0 of the same run. Throws std::logic_error if a surface of the snapshot has another number of
+/// vertices than in `surfaces`.
 std::string encode_frame(const frame::FrameSnapshot& snapshot, const simulation::FrameReport& report,
                          const Surfaces& surfaces);
 
-/// Throws std::runtime_error with the defect.
+/// `frame`: number of the frame. Throws std::runtime_error that describes the defect.
 CachedFrame decode_frame(std::string_view payload, int frame, const Surfaces& surfaces);
 
 }  // namespace weft::cache

@@ -23,6 +23,7 @@ inline constexpr std::uint32_t kFormatVersion = 17;
 
 enum class Kind : std::uint32_t { surfaces = 1, frame = 2, state = 3 };
 
+/// The identity of a file.
 struct Label {
   Kind kind = Kind::surfaces;
   std::int32_t frame = 0;  ///< number; 0 for surfaces; < 0: state of a preroll
@@ -37,12 +38,12 @@ struct Content {
 /// The bytes of a file: the header and the compressed payload.
 std::string pack(const Label& label, std::string_view payload);
 
-/// Decompresses a payload. Checks what verify() checks, and the size of the payload; does not check the label or the
-/// content of the payload. Throws std::runtime_error with the defect.
+/// Decompresses a payload. Checks what verify() checks, and the size of the payload. Does not compare the label, and
+/// does not check the content of the payload. Throws std::runtime_error that describes the defect.
 Content unpack(std::string_view bytes);
 
-/// Checks magic bytes, version, stored size and checksum without decompressing. Throws std::runtime_error with the
-/// defect.
+/// Checks magic bytes, version, stored size and checksum without decompressing. Throws std::runtime_error that
+/// describes the defect.
 Label verify(std::string_view bytes);
 
 }  // namespace weft::cache

@@ -15,7 +15,7 @@ inline constexpr const char *kManifestFile = "manifest.json", *kSceneFile = "sce
                             *kSurfacesFile = "surfaces.weft", *kStateFile = "state.weft", *kLockFile = "lock",
                             *kOutputsFile = "outputs.txt";  // list of the other outputs of the run
 
-/// First bytes of all .weft files, and of the manifest.
+/// kMagic: first bytes of all .weft files. kManifestStart: first bytes of the manifest.
 inline constexpr std::string_view kMagic = "\x89WEFT\r\n\x1A",
                                   kManifestStart = "{\n  \"format\": \"weft frame cache\",";
 
@@ -23,7 +23,7 @@ inline std::string frame_file(int frame) {
   return fmt::format("frame_{:05}.weft", frame);
 }
 
-/// The number of the frame whose file has this name; nullopt if the name is not that of a frame file.
+/// The number of the frame whose file has the name `name`; nullopt if no frame has such a file.
 inline std::optional<int> frame_of(std::string_view name) {
   constexpr std::string_view kBefore = "frame_", kAfter = ".weft";
   if (!name.starts_with(kBefore) || !name.ends_with(kAfter)) return std::nullopt;

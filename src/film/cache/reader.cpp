@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Reads a file. A file that begins otherwise than with kMagic may be large: throws before reading all of it.
+// Reads a file. If it does not begin with kMagic, throws before it reads the rest, which may be large.
 std::string read_container(const fs::path& file) {
   const std::string start = read_start(file, kMagic.size());
   if (start.size() == kMagic.size() && start != kMagic) throw std::runtime_error("it is no file of a frame cache");

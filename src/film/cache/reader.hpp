@@ -18,18 +18,17 @@ struct SolverState {
   std::string bytes;
 };
 
-/// Which files the reader accepts: only those with the looks (colours, cameras, lights) of the
-/// present scene, or also those with the looks of earlier versions of the scene
-/// (Manifest::former_hashes). Files with earlier looks exist until a run with --resume replaces
-/// them.
+/// Which files the reader accepts. of_scene: only files with the looks (colours, cameras, lights) of the present scene.
+/// any: also files with the looks of earlier versions of the scene (Manifest::former_hashes), which exist until a run
+/// with --resume replaces them.
 enum class Looks { of_scene, any };
 
 /// All functions are thread-safe. Functions that read files throw Error(asset_unreadable) with the file name and the
 /// defect; folder(), manifest() and has() do not throw.
 class Reader {
  public:
-  /// Reads the data that all frames share. A cache without frames is valid, but read() then throws,
-  /// even if frames are added later.
+  /// Reads the data that all frames share. A cache without frames is valid, but read() of this Reader then always
+  /// throws, even if frames are added later.
   explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -59,7 +58,7 @@ class Reader {
   std::filesystem::path folder_;
   Looks looks_;
   Manifest manifest_;
-  std::optional<Surfaces> surfaces_;  // absent if their file, written with frame 0, was not there yet
+  std::optional<Surfaces> surfaces_;  // absent if their file did not exist yet; it is written with frame 0
 };
 
 /// Whether the folder contains a manifest, readable or not.

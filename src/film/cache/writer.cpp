@@ -29,7 +29,7 @@ bool is_name_of_cache(std::string_view name) {
          name == kLockFile || name == kOutputsFile || frame_of(name);
 }
 
-/// The first bytes of a file of this name if Weft has written it; nullopt if they are not fixed.
+/// The first bytes that Weft writes to a file with the name `name`; nullopt if they are not fixed.
 std::optional<std::string_view> beginning_of(std::string_view name) {
   if (name == kManifestFile) return kManifestStart;
   if (name == kOutputsFile) return "-";
@@ -37,8 +37,8 @@ std::optional<std::string_view> beginning_of(std::string_view name) {
   return std::nullopt;
 }
 
-/// Whether a file begins as Weft writes it, or with zero bytes: the machine may have crashed before the content was on
-/// disk.
+/// Whether a file begins as Weft writes it, or with zero bytes, as after a crash of the machine before the content was
+/// on disk.
 bool begins_as_written(const fs::path& file) {
   const auto beginning = beginning_of(file.filename().string());
   if (!beginning) return false;
@@ -46,11 +46,10 @@ bool begins_as_written(const fs::path& file) {
   return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether a file of the folder belongs to the cache, so that it may be removed. Its name must be
-/// that of a file of a cache, or that of a temporary file for one. A temporary file needs no other
-/// check. Other files must be regular files that are empty or begin as Weft writes them. The scene
-/// file has no fixed first bytes: it belongs to the cache if the manifest or the surfaces file
-/// beside it begins as Weft writes it.
+/// Whether a file of the folder belongs to the cache, so that it may be removed. Its name must be that of a file of a
+/// cache, or of a temporary file for such a file. The name of a temporary file suffices. Other files must be regular
+/// files that are empty or begin as Weft writes them. The scene file has no fixed first bytes. It belongs to the cache
+/// if the manifest or the surfaces file beside it begins as Weft writes it.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);
@@ -109,7 +108,7 @@ Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
                     folder_.string());
       throw Error(ExitCode::output_failed, "{}: cannot be locked: {}", file.string(), std::strerror(error));
     }
-    // The previous owner of the lock may have removed the folder between open() and flock().
+    // Between open() and flock(), the previous owner of the lock may have removed the folder. Then tries again.
   } while (!same_file(descriptor_, file));
 }
 
@@ -123,8 +122,8 @@ bool Lock::empty() const {
 }
 
 void Lock::clear() const {
-  // Removes the scene first, since is_ours() identifies it by the files beside it; then the manifest, without which the
-  // other files are no cache.
+  // Removes the scene file first, because is_ours() recognises it by the files beside it. Then removes the manifest,
+  // because the other files are no cache without it.
   for (const char* name : {kSceneFile, kManifestFile})
     if (is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
   for (const std::string& name : names_in(folder_))
@@ -156,7 +155,8 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const simulation::FrameRe
   }
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
-  // The lock keeps other Weft processes out, so another program has made a file that appears only now; keep it.
+  // Because of the lock, no other Weft process writes here. A frame file that did not exist when this Writer was
+  // created thus belongs to another program, and must not be replaced.
   if (own_frames_.insert(snapshot.frame).second) protect_missing_file(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();

@@ -38,8 +38,8 @@ class Lock {
   int descriptor_ = -1;
 };
 
-/// If a file cannot be written, functions throw Error(output_failed). If add() cannot read back frame 0, it throws
-/// Error(asset_unreadable).
+/// Writes the files of a cache. If a file cannot be written, functions throw Error(output_failed). If add() cannot read
+/// back frame 0, it throws Error(asset_unreadable).
 class Writer {
  public:
   /// Writes the manifest and the scene. The folder must be empty, or a cache of the same simulation.
@@ -61,7 +61,7 @@ class Writer {
   std::filesystem::path folder_;
   Manifest manifest_;
   std::optional<Surfaces> surfaces_;
-  std::set<int> own_frames_;  // frames whose files may be replaced
+  std::set<int> own_frames_;  // frames whose files belong to this cache and may be replaced
   std::uintmax_t bytes_added_ = 0;
 };
 
