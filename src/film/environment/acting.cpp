@@ -31,7 +31,7 @@
 namespace weft::environment {
 namespace {
 
-/// Bounds of the rate of key frames, if the rate follows from that of a clip [1/s].
+/// Limits of the rate of key frames, for scenes that do not set it [1/s].
 constexpr double kMinKeyRate = 10, kMaxKeyRate = 120;
 
 /// Minimum rate of key frames of a body that grows or lowers its arms, if the scene sets no rate [1/s].
@@ -43,16 +43,16 @@ constexpr std::size_t kMaxKeyFrameBytes = std::size_t{8} << 30;
 /// Maximum jump of a vertex from the end of a loop to its start without a warning [m].
 constexpr double kMaxInvisibleGap = 1e-3;
 
-/// Maximum relative difference of feet and body speed without a warning: feet slide 5 cm in a step of 0.7 m.
+/// Maximum slip speed of feet without a warning, relative to their own speed: 5 cm in a step of 0.7 m.
 constexpr double kMaxFootSlide = 0.07;
 
-/// Minimum vertical component of the unit vector along the trunk, averaged over a motion, of a body that stands.
+/// Minimum vertical component of the mean unit vector along the trunk of a body that stands upright.
 constexpr double kMinUprightness = 0.7;
 
-/// Maximum distance of the soles at rest from the height of the origin of the file that needs no correction [m].
+/// put_on_floor() moves a body if the height of its soles differs from that of the file's origin by at least this [m].
 constexpr double kMaxSoleOffset = 0.05;
 
-/// The clip with the name that the scene gives; the first clip if it gives none.
+/// The clip with the name `name`; without a name, the first clip. `source`: file of the clips, for messages.
 const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
                                    const std::vector<character::Clip>& clips, const std::string& source) {
   if (!name) return clips.front();
@@ -76,8 +76,8 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::v
                                  source, fmt::join(names, "\", \"")));
 }
 
-/// Loads a motion file. If it is BVH and the scene does not state its up axis, this axis is z if bodies in the file
-/// stand along z, else y.
+/// Loads a motion file. A BVH file does not state its up axis. If the scene does not state it either, it is z if the
+/// body in the file stands along z, else y.
 assets::LoadedCharacter load_upright(const Cast& cast, const scene::SkeletonMotion& acting,
                                      std::vector<std::string>& warnings) {
   const auto load = [&](scene::FileUp up) {
@@ -105,7 +105,7 @@ double leg_length(const character::Rig& rig) {
   return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
 }
 
-/// The clip with the travel that the scene asks for. `size`: ratio of leg lengths, body / skeleton of the clip.
+/// Returns the clip with the travel that the scene sets. `size`: leg length of the body / that of the clip's skeleton.
 character::Clip travel(const Cast& cast, const scene::SkeletonMotion& acting, const character::Rig& rig,
                        const character::Clip& clip, double size, std::vector<std::string>& warnings) {
   if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
@@ -125,8 +125,8 @@ character::Clip travel(const Cast& cast, const scene::SkeletonMotion& acting, co
   return std::move(traveled.clip);
 }
 
-/// Moves soles that are kMaxSoleOffset or more off the height of the file's origin to this height,
-/// so that a retargeted motion walks on the floor.
+/// Makes a retargeted motion walk on the floor: if the soles are kMaxSoleOffset or more above or below the origin of
+/// the file, moves the body so that they are at the height of the origin.
 void put_on_floor(const Cast& cast, Body& body) {
   const Vec3 up = cast.up();
   std::vector<Vec3> x(body.character.mesh.positions.size());
@@ -165,7 +165,7 @@ character::Clip retarget_motion(const Cast& cast, const scene::SkeletonMotion& a
   return std::move(result.clip);
 }
 
-/// Objects of the file that cloths of the scene use. They are no part of the body.
+/// Objects of the file that cloths of the scene use. The body does not include them.
 std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem::path& file) {
   std::vector<std::string> taken;
   std::error_code ignored;
@@ -215,7 +215,7 @@ Body make_playing_body(const Cast& cast, const Source& source) {
   return body;
 }
 
-/// Adds the points of a FollowerPoints to a body with `vertices` own vertices. `start`: pose at the start of the run.
+/// Adds the points of `pin` to a body with `vertices` vertices of its own. `start`: pose at the start of the run.
 void add_follower_points(const Cast& cast, const FollowerPoints& pin, const std::vector<Part>& parts,
                          const character::Pose& start, std::size_t vertices, character::Character& body) {
   character::VertexMask mask(vertices, 1);
@@ -238,8 +238,8 @@ struct KeyTimes {
   }
 };
 
-/// `clip_rate`: keys per second of the clip; 0: no clip. `changes_stance`: whether the body leaves a stance after
-/// `dressing`.
+/// Chooses the times of the key frames. `clip_rate`: keys per second of the clip; 0: no clip. `changes_stance`: whether
+/// the body leaves a stance after `dressing`.
 KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
@@ -249,7 +249,7 @@ KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kMinKeyRate, kMaxKeyRate));
   if (!settings.keys_per_second && (grows || changes_stance)) times.rate = std::max(times.rate, kDressingRate);
   times.first = static_cast<long>(std::floor((grows ? begin : cast.motion_start()) * times.rate));
-  // From the last key on, a body stands still: adds a key after the end, so it moves until then.
+  // A body stands still from its last key on. The last key must therefore be after the end of its motion.
   const double end = moves ? duration : begin + settings.grow;
   times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
   return times;
@@ -269,8 +269,8 @@ void check_memory(const Cast& cast, const KeyTimes& times, std::size_t vertices)
                                              kMaxKeyFrameBytes, bytes, times.count, vertices));
 }
 
-/// Samples a body at the times of its key frames. `vertices_at`: writes its vertices, in the coordinates of the body,
-/// at a time of the scene.
+/// Samples a body at the times of its key frames. `vertices_at`(t, x): writes the positions of its vertices at the time
+/// t of the scene [s] to x, in the coordinates of the body [m].
 KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
                  const std::function<void(double, std::vector<Vec3>&)>& vertices_at) {
   check_memory(cast, times, vertices);
@@ -363,11 +363,11 @@ std::optional<character::LimbClearance> limb_clearance_of(const Cast& cast, cons
                                   static_grounds(cast));
 }
 
-/// The largest displacement of skin over all keys, with its time and its place.
+/// The largest displacement of a vertex of the skin over all keys, with its time and its place.
 struct MaxDisplacement {
   character::Moved moved;
   double time = 0;      // [s]
-  Vec3 place{0, 0, 0};  // in the coordinates of the body [m]
+  Vec3 place{0, 0, 0};  // position of the vertex in the coordinates of the body [m]
 
   void add(const character::Moved& now, double t, std::span<const Vec3> x) {
     if (now.distance <= moved.distance) return;
@@ -375,7 +375,7 @@ struct MaxDisplacement {
   }
 };
 
-/// Minimum displacement of skin that is reported [m]; smaller ones are not visible.
+/// Minimum displacement of skin that is reported [m]. Smaller displacements are not visible.
 constexpr double kMinReportedDisplacement = 1e-3;
 
 std::optional<std::string> describe(const Cast& cast, const MaxDisplacement& most) {
@@ -409,7 +409,7 @@ Actor make_actor_of(const Cast& cast, const Source& source, std::span<const Foll
   const character::Pose start = performance.at(cast.begin());
   for (const FollowerPoints& pin : following) add_follower_points(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, source, body);
-  std::vector<Vec3> bones;  // per vertex of the body (not per follower point): the point from which it grows
+  std::vector<Vec3> bones;  // per vertex of the body, without followers: the point from which it grows [m]
   if (cast.settings.grow > 0) bones = character::growth_start_positions(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
   const std::vector<character::Ground> grounds = static_grounds(cast);

@@ -19,7 +19,8 @@ class PartFinder {
         body_(body),
         joints_(joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source)) {}
 
-  /// `key`: of the part, for messages.
+  /// The vertices of a part. Throws if the part contains no triangle. `key`: key of the part in the scene, for
+  /// messages.
   character::VertexMask find(const scene::BodyPart& part, const std::string& key) const {
     character::VertexMask mask = vertices_of(part, key);
     const auto holds = [&](const auto& t) { return mask[t[0]] + mask[t[1]] + mask[t[2]] >= 2; };

@@ -12,7 +12,7 @@
 
 namespace weft::environment {
 
-/// A body, and the clip that it plays.
+/// A body, and the clip that it plays (absent: it does not move).
 struct Body {
   std::string source;  ///< its file, for messages
   character::Character character;
@@ -35,7 +35,7 @@ struct Cast {
   double motion_start() const { return settings.dressing + begin(); }
   character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }
 
-  /// Throws Error(scene_invalid) about the key `key` of the character.
+  /// Throws Error(scene_invalid) that names the key `key` of the character and the reason `why`.
   [[noreturn]] void fail(const std::string& key, const std::string& why) const;
 };
 
@@ -47,8 +47,9 @@ void check_start(const Cast& cast, const std::string& motion, double duration);
 /// "; did you mean ...?" with the most similar of the known names; empty if none is similar.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
 
-/// The node of a file with the name `name`, which the scene gives in a [[character.joint]] or as the `bone` of a
-/// [[character.part]]. `key`: of the scene, for messages. Throws Error(scene_invalid) if there is no such node.
+/// The number of the node with the name `name`, which the scene gives in a [[character.joint]] or as the `bone` of a
+/// [[character.part]]. `key`: key in the scene; `source`: the file of the nodes; both for messages. Throws
+/// Error(scene_invalid) if there is no such node.
 Index named_node(const Cast& cast, const std::string& key, const std::string& name,
                  const std::vector<character::Node>& nodes, const std::string& source);
 

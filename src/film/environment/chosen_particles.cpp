@@ -20,9 +20,9 @@ namespace {
 
 using model::WeightedParticle;
 
-// Minimum fraction at which a particle belongs to a region: half a level of an 8-bit picture.
+// A particle belongs to a region if its fraction is at least this: half a level of an 8-bit picture.
 constexpr double kMinFraction = 0.5 / 255;
-// Minimum fraction at which a pin without a strength holds a particle. Such a pin holds its particles fully.
+// A pin without a strength holds a particle completely if its fraction is at least this; otherwise, not at all.
 constexpr double kMinHeldFraction = 0.5;
 
 /// Grey value of a picture at (u, v) times its opacity, in [0, 1]; v points up. Interpolates linearly between the
@@ -188,8 +188,8 @@ class RestDistances {
   }
 
   /// Appends to the region `part` the particles that are nearer to it than `fade` [m]. Their fraction falls from that
-  /// of the nearest particle of the region to 0 at this distance, with zero slope at both ends. Shortest paths: E. W.
-  /// Dijkstra, "A note on two problems in connexion with graphs", 1959.
+  /// of the nearest particle of the region to 0 at the distance `fade`, with zero slope at both ends. Shortest paths:
+  /// E. W. Dijkstra, "A note on two problems in connexion with graphs", 1959.
   void fade(double fade, std::vector<WeightedParticle>& part) const {
     struct FrontParticle {
       double distance;
@@ -225,8 +225,8 @@ class RestDistances {
       neighbours_;  // per particle: its neighbours and their distances [m]
 };
 
-/// Text that proposes other bounds for a region that holds no particle, such as one between two
-/// rows of particles. Empty if the region is not given by bounds alone.
+/// Text for a region that contains no particle, such as one between two rows of particles: proposes bounds that include
+/// the nearest particle. Empty if not only bounds define the region.
 std::string nearest_row(const scene::ClothPart& part, const ClothDetails& details) {
   if (!part.panel.empty() || !part.edge.empty() || part.mask || part.vertex_color != scene::VertexColor::none ||
       !part.vertex_group.empty() || details.fractions.empty())

@@ -13,25 +13,24 @@
 namespace weft::environment {
 namespace {
 
-/// Number of layers of cloth that must fit between two limbs, for example if an arm presses on the folds of a shirt.
-/// With 4 layers, cloth is pinched in 13 of 51 frames of a film with such a shirt.
+/// Number of layers of cloth that must fit between two limbs. Several are needed where an arm presses on the folds of a
+/// shirt: with space for 4 layers, cloth is pinched in 13 of 51 frames of such a film.
 constexpr double kLayersBetweenLimbs = 8;
 
-/// Distance up to which skin counts as near cloth [m]. character::LimbClearance moves two limbs apart only if cloth is
+/// Skin counts as near cloth up to this distance [m]. character::LimbClearance moves two limbs apart only if cloth is
 /// near one of them.
 constexpr double kNearCloth = 0.05;
 
 /// Maximum distance between samples on cloth [m], except on edges longer than kMaxEdgeSamples times this distance.
 constexpr double kSampleDistance = 0.02;
 
-/// Maximum number of intervals between samples along an edge of a triangle. Limits the cost of cloth of few large
-/// triangles.
+/// Maximum number of intervals between samples along an edge of a triangle. Limits the cost of large triangles.
 constexpr int kMaxEdgeSamples = 64;
 
 /// Vertices per parallel task.
 constexpr std::size_t kNearnessGrain = 512;
 
-/// Points, sorted into cubes of the edge length kNearCloth. Finds the nearest point within this distance.
+/// Finds the nearest of many points within kNearCloth. Sorts the points into cubes with this edge length.
 class PointCubes {
  public:
   void add(const Vec3& x) { cells_[key(cell_of(x))].push_back(x); }

@@ -1,4 +1,4 @@
-// Finds where the skin of a character must leave space for cloth: above the ground, between limbs, and near cloth.
+// Finds where the skin of a character must leave space for cloth: above the ground, and between limbs near cloth.
 #pragma once
 
 #include <span>
@@ -16,18 +16,17 @@ std::vector<character::Ground> static_grounds(const Cast& cast);
 /// Height of the lowest of the points `x` over the ground [m].
 double height_over(const character::Ground& ground, std::span<const Vec3> x);
 
-/// Clearance between limbs [m]: `room` of the character. Without this key: kLayersBetweenLimbs
-/// (clearance.cpp) times the largest contact thickness of the cloths, but 0 for characters that do
-/// not collide, and for the mannequin without a motion file, whose walk keeps the arms off the
-/// body.
+/// Clearance between limbs [m]: `room` of the character. If the scene does not set it: kLayersBetweenLimbs
+/// (clearance.cpp) times the largest contact thickness of the cloths; but 0 for characters that do not collide, and for
+/// the mannequin without a motion file, because its own walk keeps the arms away from the body.
 double clearance_between_limbs(const Cast& cast);
 
-/// Nearness of cloth to each point of the skin: 1 up to a distance of 2.5 cm, then falling linearly to 0 at 5 cm.
+/// Nearness of cloth to each point of the skin: 1 up to a distance of 2.5 cm, then decreasing linearly to 0 at 5 cm.
 /// `skin`: positions in the world [m].
 std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtStart& cloth);
 
-/// Nearness of cloth to each vertex of a body: the largest one of all cloths, each at the time when it is put on.
-/// `performance`: motion of the body.
+/// Nearness of cloth to each vertex of a body: the maximum over all cloths of nearness_of_cloth() at the time when the
+/// cloth is put on. `performance`: motion of the body.
 std::vector<float> nearness_of_cloths(const Cast& cast, const character::Character& body,
                                       const character::Performance& performance, std::span<const ClothAtStart> cloths);
 

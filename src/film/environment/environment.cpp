@@ -18,9 +18,8 @@
 namespace weft::environment {
 namespace {
 
-/// Makes the mesh of an obstacle in its own coordinates. Boxes have their sizes along the axes of
-/// the scene. Cones, tori, cylinders, half pipes and planes are turned to the up axis. axes_of()
-/// gives the axes of files.
+/// Makes the mesh of an obstacle in its own coordinates. The sizes of boxes are along the axes of the scene. Cones,
+/// tori, cylinders, half pipes and planes are turned to the up axis. For files, axes_of() defines the axes.
 struct MakeMesh {
   const scene::Scene& scene;
   const scene::Obstacle& obstacle;
@@ -66,8 +65,8 @@ model::Body make_obstacle(const scene::Scene& scene, const scene::Obstacle& obst
 }
 
 /// If some parts do not collide, fills details.passed_through (per triangle: 1 if it does not collide) and
-/// body.colliding (all other triangles, and lids that close the cuts between both). A body without any colliding
-/// triangle does not collide.
+/// body.colliding: all other triangles, and triangles that close the holes which these parts leave. A body without any
+/// colliding triangle does not collide.
 void list_colliding_triangles(model::Body& body, BodyDetails& details) {
   if (std::ranges::all_of(details.parts, &Part::collide)) return;
   std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);
@@ -92,8 +91,8 @@ void set_start_advice(const scene::Scene& scene, model::Model& model) {
   if (!untangles) model.untangle_advice = "or give a cloth start = \"untangle\"";
 }
 
-/// Advice in the error message about a character that touches another surface: hanging arms are in the way of most
-/// skirts.
+/// Advice in the error message about a character that touches another surface at the start: most skirts touch arms that
+/// hang down.
 std::string advice_for(const scene::Character& character) {
   const auto* file = std::get_if<scene::CharacterFile>(&character.source);
   const bool arms_hang = file != nullptr && !file->stance_arms && character.dressing > 0;
@@ -120,7 +119,7 @@ model::Body make_character(const scene::Character& character, Actor actor, BodyD
   return body;
 }
 
-/// The number of an object of this name; absent if there is none.
+/// The index of the object with the name `name`; absent if there is none.
 template <class Objects>
 std::optional<std::size_t> number_of(const std::string& name, const Objects& objects) {
   const auto found = std::ranges::find(objects, name, [](const auto& object) { return object.name; });
@@ -128,8 +127,8 @@ std::optional<std::size_t> number_of(const std::string& name, const Objects& obj
   return static_cast<std::size_t>(found - objects.begin());
 }
 
-/// Mean start position of the particles of the region of a pin, including those that another pin holds, without faded
-/// particles outside the region.
+/// Mean start position of all particles in the region of a pin, also of those that another pin holds. Particles outside
+/// the region that the pin holds through its `fade` do not count.
 Vec3 middle_of(std::span<const model::WeightedParticle> particles, std::span<const Vec3> start) {
   Vec3 middle = Vec3::Zero();
   std::size_t count = 0;

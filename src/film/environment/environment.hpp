@@ -19,7 +19,7 @@ namespace weft::environment {
 struct BodyDetails {
   scene::Look look;
   std::shared_ptr<const character::Coloring> coloring;  ///< from the file of a character; null if the file has none
-  std::vector<Part> parts;                              ///< of characters
+  std::vector<Part> parts;                              ///< parts of a character; empty for obstacles
   std::vector<std::uint8_t> passed_through;  ///< per triangle: 1 if its part does not collide; empty: no such part
 };
 

@@ -19,13 +19,13 @@
 namespace weft::environment {
 namespace {
 
-/// Fraction of `dressing` in which a wearer grows. In the rest, its garment settles.
+/// Fraction of the time `dressing` in which a wearer grows. In the rest of this time, the garment settles.
 constexpr double kGrowingFraction = 0.5;
 
-/// Angle of the arms from hanging, for garments without sleeves [degrees].
+/// Angle between the arms and the downward direction, for garments without sleeves [degrees].
 constexpr double kAngleBesideSkirt = 45;
 
-/// Number of grid cells along the longest side of a garment.
+/// Number of cells of the search grid along the longest side of the bounding box of a garment.
 constexpr double kCellsPerSide = 30;
 
 /// An opening of a garment: a closed border, in the axes of the wearer [m].
@@ -60,9 +60,9 @@ std::vector<Opening> openings_of(const model::Cloth& cloth, const garment::Weare
   return openings;
 }
 
-/// Angle from hanging at which straight arms point through the sleeves [degrees], as a mean over
-/// both sides. The end of a sleeve is an opening beside the shoulder and above the hips. Absent if
-/// one side has no such opening or no arm joints.
+/// Angle from the downward direction at which straight arms point through the sleeves, averaged over both sides
+/// [degrees]. The end of a sleeve is an opening beside the shoulder and above the hips. Absent if one side has no such
+/// opening or no arm joints.
 std::optional<double> angle_of_sleeves(const model::Cloth& cloth, const garment::Wearer& wearer) {
   double sum = 0;
   const std::vector<Opening> openings = openings_of(cloth, wearer);
@@ -97,9 +97,9 @@ bool is_pierced_by_arm(const model::Cloth& cloth, const garment::Wearer& wearer)
   return false;
 }
 
-/// The number of the character that wears a garment. Absent if the garment is not from a pattern or
-/// not untangled, if it names no wearer and there are several characters, or if the character has
-/// no bones, no `dressing`, or would still grow at frame 0.
+/// The index of the character that wears a garment. Absent if the garment is not from a pattern or not untangled, if it
+/// names no wearer and there are several characters, or if the character has no bones or no `dressing`, or would still
+/// grow at frame 0.
 std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (cloth.shape != scene::ClothShape::pattern || !scene::starts_untangled(cloth)) return std::nullopt;
   for (std::size_t c = 0; c < scene.characters.size(); ++c) {
@@ -112,10 +112,11 @@ std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Clo
   return std::nullopt;
 }
 
-/// Returns the body of a wearer. The first call makes it, which takes time.
+/// A function that returns the body of a wearer. Its first call makes the body, which takes time.
 using Measure = std::function<const garment::Wearer&()>;
 
-/// Calls visit(cloth, number of the character, Measure of its body) for each garment that has a wearer_of().
+/// Calls visit(cloth, index of its wearer, Measure of the wearer's body) for each garment that has a wearer
+/// (wearer_of).
 template <class Visit>
 void for_each_worn(const scene::Scene& scene, const Environment& environment, const Visit& visit) {
   Wearers wearers(scene);
@@ -138,7 +139,8 @@ std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, cons
     const garment::Wearer& body = measure();
     if (!is_pierced_by_arm(cloth, body)) return;
     const std::optional<double> of_sleeves = angle_of_sleeves(cloth, body);
-    // If another garment has set the arms, only sleeves may change them: they leave arms no choice.
+    // If another garment has already set the angle of the arms, only a garment with sleeves changes it, because arms
+    // must point into sleeves.
     if (posed && scene::acting_of(posed->characters[number])->stance_arms && !of_sleeves) return;
     if (!posed) posed = scene;
     const double angle = std::round(of_sleeves.value_or(kAngleBesideSkirt));

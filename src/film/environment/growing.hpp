@@ -10,20 +10,22 @@
 
 namespace weft::environment {
 
-/// Returns a changed scene if the bones of an arm go through a garment from a pattern at the start.
-/// The wearer of the garment then starts with the arms in the sleeves or, if there are no sleeves,
-/// held off the body. Changes a wearer only if the start untangles the garment
-/// (scene::starts_untangled) and the wearer has bones, a positive `blend`, a positive `dressing`,
-/// at least half of which lies before frame 0, and no `stance_arms` in the scene. Returns nullopt
-/// if no wearer changes. Logs a note for each garment whose wearer changes.
+/// Returns a changed scene if the bones of an arm go through a garment from a pattern at the start. In this scene, the
+/// wearer of the garment starts with the arms in the sleeves or, if there are no sleeves, away from the body. Changes a
+/// wearer only if
+/// - the garment is untangled at the start (scene::starts_untangled),
+/// - the wearer has bones, a positive `blend`, and no `stance_arms` in the scene,
+/// - the wearer has a positive `dressing`, and at least half of this time is before frame 0.
+/// Returns nullopt if no wearer changes. Logs a note for each garment whose wearer changes.
 std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, const Environment& environment);
 
-/// Returns a changed scene in which wearers grow from their bones during the first half of
-/// `dressing`. If the garment has sleeves, and the wearer has a positive `blend` and no
-/// `stance_arms` in the scene, the arms also point into the sleeves. Changes a wearer only if the
-/// garment is from a pattern and the start untangles it, and the wearer has bones, a positive
-/// `dressing`, at least half of which lies before frame 0, and no `grow` in the scene. Returns
-/// nullopt if no wearer changes. Adds a note to `notes` for each garment whose wearer changes.
+/// Returns a changed scene in which wearers grow from their bones during the first half of `dressing`. If the garment
+/// has sleeves, and the wearer has a positive `blend` and no `stance_arms` in the scene, the arms also point into the
+/// sleeves. Changes a wearer only if
+/// - its garment is from a pattern and untangled at the start,
+/// - the wearer has bones, and no `grow` in the scene,
+/// - the wearer has a positive `dressing`, and at least half of this time is before frame 0.
+/// Returns nullopt if no wearer changes. Adds a note to `notes` for each garment whose wearer changes.
 std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment,
                                                  std::vector<std::string>& notes);
 

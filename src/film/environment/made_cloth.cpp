@@ -33,8 +33,8 @@ double noise(std::uint64_t z) {
   return static_cast<double>(z >> 11) * 0x1p-52 - 1;
 }
 
-// Positions of the particles at the start: those of `rest`, the mesh placed in the scene, scaled about the position of
-// the pose of the cloth, plus noise.
+// Positions of the particles at the start [m]: those of `rest` (the mesh placed in the scene), scaled about the
+// position of the cloth's pose, plus noise.
 std::vector<Vec3> start_positions(scene::UpAxis up, const scene::Cloth& cloth, const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
@@ -76,9 +76,9 @@ void use_triangles(mesh::Mesh mesh, MadeCloth& made) {
   made.cloth.mesh = std::move(mesh);
 }
 
-/// Makes cloth from a pattern. A garment stands upright; it is made where its wearer stands if it
-/// is fitted to the wearer or has panels around parts of the wearer. made.details.fractions:
-/// position in the bounding box of Garment::sheet.rest, from 0 to 1 along x and z.
+/// Makes cloth from a pattern. The garment is upright. If it is fitted to its wearer or has panels around parts of the
+/// wearer, it is at the position of the wearer. Sets made.details.fractions to the positions in the bounding box of
+/// Garment::sheet.rest, from 0 to 1 along x and z.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
@@ -103,7 +103,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   }
   pattern.scale_by(factors, rise);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
-  // Bent panels lie around the wearer in the scene; others are drawn with z up.
+  // A garment with bent panels lies around its wearer, in world coordinates. Other garments have z up.
   std::vector<Vec3> upright = garment.sheet.rest;
   if (wearer != nullptr)
     for (Vec3& x : upright) x = wearer->to_world.inverse() * x;
@@ -160,8 +160,8 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
   return loaded;
 }
 
-/// Whether the rest shape of a cloth is the panels that its UVs give. Records the choice and its reason, warns of UVs
-/// that do not fit, and throws Error(asset_unreadable) if the scene asks for UVs that are missing or unusable.
+/// Whether the panels that the UVs of a cloth define are its rest shape. Records the choice and its reason, and warns
+/// of UVs that do not fit. Throws Error(asset_unreadable) if the scene demands UVs that are missing or unusable.
 bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::string& where, MadeCloth& made) {
   constexpr double kMaxUnusableArea = 0.1;  // fraction of the area of the mesh
   const std::string in_file = fmt::format("{}: mesh file {}", where, cloth.file.string());
@@ -185,7 +185,7 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
                                                : ", which its UVs do not fit as panels do",
                                        rest.describe());
   if (!takes) return false;
-  constexpr double kMaxDrapeStretch = 0.25;  // of the mesh relative to the panels; draped cloth is stretched less
+  constexpr double kMaxDrapeStretch = 0.25;  // relative to the panels; draping stretches cloth less
   if (!rest.has_panel_lengths())
     made.details.warnings.push_back(
         fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" uses the shape of "
@@ -203,7 +203,7 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
 }
 
 /// Makes cloth from a mesh file. The cloth starts as the mesh. Its rest shape is the mesh, or the flat panels that its
-/// UVs give. Moves the mesh into `made`, and returns the other data of the file, such as colours and vertex groups.
+/// UVs define. Moves the mesh into `made`, and returns the other data of the file, such as colours and vertex groups.
 assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
                                  MadeCloth& made) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);
@@ -213,7 +213,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   if (cloth.rest == scene::ClothRest::mesh) made.details.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, made);
   if (panels) {
-    constexpr double kMaxSeamGap = 0.1;  // gap / shortest border edge there; gaps in files are smaller
+    constexpr double kMaxSeamGap = 0.1;  // gap / shortest border edge at the gap; seams in files have smaller gaps
     if (const assets::Welded welded = assets::weld_borders(loaded, kMaxSeamGap); welded.vertices > 0)
       made.details.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
                                             welded.vertices, 1e3 * welded.widest);

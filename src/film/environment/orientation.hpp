@@ -9,8 +9,8 @@
 
 namespace weft::environment {
 
-/// Turns the mesh of a shape, which is made with its axis along z, to the up axis. If y is up, rotates it by −90° about
-/// x: z becomes y, x stays.
+/// Turns the mesh of a shape to the up axis. The mesh must have z up. If y is up in the scene, rotates it by −90° about
+/// x: z becomes y, y becomes −z.
 mesh::Mesh rotate_to_up_axis(mesh::Mesh mesh, scene::UpAxis up);
 
 /// The axes of a mesh file. If a character uses the same file, the up axis that the scene gives this character applies,

@@ -30,7 +30,8 @@ struct Tiling {
   double whole_count(double length, int axis) const { return std::max(1.0, std::round(count(length, axis))); }
 };
 
-/// Angle of (x, y) in turns: 0 along −y, growing toward +x. Returns the value that is within half a turn of `near`.
+/// Angle of the direction (x, y) [turns]: 0 along −y, increasing toward +x. Of all equivalent values, returns the one
+/// within half a turn of `near`.
 double angle_in_turns(double x, double y, double near) {
   const double turn = std::atan2(x, -y) / (2 * kPi);
   return turn + std::round(near - turn);
@@ -50,8 +51,9 @@ std::array<double, 3> turns_around(const Corners& corners, double radius) {
   return around;
 }
 
-/// Picture coordinates on that side of a box of the size `size` to which the normal points most. Pictures are upright
-/// on walls. On sides that face up, their top is toward the back; on sides that face down, toward the front.
+/// Picture coordinates of a triangle on the side of a box that faces the direction of the triangle's normal most
+/// closely. `size`: of the box [m]. Pictures are upright on walls. On sides that face up, the top of the picture is
+/// toward the back; on sides that face down, toward the front.
 std::array<Vec2, 3> place_on_side(const Corners& corners, const Vec3& size, const Tiling& tiling) {
   Eigen::Index axis = 0;
   corners.normal.cwiseAbs().maxCoeff(&axis);
@@ -104,8 +106,8 @@ struct PlaceOnShape {
     if (is_level()) return place_on_side(corners, {2 * s.radius, 2 * s.radius, s.height}, tiling);
     return around(s.radius, std::hypot(s.radius, s.height), [&](const Vec3& x) { return 0.5 + x.z() / s.height; });
   }
-  /// The height of the picture runs around the tube, starting on its inner side and going over the bottom, so that the
-  /// middle of the picture is on the outside.
+  /// The height of the picture runs around the tube: from its inner side over the bottom to the outside, where the
+  /// middle of the picture is, and over the top back to the inner side.
   Places operator()(const scene::Torus& s) const {
     const auto turn_of = [&](const Vec3& x, double near) {
       return angle_in_turns(x.z(), -(std::hypot(x.x(), x.y()) - s.radius), near);
@@ -115,9 +117,8 @@ struct PlaceOnShape {
     return around(s.radius, 2 * kPi * s.tube_radius,
                   [&](const Vec3& x) { return (0.5 + turn_of(x, at_middle)) * upward; });
   }
-  /// The width of the picture runs along the pipe, its height around the pipe (on the inside from
-  /// the front rim to the back rim). The ends and the rims of the pipe are treated as sides of a
-  /// box.
+  /// The width of the picture runs along the pipe, its height around the pipe (on the inside from the front rim to the
+  /// back rim). The ends and the rims of the pipe are treated as sides of a box.
   Places operator()(const scene::HalfPipe& s) const {
     const Vec3 middle = corners.middle();
     const double outside = s.radius + s.thickness,
@@ -137,7 +138,7 @@ struct PlaceOnShape {
   Places operator()(const scene::MeshFile&) const { return {}; }
 };
 
-/// Metres per unit of the UVs, from the total areas on the surface and in the UVs.
+/// Mean length on the surface per unit of the UVs [m], from the ratio of the total areas.
 double metres_per_uv(const assets::LoadedMesh& shape) {
   double area = 0, uv_area = 0;
   for (std::size_t t = 0; t < shape.uv.size(); ++t) {

@@ -8,10 +8,11 @@
 namespace weft::environment {
 namespace {
 
-// Limits of height for people and toy figures, and a usual height [m]. A file in centimetres gives 100 times the
-// height.
+// Limits of the height of people and toy figures, and the height of a usual person [m]. If a file is in centimetres,
+// the height is 100 times too large.
 constexpr double kMinHeight = 0.3, kMaxHeight = 3, kUsualHeight = 1.7;
-// Maximum number of nodes without skin that turn without a warning: the file may have a separate head or a camera.
+// Maximum number of nodes that the clip turns without moving skin, before there is a warning. A few are usual, such as
+// a separate head or a camera.
 constexpr int kMaxIdleNodes = 3;
 // Maximum speed of a body without a warning [m/s]. People run at 3 to 6; only sprinters over 100 m reach 10.
 constexpr double kMaxSpeed = 9;
@@ -71,9 +72,8 @@ std::optional<std::string> warn_of_speed(const motion::KeyFrames& keys, double b
   return fmt::format("it moves at up to {:.3g} m/s; people who run reach {:g} m/s", fastest, kMaxSpeed);
 }
 
-// Warns of a body above the floor by the least height of its lowest point, since a body that jumps is above the floor
-// only at times. Warns of a body below the floor by the median height, since a body that rolls may dip into the floor
-// at times.
+// Compares the least height over the floor with the upper limit, because a body that jumps is above the floor only at
+// times. Compares the median height with the lower limit, because a body that rolls may reach into the floor at times.
 std::optional<std::string> warn_of_floor_distance(std::vector<double> lowest, bool alone) {
   if (lowest.empty()) return std::nullopt;
   std::ranges::sort(lowest);

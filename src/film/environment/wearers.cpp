@@ -18,8 +18,8 @@ const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) 
   return joints[character::joint_number(name)];
 }
 
-/// Axes of a body with its left side in the horizontal direction `left`. The origin is below `middle`, at the height of
-/// the lowest vertex.
+/// Axes of a body whose left side is in the horizontal direction `left`: x to the left, z up. The origin is below
+/// `middle`, at the height of the lowest vertex.
 Eigen::Isometry3d axes_at(const Vec3& middle, const Vec3& left, const StandingBody& standing, const Vec3& up) {
   double floor = std::numeric_limits<double>::infinity();
   for (const Vec3& x : standing.mesh.positions) floor = std::min(floor, up.dot(x));
@@ -46,8 +46,8 @@ std::optional<Eigen::Isometry3d> axes_by_joints(const StandingBody& standing, co
   return std::nullopt;
 }
 
-/// Adds the hands that a rig lacks, so that its arms are known: a hand is at the mean position of the skin of its arm
-/// beyond the elbow.
+/// Estimates the positions of hands that a rig lacks, because garment::Limb needs a hand: it is at the mean position of
+/// the skin of its arm beyond the elbow.
 void estimate_hands(const StandingBody& standing, Joints& joints) {
   for (const bool left : {true, false}) {
     const std::string side = left ? "Left" : "Right";
@@ -102,8 +102,8 @@ garment::Wearer make_wearer(const StandingBody& standing, const Eigen::Isometry3
   constexpr std::array kArm{"UpperArm", "LowerArm", "Hand"}, kLeg{"UpperLeg", "LowerLeg", "Foot"};
   wearer.left_arm = limb("Left", kArm), wearer.right_arm = limb("Right", kArm);
   wearer.left_leg = limb("Left", kLeg), wearer.right_leg = limb("Right", kLeg);
-  // Height of the base of the neck: of the joint Neck; else of Head, which is at this place in rigs without a neck;
-  // else estimated from the height of the body.
+  // Height of the base of the neck: that of the joint Neck. If a rig has no neck, its joint Head is at this place. If
+  // it has neither, the height of the body gives an estimate.
   double crown = 0;
   for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
   wearer.neck = garment::kNeckHeightRatio * crown;

@@ -18,12 +18,12 @@ class Wearers {
   /// The wearer of a cloth. Throws Error(scene_invalid) that begins with `where` if there is no character, if the cloth
   /// names no wearer and there are several characters, or if the wearer lacks bones or the joints that define its axes.
   const garment::Wearer& of(const scene::Cloth& cloth, const std::string& where);
-  /// The character of this name, which must exist. Throws Error(scene_invalid) if it lacks bones,
-  /// or has neither two UpperLeg joints nor two UpperArm joints.
+  /// The character with the name `name`, which must exist. Throws Error(scene_invalid) if it lacks bones, or has
+  /// neither two UpperLeg joints nor two UpperArm joints.
   const garment::Wearer& of(const std::string& name, const std::string& where);
-  /// The character of this name, which must exist, as the body that a sheet hangs from. If it lacks the joints that
-  /// define its axes, its origin is below its middle, and its x axis is that of the world. Throws Error(scene_invalid)
-  /// if it lacks bones.
+  /// The body from which a sheet hangs: the character with the name `name`, which must exist. If it lacks the joints
+  /// that define its axes, its origin is below the middle of its bounding box, and its x axis is that of the world.
+  /// Throws Error(scene_invalid) if it lacks bones.
   const garment::Wearer& carrier(const std::string& name, const std::string& where);
 
  private:
