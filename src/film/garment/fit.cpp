@@ -14,22 +14,20 @@
 namespace weft::garment {
 namespace {
 
-// Height of the hip joints as a fraction of the body height, for a wearer that lacks the joints of
-// a leg.
+// Height of the hip joints as a fraction of the body height, for wearers that lack the joints of a leg.
 constexpr double kHipHeightRatio = 0.52;
-// Height of the mannequin's waist as a fraction of its height. The bodies for which patterns are
-// drawn are assumed to have the same ratio.
+// Height of the mannequin's waist as a fraction of its height. The bodies for which patterns are drawn are assumed to
+// have the same ratio.
 constexpr double kWaistHeightRatio = 0.63;
-// Heights above the hip joints, as fractions of the distance from hip joints to neck: lower end of
-// the hips, lowest waist, highest waist, and highest armpits. Above the armpits, sections include the
-// shoulders.
+// Limits of the heights at which parts of the trunk are searched, above the hip joints, as fractions of the height from
+// hip joints to neck. The armpits have a limit because sections above them include the shoulders.
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kHighestArmpit = 0.75;
 // Distance between measured sections [m].
 constexpr double kSpacing = 0.01;
-// Maximum change of the girth per height at the waist: 2π, as of a cone whose surface is inclined by 45 degrees.
+// Maximum change of the girth per height at the waist: 2π, which is that of a cone with an inclination of 45 degrees.
 constexpr double kMaxGirthSlope = 2 * std::numbers::pi;
-// Minimum ratio of the wearer's hip girth to the waist girth of a garment that stays up (measured: at a ratio of 1.05
-// the garment slides down, at 1.16 it stays).
+// Minimum ratio of the wearer's hip girth to the waist girth of a garment at which the garment does not slide down. In
+// simulations, garments slide down at a ratio of 1.05 and stay at 1.16.
 constexpr double kMinHipToWaistRatio = 1.1;
 
 // Parts around which a garment that hangs from the waist has no panels.
@@ -49,7 +47,7 @@ double armpit_height(const Wearer& wearer) {
   return lowest;
 }
 
-// The tube around a part; absent if the part lacks joints, or skin that has sections.
+// The tube around a part. Absent if the part lacks joints, or if sections through its skin are too small.
 std::optional<Tube> find_tube(const Wearer& wearer, Around part) {
   try {
     return Tube(wearer, part);
@@ -58,8 +56,8 @@ std::optional<Tube> find_tube(const Wearer& wearer, Around part) {
   }
 }
 
-// Girth of the upper arms: that of the narrowest section in their middle, as other sections may contain skin of the
-// shoulder, of a bent forearm, or of something in the hand. Absent if an arm lacks joints, or skin that has sections.
+// Girth of the upper arms: that of the narrowest section in the middle of both. Other sections may contain skin of the
+// shoulder, of a bent forearm, or of an object in the hand. Absent if an arm has no tube (find_tube).
 std::optional<double> arm_girth(const Wearer& wearer) {
   constexpr double kBegin = 0.3, kEnd = 0.7;  // fractions of the upper arm
   double narrowest = std::numeric_limits<double>::infinity();
@@ -90,8 +88,9 @@ struct Trunk {
     for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
     return largest;
   }
-  // Height of the waist. Where the girth changes faster than kMaxGirthSlope with height, the skin is too inclined to
-  // hold a waistband. A body part can end there, such as the ball between chest and hips of a puppet.
+  // Height of the waist: of the narrowest section at which the skin is steep enough to hold a waistband. It is not
+  // where the girth changes faster than kMaxGirthSlope with height, such as at the end of the ball that joins chest and
+  // hips of a puppet.
   double waist() const {
     const auto is_upright = [&](double s) {
       return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=

@@ -8,17 +8,19 @@
 
 namespace weft::garment {
 
-/// Measures a wearer in its pose; its neck must be above its hip joints. Girths are those of convex sections of the
-/// body without the arms. Waist: the narrowest section between the heights kLowestWaist and kHighestWaist (fit.cpp);
-/// sections whose girth changes fast with height are excluded, except the lowest one. Chest: the
-/// widest section from the waist to the armpits (the lowest place where skin of an arm joins the
-/// trunk, at most kHighestArmpit). Hip: the widest section from kLowestHip to the waist. Arm: the
-/// narrowest section in the middle of both upper arms; absent if an arm lacks joints, or skin that
-/// has sections, as flat arms do. Height: that of the crown, rounded down to 1 cm. Throws
-/// Error(scene_invalid) if Tube refuses the body without the arms.
+/// Measures a wearer in its pose. Its neck must be above its hip joints. Girths are those of convex sections of the
+/// body without the arms; the limits of their heights are in fit.cpp.
+/// - Waist: the narrowest section between kLowestWaist and kHighestWaist. Sections whose girth changes fast with height
+///   do not count, except the lowest one.
+/// - Chest: the widest section from the waist to the armpits. The armpits are the lowest place at which skin of an arm
+///   joins the trunk, but at most kHighestArmpit.
+/// - Hip: the widest section from kLowestHip to the waist.
+/// - Arm: the narrowest section in the middle of both upper arms; absent if an arm lacks joints or is flat.
+/// - Height: that of the crown, rounded down to 1 cm.
+/// Throws Error(scene_invalid) if Tube refuses the body without the arms.
 Measures measure(const Wearer& wearer);
 
-/// How a pattern is changed for a wearer; for Pattern::scale_by().
+/// Change of a pattern for a wearer: the arguments of Pattern::scale_by().
 struct Fit {
   Vec2 factors{1, 1};  ///< on lengths of the pattern, across and up
   double rise = 0;     ///< of start positions that were multiplied by `factors` [m]

@@ -28,8 +28,8 @@ constexpr double kMinFlippedArea = 0.02;
 // Maximum number of particles of one garment, estimated as area of the panels / spacing².
 constexpr double kMaxParticles = 1e6;
 
-/// Makes a garment. A point belongs to the mesh of one panel; points are numbered through all panels. A vertex of the
-/// garment is a point, or several points that seams join.
+/// Makes a garment. A "point" belongs to the mesh of one panel; the points of all panels are numbered consecutively. A
+/// "vertex" belongs to the garment: it is a point, or several points that seams join.
 class Sewing {
  public:
   Sewing(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer)
@@ -102,7 +102,7 @@ class Sewing {
     }
   }
 
-  // The points of an edge, from its start.
+  // The points of an edge of a panel, in the order of the outline.
   std::vector<Index> chain(std::size_t panel, std::size_t edge) const {
     const auto& counts = segments_[panel];
     const Index begin = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(edge), 0);
@@ -111,7 +111,7 @@ class Sewing {
     for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_point_[panel] + (begin + k) % around);
     return points;
   }
-  // Start position of a point of a flat panel before seams join it to other panels [m].
+  // Start position (across, up) of the point `p` of a flat panel, before seams join the panel to others [m].
   Vec2 start_position(std::size_t panel, const Vec2& p) const {
     const Panel& of = pattern_.panels[panel];
     const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
@@ -121,10 +121,10 @@ class Sewing {
     return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Joins the points of both edges of each seam, except closures. The points of the second edge are
-  // taken in one of two directions. For flat panels, this is the direction in which the first and
-  // last points of both edges are closer together at the start. For bent panels, and for closed edges such as a whole
-  // outline, it is the direction in which the fronts of both panels face outward.
+  // Joins the points of both edges of each seam, except closures. The points of the second edge can correspond to those
+  // of the first in two directions. For flat panels, uses the direction in which the first and last points of both
+  // edges are closer together at the start. For bent panels, and for closed edges such as a whole outline, uses the
+  // direction in which the fronts of both panels face outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     for (const Seam& seam : pattern_.seams) {
@@ -148,9 +148,9 @@ class Sewing {
     }
   }
 
-  /// Flips inner edges of a panel that connect the same two vertices as an edge of another panel.
-  /// The cause of these edges: two panels are sewn together around a corner, and in both a triangle
-  /// cuts off the corner. Of two such edges, flips that in the panel of higher index.
+  /// Flips inner edges of a panel that connect the same two vertices as an edge of another panel. Such edges occur if
+  /// two panels are sewn together around a corner, and a triangle cuts off the corner in both. Of two such edges, flips
+  /// the edge of the panel with the higher index.
   void flip_shared_edges() {
     constexpr int kMaxFlipRounds = 8;  // rarely, edges remain; check_surface() then refuses the pattern
     for (int round = 0; round < kMaxFlipRounds; ++round) {
@@ -168,7 +168,7 @@ class Sewing {
     const Index u = sewn_together_.root(first_point_[panel] + a), v = sewn_together_.root(first_point_[panel] + b);
     return {std::min(u, v), std::max(u, v)};
   }
-  // `triangles_at`: number of triangles at each edge of the garment. Returns whether it flipped an edge.
+  // `triangles_at`: number of triangles at each edge of the garment. Returns whether any edge was flipped.
   bool flip_shared_edges_of_panel(std::size_t panel, std::map<JoinedEdge, int>& triangles_at) {
     std::vector<mesh::Triangle>& triangles = meshes_[panel].triangles;
     const std::vector<Vec2>& points = meshes_[panel].points;
@@ -235,7 +235,7 @@ class Sewing {
           joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // A panel drawn from the inside shows the back of the cloth: exchange left and right.
+        // The drawing of a panel from the inside shows the back of the cloth. Exchanges left and right.
         if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
@@ -315,7 +315,7 @@ class Sewing {
       }
   }
 
-  // A band along an edge; its rest lengths are those of the edge in the pattern.
+  // A band along an edge, with the rest lengths that the edge has in the pattern.
   mesh::Band band_along(const std::string& edge) const {
     const auto [p, e] = pattern_.find(edge);
     const std::vector<Index> points = chain(p, e);
@@ -335,7 +335,7 @@ class Sewing {
       if (seam.is_closure()) continue;
       const SewnSeam& sewn = garment_.seams[s++];
       if (seam.allowance == 0 || sewn.vertices.size() < 2) continue;
-      // The length of an eased-in seam is the mean length of its two edges.
+      // If the edges of a seam differ in length, the seam has their mean length.
       const double mean = 0.5 * (sewn.length_a + sewn.length_b);
       mesh::Band band{.vertices = sewn.vertices, .lengths = {}, .allowance = seam.allowance};
       band.lengths.assign(band.vertices.size() - 1, mean / static_cast<double>(band.vertices.size() - 1));
@@ -353,9 +353,9 @@ class Sewing {
     }
   }
 
-  // Adds the ties of closures. Of the two directions of the second edge, uses the one in which the
-  // first and last points of both edges are closer together at the start; if an edge is a loop, the
-  // one in which the fronts of both panels face outward.
+  // Adds the ties of closures. Of the two directions of the second edge, uses the one in which the first and last
+  // points of both edges are closer together at the start. If an edge is a loop, uses the direction in which the fronts
+  // of both panels face outward.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
@@ -382,7 +382,7 @@ class Sewing {
       };
       // As for other seams, the length is the mean length of both edges.
       const double length = 0.5 * (length_of(seam.a) + length_of(seam.b));
-      // If both edges are closed, each begins and ends with the same particle, which gets one tie.
+      // If both edges are closed, the first and last entry of each is the same particle, which gets only one tie.
       const bool ring = last > 0 && a.front() == a.back() && b.front() == b.back();
       const std::size_t places = ring ? last : a.size();
       // At most one tie per pair of particles, even if there are more buttons.
@@ -413,10 +413,10 @@ class Sewing {
   const Pattern& pattern_;
   double spacing_;
   const std::string& where_;
-  const Wearer* wearer_;                    // null: panels start flat
-  std::vector<std::vector<int>> segments_;  // per panel and edge
-  std::vector<FlatMesh> meshes_;            // per panel
-  std::vector<Index> first_point_;          // of each panel
+  const Wearer* wearer_;                    // null if panels start flat
+  std::vector<std::vector<int>> segments_;  // number of segments, per panel and edge
+  std::vector<FlatMesh> meshes_;            // mesh of each panel
+  std::vector<Index> first_point_;          // number of the first point of each panel
   Index point_count_ = 0, vertex_count_ = 0;
   DisjointSets sewn_together_{0};
   std::vector<Index> vertex_of_point_;  // vertex of each point

@@ -9,9 +9,9 @@
 
 namespace weft::garment {
 
-/// Finds positions x of vertices in N dimensions [m]. Each triangle gives positions p of its own corners; triangles
-/// that share a vertex may give different ones. x minimises Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all
-/// triangles, plus anchor · Σ ‖x_i − p_i‖² over the corners of all triangles.
+/// Finds positions x of vertices in N dimensions [m]. Each triangle has given positions p of its corners; triangles
+/// that share a vertex may have different positions for it. x minimises Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides
+/// of all triangles, plus anchor · Σ ‖x_i − p_i‖² over the corners of all triangles.
 template <int N>
 class LeastSquaresPositions {
  public:

@@ -9,14 +9,15 @@
 namespace weft::garment {
 namespace {
 
-// Maximum number of curves in path data; the drawn outline of a panel has about twenty.
+// Maximum number of curves in path data. The outline of a panel usually has about twenty.
 constexpr std::size_t kMaxCurves = 10000;
 // Maximum absolute value of a number in path data; a larger number is reported as a mistake.
 constexpr double kMaxCoordinate = 1e6;
-// Number of straight pieces for measuring the length of a curve; relative error for a quarter circle: 2e-6.
+// Number of straight pieces that approximate a curve to measure its length. The relative error for a quarter circle is
+// 2e-6.
 constexpr int kPiecesPerCurve = 256;
-// Minimum angle between two consecutive curves that counts as a corner [rad]. Curves that form one smooth line of
-// a drawing meet at angles of 1 or 2 degrees, seam and hem at 60 degrees or more.
+// Two consecutive curves meet at a corner if the angle between them is larger than this [rad]. Curves of one smooth
+// line of a drawing meet at 1 or 2 degrees, seam and hem at 60 degrees or more.
 constexpr double kMinCornerAngle = 25 * std::numbers::pi / 180;
 
 Curve quadratic(const Vec2& from, const Vec2& control, const Vec2& to) {
@@ -41,8 +42,8 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
     outline.push_back(straight(from, to));
     return;
   }
-  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. Radii that
-  // are too small to reach both end points are enlarged.
+  // In the frame of the ellipse, with its radii as units, the arc lies on a unit circle. If the radii are too small for
+  // the ellipse to reach both end points, enlarges them.
   const Vec2 half = turn.inverse() * Vec2(0.5 * (from - to));
   const double radius_ratio = half.cwiseQuotient(r).norm();
   if (radius_ratio > 1) r *= radius_ratio;
@@ -161,7 +162,7 @@ class PathReader {
       if (kind == 'M' && first) {
         pen_ = first_ = point(relative);
         started_ = true;
-        last_ = 'M';  // an S or T after it has no handle to reflect
+        last_ = 'M';  // if S or T follows, there is no control point to reflect
       } else {
         draw(kind == 'M' ? 'L' : kind, relative);
       }
@@ -170,14 +171,14 @@ class PathReader {
     } while (result_.mistake.empty() && number_follows());
   }
 
-  // Whether the pen is at the start, within 1e-6 of the diagonal of the outline: coordinates in the
-  // data are rounded.
+  // Whether the pen is at the start of the outline. Tolerates 1e-6 of the diagonal of the outline, because coordinates
+  // in the data are rounded.
   bool is_at_start() const { return (pen_ - first_).norm() <= 1e-6 * std::max(1e-9, (farthest_ - nearest_).norm()); }
 
   void close() {
     closed_ = true;
     if (!is_at_start()) return add(straight(pen_, first_));
-    // Remove the rounding error: move the end to the start.
+    // Moves the end exactly to the start, to remove the rounding error.
     if (!outline_.empty()) outline_.back().control[3] = first_;
     pen_ = first_;
   }
@@ -265,8 +266,8 @@ ParsedPath parse_path(std::string_view data) {
 }
 
 bool has_corner(const Curve& before, const Curve& after) {
-  // Step of the curve parameter over which tangents are measured. The derivative at an end is no
-  // measure: it is 0 if control points coincide there.
+  // Step of the curve parameter over which tangents are measured. The derivative at the end cannot be used, because it
+  // is 0 if control points coincide there.
   constexpr double kEndOffset = 1e-3;
   const Vec2 in = before.end() - before.at(1 - kEndOffset), out = after.at(kEndOffset) - after.start();
   return std::abs(angle_between(in, out)) > kMinCornerAngle;

@@ -27,8 +27,8 @@ using scene::TableBuilder;
 using scene::Type;
 using scene::within;
 
-// Maximum distance of control points of a fold edge from a straight line, as a fraction of the
-// edge's length; allows for rounded coordinates.
+// Maximum distance of control points of a fold edge from a straight line, as a fraction of the edge's length. It is not
+// 0, because coordinates are rounded.
 constexpr double kMaxFoldDeviation = 1e-3;
 // Maximum width and height of a panel [m].
 constexpr double kMaxPanelSize = 100;
@@ -104,10 +104,10 @@ const Table& panel_rules() {
   return kTable;
 }
 
-// Appends the edge name of each curve to `names`; all pieces of an arc get one name. `text` has one
-// name per curve or, in a drawing (`drawn`), one name per edge from corner to corner, since drawing
-// programs cut edges into many curves. If `text` is empty, the names are 1, 2, 3 and so on, one per
-// curve. Returns a description of a mistake, or an empty string.
+// Appends the edge name of each curve to `names`; all pieces of an arc get the same name. `text` has one name per
+// curve. In a drawing (`drawn`), it may instead have one name per edge from corner to corner, because drawing programs
+// split edges into many curves. If `text` is empty, the names are 1, 2, 3 and so on, one per curve. Returns a
+// description of a mistake, or an empty string.
 std::string name_curves(const std::string& text, const Outline& outline, bool drawn, std::vector<std::string>& names) {
   std::istringstream stream(text);
   std::vector<std::string> words;
@@ -153,9 +153,9 @@ std::string name_across_fold(const std::string& name) {
   return name + "_2";
 }
 
-/// Completes a panel of which the outline is one half: removes the edge named `fold` and appends the mirror image of
-/// the rest. The edges that end at the fold keep their names beyond it. Returns a description of a mistake, or an empty
-/// string.
+/// Completes a panel whose outline is only one half: removes the edge named `fold` and appends the mirror image of the
+/// other edges. An edge that ends at the fold and its mirror image become one edge. Returns a description of a mistake,
+/// or an empty string.
 std::string unfold(const std::string& fold, Outline& outline, std::vector<std::string>& names) {
   const std::size_t n = outline.size();
   std::size_t first = 0;
@@ -188,8 +188,8 @@ std::string unfold(const std::string& fold, Outline& outline, std::vector<std::s
   return {};
 }
 
-/// Completes a mirror image: copies the keys that it lacks from its original `from`, with left and right exchanged.
-/// `entry`: key path of the mirror image.
+/// Completes `panel`, a mirror image of `from`: copies the keys that it lacks, with left and right exchanged. `entry`:
+/// key path of `panel`.
 void copy_from_original(const Panel& from, const std::string& entry, const Findings& findings, Panel& panel) {
   const auto is_given = [&](const char* key) { return findings.has(fmt::format("{}.{}", entry, key)); };
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
@@ -217,7 +217,7 @@ std::optional<DrawnPanel> read_outline(const Panel& panel, const std::string& pa
   if (panel.path.empty()) try {
       return load_svg_panel(panel.file, panel.id);
     } catch (const Error& error) {
-      // Report the message only once, since all panels of an unreadable drawing give the same message.
+      // Reports a message only once, because all panels of an unreadable drawing cause the same message.
       if (std::ranges::find(in_drawings, error.what()) == in_drawings.end()) in_drawings.emplace_back(error.what());
       return std::nullopt;
     }
@@ -248,7 +248,7 @@ void complete_mirror_image(std::vector<Panel>& panels, std::size_t i, Findings& 
 /// Derives the edges of a panel from its outline, and reports mistakes in the outline.
 void derive_edges(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
-    if (!panel.mirror_of.empty()) return;  // its original has no outline or does not exist; both are reported
+    if (!panel.mirror_of.empty()) return;  // the mistake in the original is already reported
     if (!findings.has_mistake(path + ".path") && !findings.has_mistake(path + ".file"))
       findings.report(path, "expected an outline, as path, as file and id or as mirror_of, got none");
     return;
@@ -303,8 +303,8 @@ class EdgeNames {
     }
   }
   void check(const std::string& name, const std::string& key) {
-    // A panel with a mistake in its outline has no edges. If there is such a panel, report no
-    // unknown edges: the mistake itself is already reported.
+    // A panel with a mistake in its outline has no edges. If there is such a panel, unknown edges are not reported,
+    // because they may be edges of this panel, whose mistake is already reported.
     if (has_invalid_panel_ || findings_.has_mistake(key) || std::ranges::find(known_, name) != known_.end()) return;
     findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
                                       scene::in_quotes(name), scene::suggestion(name, known_)));

@@ -23,19 +23,18 @@ struct PanelEdge {
   std::vector<Curve> curves;  ///< counter-clockwise around the panel [m]
 };
 
-/// A flat piece of cloth. If it has a side, it is drawn as seen from in front of the wearer, else as seen from outside
-/// the garment. "Part" means a part of the wearer's body, such as an arm.
+/// A flat piece of cloth. If it has a side, its outline is drawn as seen from in front of the wearer, otherwise as seen
+/// from outside the garment. "Part" means a part of the wearer's body, such as an arm.
 struct Panel {
   std::string name;
   std::optional<Side> side;    ///< side of the wearer that the panel covers; absent: see `angle`
   std::string path;            ///< SVG path data of the outline in metres, y upward; empty: see `file`
   std::filesystem::path file;  ///< SVG drawing with the outline; empty: see `path`
   std::string id;              ///< id, label or number of the element in the drawing
-  /// Names of the curves, separated by spaces, in drawing order. For a `file`, the text may instead
-  /// have one name for each edge from corner to corner. Empty: the names in the drawing; without
-  /// those, the numbers 1, 2, 3 and so on.
+  /// Names of the curves, separated by spaces, in the order of the outline. For a `file`, the text may instead have one
+  /// name for each edge from corner to corner. Empty: the names in the drawing; without those, 1, 2, 3 and so on.
   std::string edge_names;
-  std::string fold;       ///< mirroring the outline at this edge gives the whole panel; empty: none
+  std::string fold;       ///< edge at which the outline must be mirrored for the whole panel; empty: none
   double grain = 0;       ///< warp direction, counter-clockwise from the panel's y axis [degrees]
   std::string mirror_of;  ///< panel of which this one is the mirror image; empty: none
   /// Part around which the panel starts bent. If any panel of the pattern has a part or an `angle`, `none` means the
@@ -45,8 +44,8 @@ struct Panel {
   /// `side`, the outside for arms, else the front.
   std::optional<double> angle;
   int layer = 0;  ///< number of layers of panels between this panel and the skin of its part
-  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel (0, 0); for a
-  /// bent panel 0 across, and up the position at which its seams are shortest.
+  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel (0, 0); for a bent panel, 0 across,
+  /// and the height at which its seams are shortest.
   std::optional<Vec2> position;
   double rotation = 0;  ///< rotation of the drawing at the start, counter-clockwise [degrees]
   Vec2 scale{1, 1};     ///< factors on the lengths of the start shape, across and up the drawing
@@ -54,7 +53,7 @@ struct Panel {
   /// sewn.
   bool turned = false;
 
-  /// Fabric of the panel relative to that of the garment, such as an ironed-on lining (fusing).
+  /// Stiffness and density of the panel relative to those of the garment, such as for an ironed-on lining (fusing).
   mesh::Reinforcement reinforcement;
 
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
@@ -63,12 +62,12 @@ struct Panel {
   bool from_inside() const { return (side == Side::back) != turned; }
 };
 
-/// Sews two edges together. Both get mesh points at the same fractions of their lengths, so that the surplus length of
-/// the longer edge is spread evenly (eased in). A seam with `buttons`, `open`, `closed` or `tearing_load` is a closure:
-/// its edges stay separate, and ties (mesh::Tie) hold their points together while the closure is closed.
+/// Sews two edges together. Both edges get mesh points at the same fractions of their lengths, so that the additional
+/// length of the longer edge is distributed evenly. A seam with `buttons`, `open`, `closed` or `tearing_load` is a
+/// closure: its edges stay separate, and ties (mesh::Tie) hold their points together while the closure is closed.
 struct Seam {
   std::string a, b;  ///< the edges, as "panel.edge"
-  /// Number of ties, at most one for each pair of points; 0: one for each pair, as in a zip.
+  /// Number of ties, at most one for each pair of points. 0: one for each pair, as in a zip.
   int buttons = 0;
   std::optional<double> open, closed;  ///< times at which the closure opens and closes [s]; absent: never
   double strength = 2;                 ///< maximum force of each tie [N]; unused if there is a `tearing_load`
@@ -98,9 +97,10 @@ struct Measures {
   std::optional<double> chest, waist, hip, arm, height;
 };
 
+/// The content of a pattern file.
 struct Pattern {
   std::filesystem::path file;
-  Measures measures;  ///< of the body for which the pattern is drawn; each may be absent
+  Measures measures;  ///< measures of the body for which the pattern is drawn; each may be absent
   /// Start distance of flat front and back panels from the wearer's coronal plane, which separates front from back [m].
   /// The distance decreases to 0 toward the seams that join front and back.
   double depth = 0.16;
@@ -112,10 +112,10 @@ struct Pattern {
 
   /// Whether panels start bent around parts of the wearer; otherwise they start flat.
   bool has_bent_panels() const;
-  /// Multiplies outlines and start positions by `factors` (across and up, as the panels start: after `rotation`), and
-  /// `depth` by the factor across. Start positions of flat panels and of panels around parts other than arms then rise
-  /// by `rise` [m]. A bent panel without a position follows the panels to which it is sewn. All other members keep
-  /// their values.
+  /// Multiplies outlines and start positions by `factors`: across and up at the start, that is, after `rotation`.
+  /// Multiplies `depth` by the factor across. Then moves the start positions of all panels except those around arms
+  /// upward by `rise` [m]. The position of a bent panel without a position follows from its seams. All other members
+  /// keep their values.
   void scale_by(const Vec2& factors, double rise = 0);
   /// Indices of the panel and of its edge for a name "panel.edge" of a checked pattern. Throws Error(internal) if the
   /// pattern has no such edge.
@@ -131,12 +131,12 @@ struct ReadPattern {
   /// One line per mistake, starting with file:line:column. Mistakes of the pattern file come before those of its
   /// drawings.
   std::vector<std::string> mistakes;
-  bool only_in_drawings = false;  ///< there are mistakes, all of them in drawings
+  bool only_in_drawings = false;  ///< whether there are mistakes, but none in the pattern file itself
 };
 
 /// Reads and checks a pattern file and its drawings. The file is TOML, or a specification in JSON
-/// (garment/specification.hpp). Mistakes, including unreadable files, are in the result. Throws
-/// Error(asset_unreadable) only if a parser throws an unexpected exception.
+/// (garment/specification.hpp). The result lists all mistakes, also unreadable files. Throws Error(asset_unreadable)
+/// only if a parser throws an unexpected exception.
 ReadPattern read_pattern(const std::filesystem::path& file);
 
 /// Reads a pattern that must be free of mistakes. Otherwise throws Error with all mistakes after `where`, which names

@@ -24,16 +24,16 @@ using scene::Findings;
 
 // Upper bound of the absolute value of each number in a list, such as coordinates in units of the file.
 constexpr double kMaxSpecCoordinate = 1e5;
-constexpr double kDefaultUnitsPerMetre = 100;  // if the file states no unit: centimetres
+constexpr double kDefaultUnitsPerMetre = 100;  // centimetres, for files that state no unit
 // In files of the Garment-Pattern-Generator, the predecessor of GarmentCode, the origin lies between pelvis and chest,
 // at this height above the floor [m].
 constexpr double kPredecessorOrigin = 1.12;
 // Measures of the bodies for which patterns of GarmentCode and of its predecessor are drawn [m].
 constexpr Measures kBody{.chest = 0.998, .waist = 0.843, .hip = 1.035, .arm = {}, .height = 1.72};
 constexpr Measures kPredecessorBody{.chest = 0.98, .waist = 0.81, .hip = 1.04, .arm = {}, .height = 1.66};
-// A file counts as one of the predecessor if it has the predecessor's format of curves, or if its lowest point, in
-// heights of the file, is below kMinLowestPanel [m]. The limit is negative, since flat trousers of GarmentCode may end
-// below the floor.
+// A file counts as one of the predecessor if it has the predecessor's format of curves, or if the lowest height in the
+// file is below kMinLowestPanel [m]. The limit is negative, because flat trousers of GarmentCode may end below the
+// floor.
 constexpr double kMinLowestPanel = -0.2;
 // Maximum distance by which a leg panel crosses the middle of the body, relative to the distance of its own middle from
 // there. Trousers of the predecessor for legs apart cross by 2 %.
@@ -41,13 +41,13 @@ constexpr double kMaxMiddleCrossing = 0.05;
 // Minimum height above the floor at which the lowest point of a GarmentCode pattern starts [m].
 constexpr double kMinStartHeight = 0.02;
 
-/// The axis direction of the drawing (up, down, left or right) that is nearest to `direction`.
+/// The direction along an axis of the drawing (up, down, left or right) that is nearest to `direction`.
 Vec2 nearest_axis(const Vec2& direction) {
   return std::abs(direction.x()) > std::abs(direction.y()) ? Vec2(direction.x() > 0 ? 1 : -1, 0)
                                                            : Vec2(0, direction.y() > 0 ? 1 : -1);
 }
 
-/// Text of a value in messages.
+/// Text of a value for messages, shortened to 40 characters.
 std::string text_of(const json& value) {
   return sorted_json_text(value).substr(0, 40);
 }
@@ -100,8 +100,8 @@ class Reader {
     mistake(path, fmt::format("expected \"{}\" of a specification of GarmentCode, got none", name));
     return nullptr;
   }
-  /// The numbers of a list. If `value` is no list of `count` numbers below kMaxSpecCoordinate,
-  /// reports a mistake and returns nothing.
+  /// The numbers of a list. If `value` is no list of `count` numbers below kMaxSpecCoordinate, reports a mistake for
+  /// the key `key` and returns nothing.
   std::optional<std::vector<double>> numbers(const json& value, std::size_t count, const std::string& key) {
     std::vector<double> list;
     if (value.is_array())
@@ -183,8 +183,8 @@ class Reader {
     edges.push_back(std::move(edge));
   }
 
-  /// A control point of an edge. `p` are coordinates of the panel if has_absolute_curvature_; else they count along the
-  /// edge and to its left, in units of the edge's length.
+  /// A control point of an edge. If has_absolute_curvature_, `p` has coordinates of the panel; otherwise, coordinates
+  /// along the edge and to its left, in units of the edge's length.
   Vec2 control_point(const SpecEdge& edge, const std::vector<double>& p) const {
     if (has_absolute_curvature_) return {unit_ * p[0], unit_ * p[1]};
     const Vec2 along = edge.end - edge.start;
@@ -255,7 +255,7 @@ class Reader {
     return std::ranges::any_of(words, [&](const char* w) { return panel.words.find(w) != std::string::npos; });
   }
   /// Whether a panel belongs to a leg: it lies on one side of the body, and an edge near the inside of the leg is sewn
-  /// to a panel of the same side that faces the other way.
+  /// to a panel on the same side that faces in the opposite direction.
   bool has_inseam(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     double inner = std::numeric_limits<double>::infinity(), outer = 0, low = inner, high = -inner;
@@ -294,7 +294,7 @@ class Reader {
       else if (mentions(panel, {"collar", "turtle"}))
         panel.around = Around::neck;
     }
-    // Sets limbs_to_trunk, by a breadth-first search along stitches from the trunk.
+    // Sets SpecPanel::limbs_to_trunk by a breadth-first search along stitches from the trunk.
     for (int step = 0; step < static_cast<int>(panels_.size()); ++step)
       for (const SpecStitch& stitch : stitches_)
         for (const std::size_t k : {0, 1}) {
@@ -306,9 +306,9 @@ class Reader {
         }
   }
 
-  /// Direction toward the trunk in the drawing of an arm panel. Files draw arm panels in any of
-  /// four orientations. Therefore the direction follows from the edges that are sewn to the trunk
-  /// or to a limb panel nearer to the trunk. Returns (0, 1) if there are no such edges.
+  /// Direction toward the trunk in the drawing of an arm panel. Files draw arm panels in any of four orientations.
+  /// Therefore the direction is derived from the edges that are sewn to the trunk or to a limb panel nearer to the
+  /// trunk. Returns (0, 1) if there are no such edges.
   Vec2 direction_to_trunk(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     Vec2 cap(0, 0);
@@ -327,13 +327,13 @@ class Reader {
     return nearest_axis((cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9)));
   }
 
-  /// The map from the drawing of a panel to the panel as worn, seen from outside.
+  /// The linear map from the drawing of a panel to its orientation when worn, seen from outside with y up.
   Eigen::Affine2d map_to_worn(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     const Vec2 mirror(panel.mirrored ? -1 : 1, 1);
     const bool arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
     Vec2 up(0, 1);
-    // Legs may be drawn spread, at an angle; the panel then starts upright.
+    // Files may draw legs apart, at an angle to the vertical. Such a panel starts upright.
     if (arm)
       up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
@@ -352,8 +352,8 @@ class Reader {
         for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
     const bool from_predecessor = is_predecessor_ || lowest < kMinLowestPanel;
     pattern.measures = from_predecessor ? kPredecessorBody : kBody;
-    // Trousers are drawn lower than they are worn. If a GarmentCode pattern would start lower than
-    // kMinStartHeight, raise it to this height.
+    // Trousers are drawn lower than they are worn. If a GarmentCode pattern would start lower than kMinStartHeight, it
+    // is raised to this height.
     const double floor = from_predecessor ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& of = panels_[p];
@@ -372,7 +372,7 @@ class Reader {
       const Vec3 across(std::cos(angle), 0, -std::sin(angle));
       panel.position = Vec2(across.dot(of.translation), of.translation.y() - floor);
       if (of.is_limb()) {
-        // Centre the lower end of a limb panel on the axis of the limb.
+        // Centres the lower end of a limb panel on the axis of the limb.
         double low = std::numeric_limits<double>::infinity();
         std::vector<Vec2> points;
         for (const auto& each : of.points)
@@ -383,7 +383,8 @@ class Reader {
         map.pretranslate(Vec2(-0.5 * (left + right), 0));
         panel.position->x() = 0;
       }
-      // At arms and neck, bodies differ too much for the positions of the file: seams determine them.
+      // Seams determine the positions of panels around arms and neck, because bodies differ too much there for the
+      // positions of the file.
       if (arm || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
       panel.turned = of.turned;
@@ -403,9 +404,8 @@ class Reader {
     }
   }
 
-  /// Places each turned panel on top of the panels to which right_wrong stitches join it, one layer
-  /// above. Both edges of such a seam run in the same direction, so that their points correspond in
-  /// order.
+  /// Places each turned panel one layer above the panels to which right_wrong stitches join it. Both edges of such a
+  /// stitch run in the same direction, so that their points correspond in order.
   void place_turned_panels(Pattern& pattern) const {
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       Panel& panel = pattern.panels[p];
@@ -420,8 +420,8 @@ class Reader {
           for (const Vec2& x : ends_as_worn(q, stitch.edge[1 - k])) other.push_back(*under.position + x);
         }
       if (own.empty()) continue;
-      // The rigid motion in the plane that maps the edges of the turned panel to those of the panels below it, by least
-      // squares (Kabsch).
+      // Finds the rigid motion in the plane that maps the edges of the turned panel to those of the panels below it, by
+      // least squares (W. Kabsch, "A solution for the best rotation to relate two sets of vectors", 1976).
       const auto count = static_cast<double>(own.size());
       const Vec2 from = std::accumulate(own.begin(), own.end(), Vec2(0, 0)) / count;
       const Vec2 to = std::accumulate(other.begin(), other.end(), Vec2(0, 0)) / count;
@@ -434,7 +434,7 @@ class Reader {
       panel.position = to - Eigen::Rotation2Dd(panel.rotation * kDegree) * from;
     }
   }
-  /// Start, middle and end of an edge, as worn.
+  /// Start, middle and end of an edge in the orientation of map_to_worn().
   std::array<Vec2, 3> ends_as_worn(std::size_t p, std::size_t e) const {
     const auto& points = panels_[p].points;
     const Eigen::Affine2d& worn = panels_[p].worn;
@@ -443,7 +443,7 @@ class Reader {
 
   const std::string& text_;
   Findings& findings_;
-  double unit_ = 1 / kDefaultUnitsPerMetre;  // [m]
+  double unit_ = 1 / kDefaultUnitsPerMetre;  // unit of the file [m]
   bool has_absolute_curvature_ = false, is_predecessor_ = false, has_mistakes_ = false;
   std::vector<SpecPanel> panels_;
   std::vector<SpecStitch> stitches_;

@@ -47,8 +47,8 @@ void derive_geometry(SpecPanel& panel) {
   }
   panel.mirrored = polygon_area(around) < 0;
   panel.area = std::abs(polygon_area(around));
-  // Adding zero turns −0 into 0. Otherwise the angle of a panel at the back (specification.cpp) would be −180° instead
-  // of 180°.
+  // Adding zero changes −0 to 0. Without this, the angle of a panel at the back (specification.cpp) would be −180°
+  // instead of 180°.
   panel.outward = panel.rotation.col(2) * (panel.mirrored ? -1 : 1) + Vec3::Zero();
   Vec2 low = around[0], high = around[0];
   for (const Vec2& p : around) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -57,7 +57,7 @@ void derive_geometry(SpecPanel& panel) {
 
 std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches) {
   std::vector<int> turns(panels.size(),
-                         -1);  // side relative to the first panel of each connected set: 0 same, 1 other, −1 unknown
+                         -1);  // relative to the first panel of a connected set: 0 same side, 1 other, −1 unknown
   for (std::size_t first = 0; first < panels.size(); ++first) {
     if (turns[first] >= 0) continue;
     std::vector<std::size_t> together{first};

@@ -16,52 +16,51 @@ namespace weft::garment {
 struct SpecEdge {
   Vec2 start, end;
   std::vector<Vec2> control;              // inner control points; empty: straight line or arc
-  double radius = 0;                      // of a circular arc [m]; 0: no arc
+  double radius = 0;                      // radius of a circular arc [m]; 0: no arc
   bool large_arc = false, sweep = false;  // flags of an SVG arc, for y upward
   bool has_length() const { return (end - start).norm() > 1e-9; }
 };
 
-/// A stitch from one edge to another.
+/// A stitch that joins two edges: edge[0] of panel[0] and edge[1] of panel[1] (indices).
 struct SpecStitch {
   std::array<std::size_t, 2> panel, edge;
   bool right_wrong = false;  // the outer (right) side of one panel continues the inner (wrong) side of the other
 };
 
+/// A panel of the specification. "Drawing": its flat outline; "in space": as placed around the body of the file.
 struct SpecPanel {
   std::string name, words;  // words: name and label, in lower case
   std::vector<SpecEdge> edges;
   Mat3 rotation = Mat3::Identity();
   Vec3 translation{0, 0, 0};  // [m]
-  // derive_geometry() sets points, mirrored, outward, middle and area; find_turned_panels() sets turned; the reader
-  // (specification.cpp) sets around, limbs_to_trunk and worn.
-  std::vector<std::vector<Vec2>> points;  // sample points per edge, without its end
-  bool mirrored = false;                  // drawn clockwise, that is, as seen from the inside
+  // The members below are derived: derive_geometry() sets points, mirrored, outward, middle and area;
+  // find_turned_panels() sets turned; the reader (specification.cpp) sets around, limbs_to_trunk and worn.
+  std::vector<std::vector<Vec2>> points;  // per edge: sample points from its start, without its end [m]
+  bool mirrored = false;                  // whether it is drawn clockwise, that is, as seen from the inside
   Vec3 outward{0, 0, 1};                  // normal that points away from the body
-  Vec3 middle{0, 0, 0};                   // of the bounding box of the outline, in space [m]
+  Vec3 middle{0, 0, 0};                   // middle of the bounding box of the outline, in space [m]
   Around around = Around::torso;
-  // Number of limb panels between this one and the trunk; -1: this is no limb panel, or stitches do
-  // not join it to the trunk.
+  // Number of limb panels between this one and the trunk. -1: this is no limb panel, or no chain of stitches joins it
+  // to the trunk.
   int limbs_to_trunk = -1;
   double area = 0;      // [m²]
   bool turned = false;  // folded over like a lapel; see Panel::turned
-  // Map from the drawing to the panel as worn, seen from outside.
+  // Map from the drawing to the panel when worn, seen from outside.
   Eigen::Affine2d worn = Eigen::Affine2d::Identity();
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
   bool is_limb() const { return around >= Around::left_arm; }
 };
 
-/// SVG path data of a panel whose points are transformed by `map`, which must preserve lengths
-/// (radii are not scaled).
+/// SVG path data of the outline, transformed by `map`, which must preserve lengths (radii are not scaled).
 std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map);
 
 /// Sets `points`, `mirrored`, `outward`, `middle` and `area` from the edges and the placement of a panel.
 void derive_geometry(SpecPanel& panel);
 
-/// Sets `turned` of all panels. The right_wrong stitches split each connected set of panels into
-/// two sides; the panels of the side with the smaller total area are turned. If a closed chain of
-/// stitches would turn a panel over, returns the index of one of its stitches; otherwise returns
-/// nothing.
+/// Sets `turned` of all panels. The right_wrong stitches divide each connected set of panels into two sides; the panels
+/// on the side with the smaller total area are turned. If a closed chain of stitches would turn a panel over, returns
+/// the index of a stitch of this chain; otherwise returns nothing.
 std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches);
 
 }  // namespace weft::garment

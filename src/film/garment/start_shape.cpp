@@ -11,9 +11,9 @@
 namespace weft::garment {
 namespace {
 
-// Weight of the term that holds each vertex at the start position of its panel, relative to the
-// weight of an edge. The weight is so small that this term hardly changes lengths, but it determines
-// where each connected set of panels starts.
+// Weight of the term that pulls each vertex to the start position of its panel, relative to the weight of an edge. The
+// weight is so small that this term hardly changes lengths, but it determines where each connected set of panels
+// starts.
 constexpr double kAnchorWeight = 1e-4;
 // Number of smoothing rounds of inflate().
 constexpr int kSmoothingRounds = 10;
@@ -26,7 +26,7 @@ double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
 
 using VertexPair = std::array<Index, 2>;
 
-// The sides of all triangles as pairs of vertices: index 0 front panels, 1 back panels.
+// The sides of all triangles as pairs of vertices. Index 0: of front panels; 1: of back panels.
 std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) {
   std::array<std::set<VertexPair>, 2> sides;
   for (const LaidPanel& panel : panels)
@@ -38,8 +38,8 @@ std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) 
   return sides;
 }
 
-// In each round, moves each vertex with `free` set halfway to the mean position of its neighbours
-// before the round.
+// In each round, moves each vertex whose `free` is set halfway to the mean position that its neighbours had before the
+// round.
 void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
   for (int round = 0; round < kSmoothingRounds; ++round) {
     const std::vector<Vec3> before = x;
@@ -83,7 +83,7 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
     d = free[v] ? std::min(d, depth) : 0;
     x[v] = {plane[v].x(), side_sign[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
   }
-  // Smoothing keeps the rims of openings at their positions.
+  // Smoothing must not move the rims of openings.
   std::vector<mesh::Triangle> all;
   for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());
   for (const mesh::Edge& edge : mesh::collect_edges(all).edges)

@@ -12,7 +12,7 @@ namespace weft::garment {
 
 /// A panel at its start position, before seams join it to others.
 struct LaidPanel {
-  bool back = false;
+  bool back = false;                         ///< whether it is behind the wearer; otherwise in front
   std::vector<mesh::Triangle> triangles;     ///< by vertices of the garment; counter-clockwise seen from in front
   std::vector<std::array<Vec2, 3>> corners;  ///< per triangle: positions across and up [m]
 };
@@ -22,12 +22,11 @@ struct LaidPanel {
 /// over the panels.
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices);
 
-/// Separates front and back panels in depth, which gives a pillow with round edges. Front panels
-/// move to −f(d) and back panels to +f(d), where d is the distance in the plane to the nearest seam
-/// between front and back. f(d) = √(d (2 depth − d)) for d < depth, else f(d) = depth. Then a few
-/// smoothing rounds move each vertex toward its neighbours, except vertices on these seams and on
-/// the rims of openings. Front and back cannot intersect, since depths are ≤ 0 in front and ≥ 0 at
-/// the back. Returns (across, depth, up) [m].
+/// Separates front and back panels, which makes the shape of a pillow with round edges. Front panels move to the depth
+/// −f(d) and back panels to +f(d), where d is the distance in the plane to the nearest seam between front and back:
+/// f(d) = √(d (2 depth − d)) for d < depth, else f(d) = depth. Then some smoothing rounds move each vertex toward its
+/// neighbours, except vertices on these seams and on the rims of openings. Front and back cannot intersect, because
+/// depths are ≤ 0 in front and ≥ 0 at the back. Returns (across, depth, up) [m].
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
 
 }  // namespace weft::garment

@@ -27,15 +27,16 @@ namespace weft::garment {
 namespace {
 
 constexpr double kMetresPerPixel = 0.0254 / 96;
-// Maximum distance between the bounding boxes of a seam line and of its seam allowance, on each
-// side of a panel [m]. Allowances are 10 to 30 mm wide, and wider at corners.
+// Maximum distance between the bounding boxes of a seam line and of its seam allowance, on each side of a panel [m].
+// Allowances are 10 to 30 mm wide, and wider at corners.
 constexpr double kMaxAllowance = 0.06;
-// Maximum count of numbers read from one attribute.
+// Maximum number of numbers in one attribute.
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
 using Box = Eigen::AlignedBox2d;
 
-/// Stops a traversal at elements nested too deeply for recursive functions of this file (pugixml does not recurse).
+/// Stops a traversal at elements that are nested more deeply than kMaxDepth. Functions of this file are recursive and
+/// could overflow the stack; pugixml is not recursive.
 struct DepthLimit : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
 };
@@ -81,8 +82,8 @@ class Drawing {
     return name == "path" || name == "polygon" || name == "rect" || name == "g";
   }
 
-  /// Whether the element is drawn at its own place. Elements inside of others such as `defs` are drawn only where
-  /// another element refers to them.
+  /// Whether the element is drawn itself. Elements inside others such as `defs` are drawn only where another element
+  /// refers to them.
   static bool is_drawn(const pugi::xml_node& node) {
     constexpr std::array<std::string_view, 6> kNotDrawn{"defs", "marker", "clipPath", "mask", "symbol", "pattern"};
     for (pugi::xml_node above = node.parent(); above; above = above.parent())
@@ -134,8 +135,8 @@ class Drawing {
   pugi::xml_document document_;
 };
 
-// The numbers of a text, separated by white space or commas. Returns nothing if the text contains
-// anything else or more than kMaxNumbers numbers.
+// The numbers of a text, separated by white space or commas. Returns nothing if the text contains anything else or more
+// than kMaxNumbers numbers.
 std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   std::vector<double> numbers;
   for (;;) {
@@ -150,8 +151,8 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   }
 }
 
-// A length such as "210mm", converted to metres. Returns nothing for lengths ≤ 0, percentages,
-// units relative to a font, and invalid text.
+// Converts a length such as "210mm" to metres. Returns nothing for lengths ≤ 0, percentages, units relative to a font,
+// and invalid text.
 std::optional<double> parse_length(std::string_view text) {
   double value = 0;
   const auto [end, error] = parse_number(text, value);
@@ -186,10 +187,10 @@ double metres_per_unit(const Drawing& drawing) {
   check_view_box(drawing, root, box);
   if (!width) drawing.refuse(root, "width: expected the size of the sheet, such as 210mm, beside a viewBox, got none");
   double unit = *width / (*box)[2];
-  // If the height is given too, the smaller of the two units applies, as in browsers, unless preserveAspectRatio says
-  // otherwise.
+  // If the height is also given, the smaller of the two units applies, as in browsers. Refuses files whose
+  // preserveAspectRatio demands otherwise.
   if (const auto height = parse_length(root.attribute("height").value())) {
-    constexpr double kMaxDifference = 1e-3;  // relative; of rounded sizes
+    constexpr double kMaxDifference = 1e-3;  // relative difference of both units due to rounded sizes
     const double up = *height / (*box)[3];
     const std::string_view ratio = root.attribute("preserveAspectRatio").value();
     const bool meets = ratio.find("none") == std::string_view::npos && ratio.find("slice") == std::string_view::npos;
@@ -246,7 +247,7 @@ Affine parse_transform(const Drawing& drawing, const pugi::xml_node& node) {
   }
 }
 
-// The map from coordinates inside a nested svg element to those around it.
+// The map from coordinates inside a nested svg element to those of its parent.
 Affine place_nested(const Drawing& drawing, const pugi::xml_node& node) {
   const auto x = parse_numbers(node.attribute("x").value()), y = parse_numbers(node.attribute("y").value());
   const auto width = parse_length(node.attribute("width").value()),
@@ -328,7 +329,7 @@ class Sheet {
           boxes[i].extend(p);
         }
     if (outlines.size() == 1) return std::move(outlines[0]);
-    // Valentina and Seamly draw the seam line and, around it, its allowance as one path.
+    // Valentina and Seamly draw one path with two outlines: the seam line, and the seam allowance around it.
     if (outlines.size() == 2)
       for (const std::size_t i : {0, 1}) {
         const Box &inner = boxes[i], &outer = boxes[1 - i];
@@ -345,6 +346,7 @@ class Sheet {
   const double unit_;
 };
 
+/// A text that names an edge.
 struct Label {
   std::string text;
   Vec2 place;  ///< [m]
@@ -376,7 +378,7 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   const auto x = coordinate("x"), y = coordinate("y");
   if (!x || !y || node.child("textPath"))
     drawing.refuse(node, "expected x and y where a label stands, got something else");
-  // An absent coordinate is 0 (SVG 1.1, section 10.4): Illustrator places texts by their transforms alone.
+  // An absent coordinate is 0 (SVG 1.1, section 10.4). Illustrator writes texts with a transform, but without x and y.
   const Vec2 place = sheet.to_metres(node) * Vec2(x->empty() ? 0 : x->front(), y->empty() ? 0 : y->front());
   if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got infinite or undefined ones");
   if (first == "origin") {
@@ -393,7 +395,7 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   group.edges.push_back({name, place});
 }
 
-/// Whether an element of FreeSewing is no outline of a panel: a seam allowance, scale box or another mark.
+/// Whether an element of FreeSewing is a seam allowance, a scale box or another mark, not the outline of a panel.
 bool is_mark(const pugi::xml_node& node) {
   constexpr std::array<std::string_view, 6> kMarks{"sa", "scalebox", "note", "mark", "help", "hidden"};
   std::istringstream classes(node.attribute("class").value());
@@ -452,7 +454,8 @@ DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pu
                                group.outlines.size()));
   DrawnPanel panel{sheet.outline(group.outlines[0]), {}};
   if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
-  // Without an origin text, the origin of the group is used, so that moving the group on the sheet changes nothing.
+  // Without an origin text, uses the origin of the group, so that the panel does not change if the group is moved on
+  // the sheet.
   const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
   for (Curve& curve : panel.outline)
     for (Vec2& p : curve.control) p -= origin;

@@ -9,13 +9,12 @@
 namespace weft::garment {
 namespace {
 
-// Minimum distance of lattice points from the outline [spacings]. The strip between lattice and
-// outline is then about 0.6 to 1.6 spacings wide, so that its triangles have no very small or very
-// large angles.
+// Minimum distance of lattice points from the outline [spacings]. The strip between lattice and outline is then about
+// 0.6 to 1.6 spacings wide, so that its triangles have no very small or very large angles.
 constexpr double kMinOutlineDistance = 0.62;
-// A length that is large compared with rounding errors, but whose sum over all rows is small compared with the spacing
-// [spacings]. During triangulation, each lattice row is shifted by it relative to the row below, so that the Delaunay
-// diagonal of each square is unique.
+// During triangulation, each lattice row is shifted by this length relative to the row below [spacings]. The shift
+// makes the Delaunay diagonal of each square unique. It is large compared with rounding errors, and its sum over all
+// rows is small compared with the spacing.
 constexpr double kRowShift = 1e-6;
 
 double cross(const Vec2& a, const Vec2& b) {
@@ -57,8 +56,8 @@ class Delaunay {
     const Index t = locate(p);
     const auto vertex = static_cast<Index>(points_.size());
     points_.push_back(p);
-    // Split the triangle into three at the point. If the point is on an edge of the triangle, one of the three has no
-    // area until that edge is flipped.
+    // Splits the triangle into three at the point. If the point is on an edge of the triangle, one of the three has no
+    // area until flip_edges() flips that edge.
     const auto [a, b, c] = triangles_[at(t)];
     const auto [ab, bc, ca] = neighbours_[at(t)];
     const auto u = static_cast<Index>(triangles_.size()), v = u + 1;
@@ -77,9 +76,9 @@ class Delaunay {
  private:
   const Vec2& point(Index i) const { return points_[at(i)]; }
 
-  // Finds the triangle that contains p. Starts from the triangle found last and crosses edges that
-  // separate the current triangle from p. If this path leaves the polygon or does not end, searches
-  // all triangles for the one in which p is deepest.
+  // Finds the triangle that contains p. Starts from the triangle of the last insertion, and repeatedly crosses an edge
+  // that separates the current triangle from p. If this leads out of the polygon or does not end, searches all
+  // triangles for the one in which p is deepest.
   Index locate(const Vec2& p) const {
     Index t = last_;
     for (std::size_t steps = 0; steps < triangles_.size(); ++steps) {
@@ -134,9 +133,8 @@ class Delaunay {
       for (std::size_t side : {0U, 1U}) stack_.emplace_back(t, side), stack_.emplace_back(s, side);
     }
   }
-  // Whether to flip the edge between the triangles (a, b, c) and (b, a, d). This is so if the
-  // quadrilateral a, d, b, c is convex and d is inside the circumcircle of (a, b, c) by more than
-  // rounding errors.
+  // Whether to flip the edge between the triangles (a, b, c) and (b, a, d): if the quadrilateral a, d, b, c is convex,
+  // and d is inside the circumcircle of (a, b, c) by more than rounding errors.
   bool should_flip(Index a, Index b, Index c, Index d) const {
     const Vec2 &pa = point(a), &pb = point(b), &pc = point(c), &pd = point(d);
     if (orientation(pc, pa, pd) <= 0 || orientation(pd, pb, pc) <= 0) return false;
@@ -196,7 +194,7 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
     high = high.cwiseMax(rotated.back());
   }
   // The lattice has whole squares and is centred, so that a symmetric panel gets a symmetric lattice. If the size of
-  // the panel is a multiple of the spacing, rounding errors could lose a row; adding kRowShift prevents this.
+  // the panel is a multiple of the spacing, rounding down could remove a row; adding kRowShift prevents this.
   std::array<int, 2> count{};
   for (int axis = 0; axis < 2; ++axis) count[axis] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);
   const Vec2 first = 0.5 * (low + high) - 0.5 * spacing * Vec2(count[0], count[1]);
@@ -231,7 +229,8 @@ std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const
     for (std::size_t j = i + 2; j < n; ++j) {
       if (i == 0 && j + 1 == n) continue;
       const Vec2 &a = outline[i], &b = outline[i + 1], &c = outline[j], &d = outline[(j + 1) % n];
-      // Skip sides whose bounding boxes are apart: for collinear sides, the signs below are 0 even without overlap.
+      // Skips sides whose bounding boxes do not overlap. Without this, collinear sides would always seem to cross,
+      // because the orientations below are 0.
       if ((a.cwiseMax(b) - c.cwiseMin(d)).minCoeff() < 0 || (c.cwiseMax(d) - a.cwiseMin(b)).minCoeff() < 0) continue;
       if (orientation(a, b, c) * orientation(a, b, d) <= 0 && orientation(c, d, a) * orientation(c, d, b) <= 0)
         return std::pair(i, j);

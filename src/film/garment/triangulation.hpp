@@ -17,16 +17,16 @@ struct FlatMesh {
   std::vector<mesh::Triangle> triangles;  ///< counter-clockwise
 };
 
-/// Constrained Delaunay triangulation of a simple counter-clockwise polygon with inner points; keeps the edges of the
-/// polygon. Starts from the polygon cut into triangles by ear clipping, inserts the points one by one, and flips edges
-/// until each is locally Delaunay (Lawson, "Software for C1 Surface Interpolation", 1977). No triangle lies outside the
-/// polygon at any time. Deterministic.
+/// Constrained Delaunay triangulation of a simple counter-clockwise polygon with inner points. The edges of the polygon
+/// are edges of triangles. Starts from the polygon cut into triangles by ear clipping, inserts the points one by one,
+/// and flips edges until each is locally Delaunay (Lawson, "Software for C1 Surface Interpolation", 1977). No triangle
+/// lies outside the polygon at any time. Deterministic.
 FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside);
 
 /// Meshes a polygon whose edges are about `spacing` long. Most of the polygon becomes a lattice of squares with sides
 /// `spacing`, along the unit vector `warp` and across it; a Delaunay triangulation fills the strip between lattice and
 /// outline. All squares are cut along the same diagonal, so that six edges meet at each inner lattice point and folds
-/// are smooth (measured: diagonals that alternate from row to row corrugate every sharp fold).
+/// are smooth. With diagonals that alternate from row to row, every sharp fold is corrugated.
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing);
 
 /// Area of a polygon [m²]; positive if it is counter-clockwise.

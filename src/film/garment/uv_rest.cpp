@@ -14,23 +14,23 @@
 namespace weft::garment {
 namespace {
 
-// If the scales along u and v differ by at most this ratio, one scale is used for both: hanging
-// cloth is stretched by some percent in one direction.
+// If the scales along u and v differ by at most this ratio, one scale is used for both. Such a difference may come from
+// the stretch of hanging cloth, which is some percent in one direction.
 constexpr double kMaxScaleDifference = 0.05;
-// UVs are in one of the units below if more than kMinFractionInUnit of all edges (weighted by
-// length in the UVs) are as long as in the mesh within kUnitTolerance.
+// UVs are in one of the units below if more than kMinFractionInUnit of all edges (weighted by length in the UVs) are as
+// long as in the mesh within kUnitTolerance (relative).
 constexpr double kUnitTolerance = 0.02, kMinFractionInUnit = 0.2;
 constexpr std::array<std::pair<double, const char*>, 4> kUnits{
     {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}}};
-// Triangles that are longer or shorter in the mesh than in the UVs by this factor or more have no
-// usable shape in the UVs. (Cloth that starts around a body before sewing can have triangles 36
-// times as long as in its pattern.)
+// The UVs of a triangle are unusable if the triangle is longer or shorter in the mesh by this factor or more. For
+// comparison: before sewing, triangles can be 36 times as long as in their pattern.
 constexpr double kMaxSizeRatio = 100;
-// Rounds of iteratively reweighted least squares for the scale.
+// Number of rounds of iteratively reweighted least squares that fit the scale.
 constexpr int kScaleRounds = 30;
-// Relative tolerance for `fitting_edge_fraction`.
+// Maximum relative difference in length of an edge that fits (UvRest::fitting_edge_fraction).
 constexpr double kFittingEdgeTolerance = 0.05;
 
+/// An edge of a triangle.
 struct UvEdge {
   double du, dv, length;  // du, dv in the UVs; length in the mesh [m]
 };
@@ -65,8 +65,8 @@ std::vector<UvEdge> edges_of(const mesh::Mesh& mesh, std::span<const UvCorners> 
   return edges;
 }
 
-/// Median length of one UV unit [m], weighted by length in the UVs: weights by length in the mesh would prefer
-/// stretched edges.
+/// Median length of one UV unit [m]. Edges are weighted by their length in the UVs, because weights by length in the
+/// mesh would favour stretched edges.
 double median_scale(const std::vector<UvEdge>& edges) {
   std::vector<std::pair<double, double>> ratios;
   double total = 0;
@@ -82,10 +82,10 @@ double median_scale(const std::vector<UvEdge>& edges) {
   return 1;
 }
 
-/// Fits the lengths (su, sv) of a UV unit along u and v, so that (su du)² + (sv dv)² is the squared
-/// length of edges in the mesh. Minimises the sum of absolute relative errors of squared lengths,
-/// weighted by length in the UVs, by iteratively reweighted least squares. `even`: scale at which
-/// the iteration starts. Returns nothing if the edges do not determine both lengths.
+/// Fits the lengths (su, sv) of a UV unit along u and v, so that (su du)² + (sv dv)² is the squared length of edges in
+/// the mesh. Minimises the sum of absolute relative errors of squared lengths, weighted by length in the UVs, by
+/// iteratively reweighted least squares. `even`: start value of both lengths. Returns nothing if the edges do not
+/// determine both.
 std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, double even) {
   Vec2 squares = Vec2::Constant(even * even);
   for (int round = 0; round < kScaleRounds; ++round) {
@@ -107,7 +107,7 @@ std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, doub
 }
 
 /// Fraction of all edges, weighted by length in the UVs, whose scaled length in the UVs differs from that in the mesh
-/// by at most `tolerance`, relative.
+/// by at most `tolerance` (relative).
 double fraction_of_fitting_edges(const std::vector<UvEdge>& edges, const Vec2& scale, double tolerance) {
   double fitting = 0, total = 0;
   for (const UvEdge& e : edges) {
@@ -161,9 +161,9 @@ std::size_t count_islands(const mesh::Mesh& mesh, std::span<const UvCorners> uv)
   return islands;
 }
 
-/// A panel triangle is flat if its height is less than `flattest` times the longest edge of all panel triangles. Gives
-/// each flat triangle the shape that it has in the mesh, if its height there is larger. Counts replaced triangles as
-/// unusable, and adds the area that they lack in the panel [m²] to `unusable_area`.
+/// Gives triangles that are flat in the panel the shape that they have in the mesh, if they are higher there. A
+/// triangle is flat if its height is less than `flattest` times the longest edge of all panel triangles. Counts
+/// replaced triangles as unusable, and adds the area that they lack in the panel [m²] to `unusable_area`.
 void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& rest) {
   const auto longest_edge = [](const UvCorners& c) {
     return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
@@ -181,8 +181,8 @@ void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& res
   }
 }
 
-/// Weighted quantile: the smallest value such that values up to it have at least `fraction` of the
-/// total weight; 0 if there are no values. `values`: pairs of value and weight.
+/// Weighted quantile: the smallest value such that all values up to it have at least `fraction` of the total weight. 0
+/// if there are no values. `values`: pairs of value and weight.
 double quantile(std::vector<std::pair<double, double>> values, double fraction) {
   std::ranges::sort(values);
   double total = 0, sum = 0;
@@ -228,7 +228,7 @@ UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const
     UvCorners& panel = rest.material.emplace_back(uv[t]);
     for (Vec2& c : panel) c = c.cwiseProduct(rest.scale);
     if (twice_area(panel) < 0) {
-      // The triangle is mirrored: exchange left and right.
+      // The triangle is mirrored in the UVs. Exchanges left and right.
       for (Vec2& c : panel) c.x() = -c.x();
       ++rest.mirrored;
     }

@@ -11,39 +11,40 @@
 namespace weft::garment {
 namespace {
 
-// In this fraction of the upper arm, next to the shoulder, sections would cut the skin obliquely;
-// the nearest section farther down the arm replaces them.
+// In this fraction of the upper arm, next to the shoulder, sections would cut the skin obliquely. The nearest section
+// farther down the arm replaces them.
 constexpr double kShoulderFraction = 0.25;
 // Length by which the tube of an arm extends beyond the wrist, as a fraction of the forearm.
 constexpr double kWristExtension = 0.3;
-// Fraction of the height of head and neck, down from the crown, in which the widest section of the head is searched.
+// The widest section of the head is searched down to this fraction of the distance from the crown to the neck.
 constexpr double kHeadFraction = 0.6;
-// Dome of the head's tube: height of its end above the crown [m], and ratio of its narrowest section to the widest.
+// Dome at the upper end of the head's tube: height of its top above the crown [m], and ratio of its narrowest section
+// to the widest.
 constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
-// Maximum length of a tube [m]: that of a body in millimetres would have 170,000 sections.
+// Maximum length of a tube [m]. The tube of a body whose file is in millimetres would have 170,000 sections.
 constexpr double kMaxLength = 100;
-// Minimum number of crossings of triangle sides with the plane of a section (a side shared by two
-// triangles counts twice); with fewer, there is no section.
+// Minimum number of crossings of triangle sides with the plane of a section (a side shared by two triangles counts
+// twice). With fewer crossings, there is no section.
 constexpr std::size_t kMinSectionPoints = 6;
 
 double radians(int direction, int directions) {
   return 2 * std::numbers::pi * direction / directions;
 }
 
-/// A polygonal axis, given by its corners from the low end to the high end.
+/// An axis made of straight lines between its corners, from the low end to the high end.
 struct Axis {
   std::vector<Vec3> corners;
-  double first = 0;  // s of the first corner
+  double first = 0;  // coordinate s (see Tube) of the first corner [m]
 
   double length() const {
     double sum = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) sum += (corners[k] - corners[k - 1]).norm();
     return sum;
   }
-  /// Point and direction at a length from the low end. The direction is averaged over kCornerBlend on both sides, so
-  /// that it changes gradually at corners.
+  /// Point and direction at the distance `length` from the low end [m]. The direction is averaged over kCornerBlend on
+  /// both sides, so that it changes gradually at corners.
   std::pair<Vec3, Vec3> at(double length) const {
-    constexpr double kCornerBlend = 0.06;  // [m] on each side of a corner
+    constexpr double kCornerBlend = 0.06;  // length on each side of a corner [m]
     Vec3 along = Vec3::Zero(), point = corners.front();
     double from = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) {
@@ -137,7 +138,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
                 "metres a unit of its file has",
                 kMaxLength, name, axis.length());
 
-  // Select the skin that the tube goes around.
+  // Selects the skin that the tube encloses.
   std::vector<mesh::Triangle> skin;
   for (const mesh::Triangle& t : wearer.triangles) {
     const auto is = [&](Region region) {
@@ -169,7 +170,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     const double s = first_ + i * kSpacing;
     if (arm && -s < kShoulderFraction * (axis.corners[2] - axis.corners[1]).norm()) cuts.back() = std::nullopt;
   }
-  // A hood hangs from the widest section of the head: keep only this section.
+  // A hood hangs from the widest section of the head. Keeps only this section.
   double widest = first_;
   if (part == Around::head) {
     const auto girth_of = [](const std::optional<Section>& section) {
@@ -183,7 +184,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     *found = section;
     widest = first_ + static_cast<double>(found - cuts.begin()) * kSpacing;
   }
-  // A position without a section gets the nearest section, moved along the axis.
+  // Where there is no section, uses the nearest section, moved along the axis.
   std::vector<std::size_t> known;
   for (std::size_t i = 0; i < cuts.size(); ++i)
     if (cuts[i]) known.push_back(i);
@@ -198,8 +199,8 @@ Tube::Tube(const Wearer& wearer, Around part) {
         axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
     sections_.push_back(section);
   }
-  // Above the widest section, narrow the tube to a dome, so that seams that end at the crown of a
-  // hood start near the crown.
+  // Above the widest section, narrows the tube to a dome, so that seams that end at the crown of a hood start near the
+  // crown of the head.
   if (part == Around::head)
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       const double height =
@@ -208,7 +209,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
       sections_[i].scale = scale;
       for (double& support : sections_[i].support) support *= scale;
     }
-  // A cloak hangs from the widest section above: widen each section so that it contains the section above.
+  // A cloak hangs from the widest section above. Widens each section so that it contains the section above.
   if (part == Around::body)
     for (std::size_t i = sections_.size() - 1; i-- > 0;) {
       const Section& above = sections_[i + 1];
@@ -227,7 +228,7 @@ Tube::Section Tube::section(double s) const {
   const double place = (s - first_) / kSpacing;
   const double last = static_cast<double>(sections_.size() - 1);
   const double inside = std::clamp(place, 0.0, last);
-  // A limb that is shorter than kSpacing has one section.
+  // A limb that is shorter than kSpacing has only one section. Then `below` is 0, and both sections below are the same.
   const auto below = std::min(static_cast<std::size_t>(inside), std::max<std::size_t>(sections_.size(), 2) - 2);
   const double fraction = inside - static_cast<double>(below);
   const Section &a = sections_[below], &b = sections_[std::min(below + 1, sections_.size() - 1)];
@@ -243,8 +244,8 @@ Tube::Section Tube::section(double s) const {
   return mixed;
 }
 
-// Points of the boundary of a section. A support function h(φ) has the boundary h n + h' t, with the unit vectors n in
-// the direction φ and t in the direction φ + 90°.
+// Points on the boundary of a section. The boundary of a convex region with the support function h(φ) is h n + h' t,
+// with the unit vectors n in the direction φ and t in the direction φ + 90°.
 Tube::Ring Tube::ring(const Section& section, double outward) {
   Ring points;
   const double step = 2 * std::numbers::pi / kDirections;
@@ -275,7 +276,7 @@ Vec3 Tube::at(double s, double angle, double length, double outward) const {
   const Ring points = ring(here, here.scale * outward);
   const auto n = static_cast<long>(points.size());
   const auto point = [&](long k) -> const Vec3& { return points[static_cast<std::size_t>(((k % n) + n) % n)]; };
-  // Walk along the ring from the direction `angle`, forward or backward.
+  // Follows the ring from the direction `angle`, forward or backward.
   const double place = angle / (2 * std::numbers::pi) * kDirections;
   auto k = static_cast<long>(std::floor(place));
   double fraction = place - std::floor(place);

@@ -17,8 +17,8 @@ enum class Region : std::uint8_t { trunk, left_arm, right_arm, left_leg, right_l
 /// Joints of an arm, from shoulder to wrist, or of a leg, from hip to ankle [m].
 using Limb = std::array<Vec3, 3>;
 
-/// Height of the joint at the base of the mannequin's neck, as a fraction of the body height. The
-/// bodies for which patterns are drawn are assumed to have the same ratio.
+/// Height of the joint at the base of the mannequin's neck, as a fraction of the body height. The bodies for which
+/// patterns are drawn are assumed to have the same ratio.
 inline constexpr double kNeckHeightRatio = 0.83;
 
 /// A body at the start, in its own axes: x to its left, y to its back, z up, origin on the floor below its hips [m].
@@ -34,8 +34,8 @@ struct Wearer {
 /// Part of the body around which a panel starts bent. The tubes of the parts:
 /// - torso, neck: with a vertical axis, around the body without the arms;
 /// - body: with a vertical axis, around the body with the arms; each section contains the section above it;
-/// - head: with a vertical axis; at each height the widest section of the head; above the height of
-///   this section, the tube narrows to a dome;
+/// - head: with a vertical axis; all sections equal the widest section of the head, but above its height, they narrow
+///   to a dome;
 /// - arm: around the arm alone;
 /// - leg: around the leg and, from the hip to the neck, around the same half of the trunk.
 enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg, right_leg };
@@ -47,30 +47,30 @@ Around mirrored(Around part);
 
 /// A tube around a part of the body, made of convex sections of the skin across an axis. A point of the tube has two
 /// coordinates [m]: s along the axis, and a length along the section. s increases toward the trunk. For vertical axes,
-/// s is the height above the floor; for legs, the length along the axis from the floor; for arms, 0 at the shoulder and
-/// negative below. The length increases counter-clockwise, seen from the trunk or from above.
+/// s is the height above the floor; for legs, the length along the axis from the floor; for arms, s is 0 at the
+/// shoulder and negative below. The length increases counter-clockwise, seen from the trunk or from above.
 class Tube {
  public:
   /// Throws Error(scene_invalid) if the wearer lacks the joints or the skin for the part, or if the tube would be
   /// longer than kMaxLength (wearer.cpp).
   Tube(const Wearer& wearer, Around part);
 
-  /// Girth [m] of the section at s, moved outward by `outward` [m]. Beyond the ends of the tube, the end sections
-  /// continue. In the dome of the head, this is the girth before narrowing.
+  /// Girth [m] of the section at s, moved outward by `outward` [m]. Beyond the ends of the tube, the sections are those
+  /// at the ends. In the dome of the head, the result is the girth before narrowing.
   double girth(double s, double outward) const;
-  /// The point at `length` along the section at s, moved outward by `outward` [m]. `length` [m]
-  /// counts from the direction `angle` [rad]: 0 is the front, π/2 the wearer's left. In the dome of
-  /// the head, `length` and `outward` shrink with the section.
+  /// The point at `length` along the section at s, moved outward by `outward` [m]. `length` [m] is measured from the
+  /// direction `angle` [rad]: 0 is the front, π/2 the wearer's left. In the dome of the head, `length` and `outward`
+  /// are reduced as much as the section.
   Vec3 at(double s, double angle, double length, double outward) const;
-  /// Direction of increasing s.
+  /// Direction of increasing s; a unit vector.
   Vec3 along(double s) const;
-  /// s of the lower and of the upper end.
+  /// s of the lower and of the upper end [m].
   double low() const { return first_; }
   double high() const { return first_ + kSpacing * static_cast<double>(sections_.size() - 1); }
 
  private:
   static constexpr double kSpacing = 0.01;  // distance between sections [m]; the skin hardly changes over it
-  static constexpr int kDirections = 96;    // directions per section; points are 10 mm apart on a chest
+  static constexpr int kDirections = 96;    // number per section; points on a chest are then 10 mm apart
   /// A convex section, given by its support function: the extent from the centre in each direction.
   struct Section {
     Vec3 centre, front, left, along;

@@ -20,29 +20,30 @@ namespace {
 
 // Distance between layers at the start [m]; larger than the contact thickness of any fabric.
 constexpr double kLayerDistance = 0.01;
-// Additional width of a ring with a closure or a slit [m], so that the two edges of the opening start apart.
+// Additional width of a ring of panels with a closure or a slit [m], so that the two edges of the opening start apart.
 constexpr double kOpeningSlack = 0.03;
-// For sleeves [m]: minimum distance from the skin at the start; the cap begins where the ring is
-// narrower by this width than farther down the arm.
+// kMinSleeveGap: minimum distance of sleeves from the skin at the start [m]. kCapNarrowing: the cap of a sleeve begins
+// where its ring is narrower than farther down the arm by more than this [m].
 constexpr double kMinSleeveGap = 0.006, kCapNarrowing = 0.01;
-// For the position of a panel from its seams: number of sample intervals along a seam, and of iterations.
+// Number of sample intervals along a seam, and of iterations, to find the position of a panel from its seams.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
-// Distance over which closing a seam bends panels [m]. A smaller value creases sleeves at the cap, a larger one moves
-// sleeves off the axis of the arm.
+// Distance over which closing a seam bends panels [m]. With a smaller distance, sleeves are creased at the cap; with a
+// larger one, they are not centred on the axis of the arm.
 constexpr double kBendingDistance = 0.1;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Position of point `p` of a panel on the tube of its part: length across and height [m], as seen
-/// from outside. `position`: start position of the panel's origin.
+/// Coordinates of the point `p` of a panel on the tube of its part: length across and height [m], seen from outside.
+/// `position`: start position of the panel's origin.
 Vec2 unrolled_position(const Panel& panel, const Vec2& position, const Vec2& p) {
   const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
   const Vec2 q = position + turned;
   return {panel.side == Side::back ? -q.x() : q.x(), q.y()};
 }
 
+/// Finds the positions of panels on tubes, and bends the panels around them.
 class PanelPlacer {
  public:
   /// `refuse` receives the description of a mistake and must throw.
@@ -58,8 +59,8 @@ class PanelPlacer {
     }
   }
 
-  /// Sets the positions of all panels: first those that the pattern states, then the others from
-  /// seams. Returns the first panel that still has no position, or null.
+  /// Sets the positions of all panels: first those that the pattern states, then the others from seams. Returns the
+  /// first panel whose position remains unknown, or null.
   const Panel* find_positions() {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     update_eases();
@@ -109,7 +110,7 @@ class PanelPlacer {
     return pattern_.gap + kLayerDistance * panel.layer + ease;
   }
 
-  // Width of the ring around each part: the sum over its panels of layer 0, by height in steps of kStep.
+  // Width of the ring around each part [m]: the sum over its panels of layer 0, by height in steps of kStep.
   std::map<Around, std::map<long, double>> widths() const {
     std::map<Around, std::map<long, double>> of_part;
     for (std::size_t p = 0; p < positions_.size(); ++p) {
@@ -133,8 +134,8 @@ class PanelPlacer {
     }
     return of_part;
   }
-  // Whether the ring around a part has a closure or a slit. A closure that joins panels of two
-  // parts, such as a fly, belongs to no ring.
+  // Whether the ring around a part has a closure or a slit. A closure that joins panels of two parts, such as a fly,
+  // belongs to no ring.
   bool has_opening(Around part) const {
     std::set<std::pair<std::size_t, std::size_t>> sewn;  // panels and their edges
     for (const Seam& seam : pattern_.seams) {
@@ -156,8 +157,8 @@ class PanelPlacer {
     return false;
   }
 
-  // Computes the ease of each ring: the distance by which its panels move outward so that the ring closes. For narrow
-  // sleeves it is negative: if they started farther out, closing their seams would pull them through the arm.
+  // Computes the ease of each ring: the distance by which its panels move outward so that the ring closes [m]. The ease
+  // of narrow sleeves is negative: if they started farther out, closing their seams would pull them through the arm.
   void update_eases() {
     eases_.clear();
     for (const auto& [part, of_level] : widths()) {
@@ -171,9 +172,9 @@ class PanelPlacer {
       for (const auto& [level, width] : of_level) {
         const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
         const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
-        // The cap of a sleeve narrows and does not close around the arm: use the ease of the height step below.
+        // The cap of a sleeve does not close around the arm. It gets the ease of the height step below.
         const double kept = arm && width < widest - kCapNarrowing ? raw.back() : ease;
-        // In a gap between panels, use the ease of the nearer panel.
+        // In a gap between panels, uses the ease of the nearer panel.
         if (const auto index = static_cast<std::size_t>(level - of_level.begin()->first); index > raw.size()) {
           raw.resize((raw.size() + index) / 2, double(raw.back()));
           raw.resize(index, kept);
@@ -181,7 +182,7 @@ class PanelPlacer {
         raw.push_back(kept);
         widest = std::max(widest, width);
       }
-      // Smooth over height, since the width jumps where a panel begins or ends.
+      // Smooths the ease over height, because the width jumps where a panel begins or ends.
       constexpr long kSmooth = 4;
       const auto count = static_cast<long>(raw.size());
       for (long i = 0; i < count; ++i) {
@@ -238,7 +239,7 @@ class PanelPlacer {
       eases_;  // by part: first height, and the ease at each height step [m]
 };
 
-/// Nearest-neighbour search among the vertices of the skin, sorted into cubic cells.
+/// Finds the nearest vertex of the skin. Sorts the vertices into cubic cells.
 class SkinSearch {
  public:
   SkinSearch(const Wearer& wearer, double radius)
@@ -323,8 +324,7 @@ void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> tria
     if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
   for (const mesh::Edge& edge : edges.edges) {
     const auto [a, b] = edge.vertices;
-    // A vertex on the rim is smoothed along the rim only: inner vertices do not count as its
-    // neighbours.
+    // A vertex on the rim is smoothed only along the rim. Inner vertices therefore do not count as its neighbours.
     if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
     if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
   }

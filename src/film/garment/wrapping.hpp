@@ -17,16 +17,13 @@ namespace weft::garment {
 /// directions.
 bool are_drawn_from_same_side(const Panel& a, const Panel& b);
 
-/// For each panel, the start positions [m] of the points of its flat mesh, before sewing, in the
-/// axes of the wearer.
-/// - Each point keeps its height and its length across from the drawing, on the tube of the panel's
-///   part. Its distance from the skin is Pattern::gap plus kLayerDistance (wrapping.cpp) for each
-///   layer below.
-/// - The panels around a part form a ring. If the ring is wider than the girth there, its panels
-///   move outward until the ring closes. Panels of narrow sleeves start nearer to the skin than
-///   Pattern::gap.
-/// - If the pattern states no position for a panel, the panel gets the position along its part at
-///   which its seams to placed panels are shortest.
+/// For each panel, the start positions [m] of the points of its flat mesh, before sewing, in the axes of the wearer.
+/// - On the tube of the panel's part, each point has the height and the length across that it has in the drawing. Its
+///   distance from the skin is Pattern::gap plus kLayerDistance (wrapping.cpp) for each layer below.
+/// - The panels around a part form a ring. If the ring is wider than the girth at a height, its panels move outward
+///   until the ring closes. Panels of narrow sleeves start nearer to the skin than Pattern::gap.
+/// - If the pattern states no position for a panel, the panel gets the position along its part at which its seams to
+///   panels with known positions are shortest.
 /// `refuse` receives the description of a mistake and must throw.
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer, const std::function<void(const std::string&)>& refuse);
@@ -37,9 +34,8 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing);
 
-/// Moves vertices that are less than `clearance` [m] outside the skin, or inside it, outward to
-/// this distance. Vertices more than 8 cm from all vertices of the skin do not move. Smooths moved
-/// vertices and those around them.
+/// Moves vertices that are inside the skin, or less than `clearance` [m] outside it, outward to this distance. Vertices
+/// more than 8 cm from all vertices of the skin do not move. Smooths moved vertices and those around them.
 void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
                       std::span<Vec3> x);
 
