@@ -19,15 +19,15 @@ namespace weft::assets {
 namespace {
 
 /// Maximum time between samples of the motion [s]. If a camera circles its target by 90 degrees in a second, linear
-/// interpolation between the samples has an error of 0.0001 of its distance from the target.
+/// interpolation between these samples has an error of 0.0001 times the distance from the target.
 constexpr double kMaxSampleInterval = 0.02;
 
-/// Longer shots are treated as damaged [s].
+/// Maximum length of a shot [s]. Files with longer shots count as damaged.
 constexpr double kMaxShotLength = 3600;
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// Value of a channel at a time [ticks]. It is constant before the first and after the last key.
+/// Value of a channel at the time `ticks` [ticks]. Constant before the first and after the last key.
 template <class Key, class Between>
 auto value_at(std::span<const Key> keys, double ticks, const Between& between) {
   const auto next = std::ranges::find_if(keys, [&](const Key& key) { return key.mTime > ticks; });
@@ -80,8 +80,8 @@ aiMatrix4x4 world_at(const aiNode& node, const aiAnimation* animation, double ti
   return world;
 }
 
-/// Sample times [s]: all key times of the nodes from the camera to the root, and times in between, so that they are at
-/// most kMaxSampleInterval apart.
+/// Sample times [s]: all key times of the nodes from the camera to the root, and times between them, so that
+/// neighbouring times differ by at most kMaxSampleInterval.
 std::vector<double> times_of(const aiNode& node, const aiAnimation& animation) {
   const double rate = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1;
   std::set<double> keys;
@@ -121,8 +121,8 @@ void add_view(LoadedCamera& camera, const aiCamera& from, const aiMatrix4x4& wor
   camera.times.push_back(time);
   camera.positions.push_back(position);
   camera.forward.push_back(forward);
-  // Without roll, the side vector is horizontal. It is also horizontal if the camera is upside down: then `up` points
-  // down.
+  // The side vector of a camera without roll is horizontal. That of a camera that is upside down is horizontal, too;
+  // its `up` points down.
   const double tilt = kDegrees * std::asin(std::min(1.0, std::abs(forward.cross(up).y())));
   constexpr double kSinglePrecision = 1e-6;
   camera.roll = std::max(camera.roll, up.y() < -kSinglePrecision ? 180 - tilt : tilt);
@@ -150,7 +150,7 @@ LoadedCamera read_camera(const std::filesystem::path& file, const std::string& o
   for (const aiAnimation* each : std::span(scene.mAnimations, scene.mNumAnimations))
     if (animation == nullptr && moves(*each, *node)) animation = each;
   LoadedCamera camera;
-  // glTF gives the vertical angle; assimp 5.2 multiplies it by the aspect ratio if the file has one.
+  // glTF files state the vertical angle. assimp 5.2 multiplies it by the aspect ratio if the file states one.
   camera.field_of_view = kDegrees * from.mHorizontalFOV / (from.mAspect > 0 ? from.mAspect : 1);
   const double rate = animation != nullptr && animation->mTicksPerSecond > 0 ? animation->mTicksPerSecond : 1;
   for (const double time : animation != nullptr ? times_of(*node, *animation) : std::vector<double>{0})

@@ -38,8 +38,8 @@ void serialize(Archive& archive, character::Coloring& coloring) {
   serialize_plain(archive, coloring.uv);
 }
 
-/// Writes or reads, depending on the archive. One function does both, so that both use the same
-/// order. Omits the members that no file sets, such as Material::pixels.
+/// Writes or reads a character, depending on the archive. One function does both, so that both use the same order.
+/// Omits members that files never set, such as Material::pixels.
 template <class Archive>
 void serialize(Archive& archive, ReadCharacter& read) {
   character::Character& character = read.character;

@@ -14,7 +14,7 @@
 namespace weft::assets {
 namespace {
 
-/// Up axis if neither the scene nor the file states one: y.
+/// Up axis of a file if neither the scene nor the file states one: y.
 constexpr int kUsualUp = 1;
 
 ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const MeshChoice& choice) {
@@ -23,9 +23,9 @@ ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const
   return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path(), choice);
 }
 
-/// BVH does not define whether the translations of a joint are positions or must be added to its offset. Programs write
-/// both; assimp assumes positions. If the translations of most joints below the root are nearer to zero than to the
-/// offset, adds the offsets, so that bones keep their lengths.
+/// BVH does not define whether the translations of a joint are positions or must be added to its offset. There are
+/// files of both kinds; assimp assumes positions. If the translations of most joints below the root are nearer to zero
+/// than to the offset, adds the offsets, so that bones keep their lengths.
 void add_bvh_offsets(character::Character& character) {
   int on_top = 0, places = 0;
   for (const character::Clip& clip : character.clips)
@@ -74,7 +74,7 @@ bool is_bvh(const std::filesystem::path& file) {
 
 Mat3 rotation_to_scene_axes(int up, scene::UpAxis scene_up) {
   const int to = scene_up == scene::UpAxis::z ? 2 : 1;
-  // Between y and z, a quarter turn about x; otherwise, a cyclic permutation of the axes.
+  // Between y and z, the rotation is a quarter turn about x; otherwise, a cyclic permutation of the axes.
   Mat3 turn = Mat3::Zero();
   if (up == 1 && to == 2) return (turn << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
   if (up == 2 && to == 1) return (turn << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();

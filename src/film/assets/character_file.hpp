@@ -12,24 +12,24 @@
 
 namespace weft::assets {
 
-/// How to interpret the lengths and axes of a file. If `up` is as_file, the up axis is the one that
-/// the file states; y if it states none.
+/// How to interpret the lengths and axes of a file. If `up` is as_file, the up axis is that stated in the file, or y if
+/// the file states none.
 struct FileAxes {
-  std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, else 1
+  std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, or 1
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
 };
 
+/// A character from a file.
 struct LoadedCharacter {
-  character::Character character;     ///< in metres and the axes of the scene
+  character::Character character;     ///< converted to metres and to the axes of the scene
   std::vector<std::string> warnings;  ///< each names the scene entry and the file
   double scale = 1;                   ///< applied scale: metres per unit of the file
 };
 
-/// Reads skeleton, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada,
-/// X, B3D, BVH and others of assimp. A skeleton without a mesh gets a mesh of sticks. `where` names
-/// the scene entry. Throws Error(asset_unreadable) with `where`, the file and the reason, also if
-/// no face has an area.
+/// Reads skeleton, skin, morph targets and clips in a child process. Formats: glTF, FBX, Collada, X, B3D, BVH and
+/// others of assimp. A skeleton without a mesh gets a mesh of sticks. `where` names the scene entry. Throws
+/// Error(asset_unreadable) with `where`, the file and the reason, also if no face has an area.
 LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
                                const MeshChoice& choice = {});
 

@@ -23,13 +23,13 @@ namespace {
 
 using character::Affine;
 
-/// Maximum number of vertices of all meshes before merging; far more than collision can handle.
+/// Maximum number of vertices of all meshes before merging. Collision cannot handle nearly as many.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
-/// Largest distance between the skin in the rest pose of the nodes and in its bind pose that causes no warning [m].
+/// Maximum distance without a warning between the skin in the rest pose of the nodes and in its bind pose [m].
 constexpr double kMaxBindError = 0.05;
 
-/// Largest difference of the sum of a vertex's weights from 1 that causes no warning. Such differences come from
+/// Maximum difference without a warning between 1 and the sum of a vertex's weights. Smaller differences come from
 /// rounding, and from formats that store few bits.
 constexpr double kWeightSlack = 0.02;
 
@@ -47,12 +47,12 @@ bool invertible(const Affine& map) {
 /// A node, and the index of its parent in the same list.
 using NodeWithParent = std::pair<const aiNode*, Index>;
 
-/// All nodes, parents first. The parents come from mParent, since assimp 5.2 lists all bones of Half-Life models as
-/// children of one node and has their parents only in mParent. If mParent does not lead to all nodes, the lists of
-/// children are used instead.
+/// All nodes, parents before their children. Uses aiNode::mParent, because assimp 5.2 lists all bones of Half-Life
+/// models as children of one node, and stores their parents only there. If mParent does not lead to all nodes, uses the
+/// lists of children instead.
 std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
   using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
-  // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
+  // The traversal has its own stack, because nodes of a file can be nested more deeply than the call stack allows.
   const auto walk = [&](const auto& children_of) {
     std::vector<NodeWithParent> nodes;
     std::vector<NodeWithParent> stack{{&root, -1}};
@@ -79,6 +79,7 @@ std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
 /// The weights of one vertex, by bone.
 using Weights = std::vector<character::Influence>;
 
+/// Converts one file.
 class CharacterReader {
  public:
   CharacterReader(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice)
@@ -132,8 +133,8 @@ class CharacterReader {
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
-      // In FBX and glTF, a mesh can have the name of a bone. A name refers to the first node of
-      // this name that has no mesh; if all have meshes, to the first one.
+      // In FBX and glTF, a mesh can have the name of a bone. A name refers to the first node of this name that has no
+      // mesh. If all nodes of this name have meshes, it refers to the first one.
       const auto [named, is_new] = targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
       if (!is_new && nodes_[named->second]->mNumMeshes > 0 && node->mNumMeshes == 0)
         named->second = static_cast<Index>(nodes_.size());
@@ -151,7 +152,7 @@ class CharacterReader {
     const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
                                    [](const aiFace& face) { return face.mNumIndices >= 3; });
     if (!faces) return;
-    // Read a skinned mesh only once, even if several nodes refer to it: its bones determine its place.
+    // Reads a skinned mesh only once, even if several nodes refer to it, because its bones determine its position.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
     const std::size_t base = soup_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)
@@ -173,11 +174,10 @@ class CharacterReader {
     read_morphs(mesh, node, base, placing);
   }
 
-  /// The weights of each vertex of a mesh. For a skinned mesh, `placing` becomes the transform from
-  /// mesh to world in the rest pose: (bone's node to world) × (bone offset) of the bone with the
-  /// largest sum of weights, among the bones for which this product is invertible. Vertices are
-  /// stored after this transform, and bone offsets are adapted to it, so that all meshes share one
-  /// space.
+  /// The weights of each vertex of a mesh. For a skinned mesh, sets `placing` to the transform from mesh to world in
+  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights, among the bones
+  /// for which this product is invertible. Vertices are stored after this transform, and bone offsets are adapted to
+  /// it, so that all meshes are in the same space.
   std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
     std::vector<std::pair<Index, Affine>> bones;  // node and offset of each bone with weights
@@ -225,8 +225,8 @@ class CharacterReader {
   }
 
   /// Warns if the rest pose of the nodes moves the skin away from its bind pose, for example because of pivots that
-  /// assimp ignores. In FBX, the node of the mesh gives the bind pose. Other formats define only the bones relative to
-  /// each other; for them, `placing` gives the bind pose.
+  /// assimp ignores. In FBX, the node of the mesh defines the bind pose. Other formats define only the bones relative
+  /// to each other; for them, `placing` defines the bind pose.
   void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
     if (mesh.mNumBones == 0) return;
     const std::optional<double> metres = metres_per_unit(scene_);
@@ -254,7 +254,7 @@ class CharacterReader {
         mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
   }
 
-  /// Scales the weights of each vertex to a sum of 1. Vertices without weights are bound to the node of the mesh.
+  /// Scales the weights of each vertex to a sum of 1. Binds vertices without weights to the node of the mesh.
   void normalise_weights(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
     std::size_t unweighted = 0;
     double furthest = 1;
@@ -300,7 +300,7 @@ class CharacterReader {
                                                mesh.mName.C_Str(), mesh.mNumVertices, v));
         corners.push_back(static_cast<Index>(base + v));
       }
-      // A mirroring transform turns faces inside out: reverse the order of their corners.
+      // If the transform mirrors, faces would point inward. Reverses the order of their corners.
       if (mirrored) std::reverse(corners.begin(), corners.end());
       append_face(soup_, corners);
     }
@@ -331,9 +331,8 @@ class CharacterReader {
     if (name != of_node) targets_.morphs.emplace(name, group);
   }
 
-  /// Merges vertices with the same position, weights and displacements. At seams of textures or
-  /// normals, files have several vertices for one point, which would cut the surface. Drops
-  /// vertices without faces.
+  /// Merges vertices with the same position, weights and displacements. At seams of textures or normals, files have
+  /// several vertices for one point, which would separate the surface there. Removes vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
     std::vector<Index> renamed(soup_.positions.size(), -1);
@@ -398,13 +397,13 @@ class CharacterReader {
     if (mesh.mTextureCoords[channel] == nullptr) channel = 0;
     if (mesh.mTextureCoords[channel] == nullptr) return Vec2::Zero();
     const Vec2 uv(mesh.mTextureCoords[channel][v].x, mesh.mTextureCoords[channel][v].y);
-    // Transforms in files may be infinite, too.
+    // The result may be infinite, because the texture transform of a file may be.
     const Vec2 placed = placed_uv(*scene_.mMaterials[mesh.mMaterialIndex], uv);
     return placed.allFinite() ? placed : Vec2(Vec2::Zero());
   }
 
-  /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged;
-  /// its list of triangles is the same.
+  /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged,
+  /// with the same list of triangles.
   void color_faces(const Soup& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
@@ -417,7 +416,7 @@ class CharacterReader {
     if (coloring.uv.size() != character_.mesh.topology.triangles.size()) coloring = {};
   }
 
-  /// Names clips without a name by their number, from 1.
+  /// Gives each clip without a name its number, from 1, as its name.
   void name_clips() {
     for (std::size_t c = 0; c < character_.clips.size(); ++c)
       if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
@@ -435,7 +434,7 @@ class CharacterReader {
   struct Morph {
     std::string name;
     double weight = 0;
-    std::size_t first = 0;  // first vertex in the soup
+    std::size_t first = 0;  // index of the first vertex of the mesh in the soup
     std::vector<Vec3> displacements;
 
     Vec3 at(std::size_t v) const {
@@ -449,7 +448,7 @@ class CharacterReader {
   ReadCharacter read_;
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
-  std::vector<Affine> globals_;  // per node: transform to world at rest
+  std::vector<Affine> globals_;  // per node: transform to world in the rest pose
   Soup soup_;
   std::vector<Weights> weights_;  // per vertex of the soup
   std::vector<Index> materials_;  // per vertex of the soup; −1: no material

@@ -25,20 +25,19 @@ struct ReadCharacter {
 struct MeshChoice {
   std::vector<std::string> only;       ///< meshes to use; empty: all
   std::vector<std::string> without;    ///< meshes to leave out
-  std::vector<std::string> elsewhere;  ///< meshes of cloths, left out; may contain unknown names
+  std::vector<std::string> elsewhere;  ///< meshes to leave out because cloths use them; may contain unknown names
 };
 
-/// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share
-/// one list of bones. A mesh without bones is copied for each node that refers to it, and each copy
-/// is bound to a bone at its node. Finds pictures as read_materials() does; reads none if `file` is
-/// empty. Throws std::runtime_error that names the unusable part: indices out of range, non-finite
-/// numbers, bones without a node, key times that decrease, unknown names in `choice.only` and
-/// `choice.without`.
+/// Converts nodes, meshes with their weights and morph targets, and animations. All meshes share one list of bones. A
+/// mesh without bones is copied for each node that refers to it, and each copy is bound to a bone at its node. Reads
+/// pictures with read_materials(); if `file` is empty, reads none. Throws std::runtime_error that names the unusable
+/// part in these cases: indices out of range, non-finite numbers, bones without a node, decreasing key times, unknown
+/// names in `choice.only` or `choice.without`.
 ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
 
-/// Serialises a character that was read from a file, for transfer between two processes of the same
-/// program, and back.
+/// Serialises a character that was read from a file, for transfer between two processes of the same program.
 std::string to_bytes(ReadCharacter& read);
+/// The reverse of to_bytes(). Throws std::runtime_error if the data are incomplete.
 ReadCharacter character_from_bytes(std::string_view bytes);
 
 }  // namespace weft::assets

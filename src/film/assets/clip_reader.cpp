@@ -13,13 +13,14 @@
 namespace weft::assets {
 namespace {
 
-/// Ticks per second of files that do not state them; the default in the documentation of assimp.
+/// Ticks per second of files that do not state them. This is the default in the documentation of assimp.
 constexpr double kDefaultTicksPerSecond = 25;
 
-/// Longer clips are treated as damaged [s].
+/// Maximum length of a clip [s]. Files with longer clips count as damaged.
 constexpr double kMaxClipLength = 86400;
 
-/// Keys past the end of a clip by less than this fraction of its length are rounding errors and cause no warning.
+/// There is no warning for keys that are after the end of a clip by less than this fraction of its length, because this
+/// is only a rounding error.
 constexpr double kEndSlack = 1e-4;
 
 Vec3 to_value(const aiVector3D& v) {
@@ -41,12 +42,13 @@ Quat tidy(const Quat& q) {
   return q.normalized();
 }
 
+/// Converts the channels of one animation.
 struct ClipReader {
   const aiAnimation& animation;
   std::string name;
   double ticks_per_second = kDefaultTicksPerSecond;
-  double last_key = 0;         // [s]
-  std::string last_channel{};  // channel of that key
+  double last_key = 0;         // latest key time so far [s]
+  std::string last_channel{};  // channel of the key at `last_key`
 
   [[noreturn]] void fail(const std::string& channel, const std::string& why) const {
     throw std::runtime_error(fmt::format("clip \"{}\", channel \"{}\": {}", name, channel, why));
@@ -64,7 +66,7 @@ struct ClipReader {
     return t;
   }
 
-  /// Appends a key. Of several keys at the same time, the last is used.
+  /// Appends a key. If there are several keys at the same time, the last one counts.
   template <class Value>
   void append(character::Curve<Value>& curve, double t, const Value& value, const std::string& channel) const {
     if (!curve.times.empty() && t < curve.times.back())
@@ -117,10 +119,10 @@ struct ClipReader {
   }
 };
 
-/// For some FBX nodes, assimp inserts a chain of helper nodes above them, named after the node;
-/// each helper has a part of the transform. If a channel has keys for both position and rotation of
-/// such a node, it has the whole transform. Then the helpers without a channel of their own get
-/// identity channels, so that nothing applies twice.
+/// Above some FBX nodes, assimp inserts a chain of helper nodes, which it names after the node. Each helper has a part
+/// of the node's transform. If a channel has keys for both position and rotation of such a node, it contains the whole
+/// transform. Then gives the helpers without a channel identity channels, so that no part of the transform applies
+/// twice.
 void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
                            character::Clip& clip) {
   if (from.mNumPositionKeys == 0 || from.mNumRotationKeys == 0) return;
@@ -132,7 +134,7 @@ void add_identity_channels(const aiNodeAnim& from, const ClipTargets& targets, s
           {helper->second, {{0}, {Vec3::Zero()}}, {{0}, {Quat::Identity()}}, {{0}, {Vec3::Ones()}}});
 }
 
-/// Removes the suffix ("*0", "*1") that assimp appends to the name of a mesh that it splits into parts.
+/// Removes the suffix ("*0", "*1") that assimp appends to the name of a mesh if it splits the mesh into parts.
 std::string plain_name(const std::string& name) {
   return name.substr(0, name.find('*'));
 }

@@ -21,12 +21,11 @@ struct ClipTargets {
   std::multimap<std::string, Morphs> morphs;
 };
 
-/// Converts an animation. Skips channels of unknown objects, and further channels of a node that
-/// already has one, with a warning. If keys lie past the end of the clip, extends the clip to the
-/// last key; warns unless the excess is a rounding error. Throws std::runtime_error that names the
-/// clip if its length is a day or more. Throws one that names clip and channel if key times
-/// decrease, if a key time is a day or more, if numbers are not finite, or if a key names a morph
-/// target that does not exist.
+/// Converts an animation. Skips channels of unknown objects, and the second and later channels of a node, with a
+/// warning. If keys are after the end of the clip, extends the clip to the last key, with a warning unless the
+/// difference is a rounding error. Throws std::runtime_error that names the clip if its length is a day or more, and
+/// one that names clip and channel if key times decrease, if a key time is a day or more, if numbers are not finite, or
+/// if a key names a morph target that does not exist.
 character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets, std::vector<std::string>& warnings);
 
 }  // namespace weft::assets

@@ -35,8 +35,8 @@ constexpr std::string_view kStart = "glTF";
 // Binary layout: "glTF", version, length; then chunks: length, "JSON" or "BIN\0", content.
 constexpr std::size_t kHeader = 12, kChunkHeader = 8;
 
-/// A required extension whose name contains one of these texts is accepted: it changes only the appearance, or is
-/// supported.
+/// A required extension is accepted if its name contains one of these texts. Such an extension changes only the
+/// appearance, or is supported.
 constexpr std::array kAllowedExtensions = {"_materials_",           "_texture_", "_technique", "_lights_", "_xmp",
                                            "KHR_mesh_quantization", "VRM"};
 
@@ -140,9 +140,10 @@ std::size_t components_of(const Json& accessor) {
   throw std::runtime_error(fmt::format("expected SCALAR or VEC2 to VEC4 as the type of integers, got \"{}\"", type));
 }
 
-/// Largest interval between keys that replace a spline [s], and their largest number in an interval of the spline.
+/// Maximum time between the keys that replace a spline [s], and maximum number of such keys for one interval of the
+/// spline.
 constexpr double kSplineInterval = 1.0 / 60, kMaxSplinePieces = 1000;
-/// Duration of the change from one value to the next that replaces a step [s]: less than a frame.
+/// Duration of the linear change that replaces a step [s]. It is shorter than a frame.
 constexpr double kStepDuration = 1e-3;
 
 /// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats, the values of
@@ -239,7 +240,7 @@ class Rewriter {
     return new_accessors_[accessor] = append_floats(copy, values_of(copy));
   }
 
-  /// Appends an accessor of floats, and returns its number. `copy`: an accessor with the same type of elements.
+  /// Appends an accessor of floats, and returns its index. `copy`: an accessor with the same type of elements.
   int append_floats(Json copy, const std::vector<double>& values) {
     for (const char* key : {"normalized", "byteOffset", "min", "max", "sparse"}) copy.erase(key);
     copy["componentType"] = kFloat;
@@ -255,8 +256,9 @@ class Rewriter {
     return static_cast<int>(gltf_["accessors"].size()) - 1;
   }
 
-  /// Replaces the keys of a spline or of steps by more keys with linear changes between them, since assimp takes the
-  /// keys of any sampler for such. Leaves steps between equal values, which some programs write for all that is still.
+  /// Replaces the keys of a spline or of steps by more keys with linear interpolation, because assimp interpolates the
+  /// keys of any sampler linearly. Does not change steps between equal values, which some programs write for objects
+  /// that do not move.
   void make_linear(Json& sampler) {
     const std::string kind = value_or<std::string>(sampler, "interpolation", "");
     const bool spline = kind == "CUBICSPLINE";
@@ -264,7 +266,7 @@ class Rewriter {
     const Json input = entry_of(gltf_, "accessors", value_or<int>(sampler, "input", -1)),
                output = entry_of(gltf_, "accessors", value_or<int>(sampler, "output", -1));
     const std::vector<double> times = numbers_of(input), values = numbers_of(output);
-    // A key of a spline has three parts: the tangent before it, its value, and the tangent behind it.
+    // A key of a spline has three parts: the tangent before the key, the value, and the tangent after the key.
     const std::size_t parts = spline ? 3 : 1, value_part = spline ? 1 : 0, keys = times.size();
     if (keys < 2 || values.empty() || values.size() % (parts * keys) != 0) return;
     if (!std::ranges::all_of(times, [](double t) { return std::isfinite(t); })) return;
@@ -307,7 +309,7 @@ class Rewriter {
   /// The values of an accessor of integers or floats.
   std::vector<double> numbers_of(const Json& accessor) {
     if (integer_of(accessor) != nullptr) return values_of(accessor);
-    // Reads floats as integers of the same bits.
+    // Reads each float as an integer with the same bits, then converts the bits back.
     Json bits = accessor;
     bits.erase("normalized");
     bits["componentType"] = kIntegers.back().code;
@@ -341,7 +343,8 @@ class Rewriter {
     return values;
   }
 
-  /// Reads integers as numbers. `from`: an accessor or a part of one, which gives the buffer view and the offset in it.
+  /// Reads integers as doubles. `from`: an accessor or a part of one, which states the buffer view and the offset in
+  /// it.
   std::vector<double> integers(const Json& from, const Component& type, std::size_t count, std::size_t components,
                                bool normalised) {
     const Json& view = entry_of(gltf_, "bufferViews", value_or<int>(from, "bufferView", -1));
@@ -418,7 +421,7 @@ class Rewriter {
   std::string own_data_;
   const std::filesystem::path& file_;
   std::map<int, std::string> buffers_;
-  std::map<int, int> new_accessors_;  // accessor of integers -> its accessor of floats
+  std::map<int, int> new_accessors_;  // index of an accessor of integers -> index of its accessor of floats
   std::string floats_;
 };
 

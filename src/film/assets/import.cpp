@@ -27,9 +27,9 @@
 namespace weft::assets {
 namespace {
 
-/// Opens files for assimp, also those that a file refers to (materials, buffers). Opens only regular files, since pipes
-/// and devices may never end. Also tries decoded names, since assimp 5.2 does not decode the percent-encoded names in
-/// glTF files.
+/// Opens files for assimp, also files to which a file refers (materials, buffers). Opens only regular files, because
+/// reading pipes and devices may never end. Also tries decoded names, because assimp 5.2 does not decode the
+/// percent-encoded names in glTF files.
 class RegularFiles : public Assimp::DefaultIOSystem {
  public:
   bool Exists(const char* file) const override { return !find(file).empty(); }
@@ -52,7 +52,7 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-/// If the data of a binary PLY file start with the byte of a line feed, assimp 5.2 reads this byte as a part of the
+/// If the first byte of the data of a binary PLY file is that of a line feed, assimp 5.2 reads it as a part of the
 /// header. Returns the bytes of such a file with an additional line feed before the data; nullopt for all other files.
 std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;

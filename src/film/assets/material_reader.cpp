@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 using character::Material;
 
-/// The type of the texture with the colour of the surface: base colour (physically based) if it exists, else diffuse.
+/// The type of the texture with the colour of the surface: base colour (physically based) if the material has it, else
+/// diffuse colour.
 std::optional<aiTextureType> picture_type(const aiMaterial& material) {
   for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
     if (material.GetTextureCount(type) > 0) return type;
@@ -47,7 +48,8 @@ bool is_picture(std::string_view bytes) {
   return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") || image::is_targa(bytes);
 }
 
-/// Folders in which programs store pictures: those beside the file, then those one folder above, each sorted by name.
+/// Folders in which programs store pictures: first those beside the file, then those beside its folder; each sorted by
+/// name.
 std::vector<fs::path> picture_folders(const fs::path& file) {
   const std::string stem = file.stem().string();
   std::vector<fs::path> folders;
@@ -66,8 +68,8 @@ std::vector<fs::path> picture_folders(const fs::path& file) {
   return folders;
 }
 
-/// Finds a picture file. Tries the path as given, then its file name beside `file` and in picture_folders(), because
-/// FBX and Collada store paths of the machine that wrote them.
+/// Finds a picture file. Tries the path as given. Then tries its file name beside `file` and in picture_folders(),
+/// because FBX and Collada store paths of the machine that wrote them.
 std::optional<fs::path> find_file(const std::string& texture_path, const fs::path& file) {
   std::string plain = texture_path.starts_with("file://") ? texture_path.substr(7) : texture_path;
   std::ranges::replace(plain, '\\', '/');
@@ -83,16 +85,15 @@ std::optional<fs::path> find_file(const std::string& texture_path, const fs::pat
   return std::nullopt;
 }
 
-/// Whether a path names no picture: assimp returns the current folder if FBX declares a picture without name or
-/// content.
+/// Whether a path names no picture. If FBX declares a picture without name or content, assimp returns the current
+/// folder as its path.
 bool is_nameless(const std::string& texture_path) {
   return texture_path.empty() || texture_path == "." || texture_path == "./" || texture_path == ".\\";
 }
 
 constexpr const char* kNameless = "neither named nor held by the file";
 
-/// The bytes of a picture. If the picture cannot be used, returns an empty string and sets
-/// `reason`.
+/// The bytes of a picture. If the picture cannot be used, returns an empty string and sets `reason`.
 std::string read_picture(const aiScene& scene, const aiString& texture_path, const fs::path& file,
                          std::string& reason) {
   std::string bytes;
@@ -132,8 +133,8 @@ Vec3 base_color(const aiMaterial& material) {
   return rgb.allFinite() ? Vec3(rgb.cwiseMax(0).cwiseMin(1)) : Vec3(Vec3::Constant(0.6));
 }
 
-/// Whether transparent parts are holes: in glTF, if the alpha mode is not OPAQUE; in other formats,
-/// if the material has an opacity picture.
+/// Whether transparent parts are holes: in glTF, if the alpha mode is not OPAQUE; in other formats, if the material has
+/// an opacity picture.
 bool is_cutout(const aiMaterial& material) {
   aiString mode;
   if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS) return std::string_view(mode.C_Str()) != "OPAQUE";
@@ -143,10 +144,10 @@ bool is_cutout(const aiMaterial& material) {
 /// Pictures that were skipped for the same reason.
 struct LeftOut {
   std::string reason;
-  std::vector<std::string> materials, pictures;  // names; those of pictures may be empty
+  std::vector<std::string> materials, pictures;  // names of the materials; paths of their pictures, may be empty
 };
 
-/// Text of the first three names, quoted, and of the number of others.
+/// Text with the first three names, quoted, and the number of the others.
 std::string quote_some(const std::vector<std::string>& names) {
   constexpr std::size_t kMaxQuotedNames = 3;
   std::string text;
@@ -176,8 +177,8 @@ Vec2 placed_uv(const aiMaterial& material, const Vec2& uv) {
   aiUVTransform placing;
   const bool is_gltf = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS;
   if (!type || !is_gltf || material.Get(AI_MATKEY_UVTRANSFORM(*type, 0), placing) != AI_SUCCESS) return uv;
-  // Undo a conversion by assimp: it changes the offset so that it applies to v upward and to a
-  // rotation by −angle about the middle of the picture.
+  // Reverses a conversion by assimp, which has changed the offset for v upward and for a rotation by −angle about the
+  // middle of the picture.
   const double cos = std::cos(placing.mRotation), sin = -std::sin(placing.mRotation);
   const Vec2 scale(placing.mScaling.x, placing.mScaling.y),
       offset(placing.mTranslation.x - scale.x() / 2 * (1 - cos + sin),
@@ -211,7 +212,8 @@ std::vector<Material> read_materials(const aiScene& scene, const fs::path& file,
       same->materials.push_back(material.name);
       same->pictures.emplace_back(texture_path.C_Str());
     } else if (*type == aiTextureType_DIFFUSE) {
-      // Ignore the colour: files often have a dark or black colour in addition to a picture that replaces it.
+      // Ignores the diffuse colour, because files often have a dark or black one in addition to a picture that replaces
+      // it.
       material.color = Vec3::Ones();
     }
   }

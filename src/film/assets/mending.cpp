@@ -18,13 +18,13 @@
 namespace weft::assets {
 namespace {
 
-/// Detached pieces with a smaller fraction of the area of the surface are removed.
+/// A detached piece is removed if its area is smaller than this fraction of the area of the surface.
 constexpr double kMaxSmallPieceArea = 0.02;
 /// Detached vertices move toward the mean of their triangles' centroids, by this fraction of the distance.
 constexpr double kCutGap = 0.2;
-/// Maximum length of a collapsed edge / minimum height of triangles.
+/// Maximum length of a collapsed edge, relative to the minimum height of triangles.
 constexpr double kMaxCollapseRatio = 8;
-/// Factor on the required height of triangles: margin for rest shapes from UVs, which differ from the mesh.
+/// Factor on the required height of triangles. The margin is for rest shapes from UVs, which differ from the mesh.
 constexpr double kHeightMargin = 1.1;
 constexpr int kMaxCollapseRounds = 8;
 
@@ -53,8 +53,8 @@ void keep_triangles(LoadedMesh& loaded, const std::vector<std::uint8_t>& kept) {
   if (!loaded.uv.empty()) loaded.uv.resize(to);
 }
 
-/// Keeps only the vertices that triangles use, in the order of use. `from`: for each current vertex, the vertex from
-/// which it takes its colour and groups.
+/// Keeps only the vertices that triangles use, in the order of use. `from`: for each vertex, the original vertex whose
+/// colour and groups it gets.
 void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
   std::vector<Index> renamed(loaded.mesh.positions.size(), -1), kept;
   for (Triangle& t : loaded.mesh.topology.triangles)
@@ -98,7 +98,7 @@ struct Joint {
   }
 };
 
-/// Pairs the triangles at each edge, the most nearly coplanar first; each triangle is in at most one pair per edge.
+/// Pairs the triangles at each edge, the most nearly coplanar ones first. A triangle is in at most one pair per edge.
 std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const std::vector<Vec3>& x = loaded.mesh.positions;
@@ -131,7 +131,8 @@ std::vector<Joint> joints_of(const LoadedMesh& loaded) {
   return joints;
 }
 
-/// Orients each connected piece like the majority of its area. Returns the number of flipped triangles.
+/// Gives all triangles of a connected piece the orientation that most of its area has. Returns the number of flipped
+/// triangles.
 std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   // Neighbours of each triangle, and whether they face the same way.
@@ -166,9 +167,9 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
   return turned;
 }
 
-/// At each edge of more than two triangles, or of two that face opposite ways, detaches the
-/// triangles that `joints` do not join, or join with opposite orientations: gives them vertices of
-/// their own, and moves these vertices away from the edge. Removes small detached pieces.
+/// Repairs each edge that more than two triangles share, or two triangles of opposite orientation: detaches the
+/// triangles that `joints` do not join, or join with opposite orientations. Detached triangles get vertices of their
+/// own, which are moved away from the edge. Removes small detached pieces.
 void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
@@ -208,8 +209,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
     areas[piece_of[at(cut_triangles[t][0])]] += area(loaded, t);
     whole += area(loaded, t);
   }
-  // One copy of each vertex stays in place: the copy in the largest piece; of several copies there,
-  // the one that most triangles use.
+  // One copy of each vertex keeps its position: the copy in the largest piece. If this piece has several copies, it is
+  // the copy that most triangles use.
   std::map<Index, std::pair<double, Index>> kept_copies;
   std::vector<int> use_count(from.size(), 0);
   for (const Triangle& t : cut_triangles)
@@ -242,8 +243,8 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// At edges that cut() could not repair, since other triangles connect the sides, keeps only the
-/// most nearly coplanar pair of triangles that face the same way, and removes the others.
+/// Repairs edges that cut() could not repair because other triangles connect both sides: keeps only the most nearly
+/// coplanar pair of triangles of the same orientation, and removes the others.
 void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
@@ -267,7 +268,7 @@ void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
   keep_triangles(loaded, kept);
 }
 
-/// Removes flat triangles one by one: collapses the shortest edge if possible, else flips the longest one.
+/// Removes flat triangles one by one: collapses their shortest edge if possible, otherwise flips their longest edge.
 class EdgeCollapser {
  public:
   EdgeCollapser(LoadedMesh& loaded, double flattest)
@@ -322,8 +323,8 @@ class EdgeCollapser {
     return all;
   }
 
-  /// Merges vertex b into a, and removes the triangles that contain both. Does nothing and returns false if this would
-  /// change the border, join separate parts, reverse or flatten a triangle, or make the UVs discontinuous.
+  /// Merges vertex b into vertex a, and removes the triangles that contain both. If this would change the border, join
+  /// separate parts, reverse or flatten a triangle, or make the UVs discontinuous, does nothing and returns false.
   bool collapse(Index a, Index b, std::vector<std::uint8_t>& kept) {
     const bool border_edge = on_border_.contains(std::minmax(a, b));
     if (is_on_border(b) && !border_edge) return false;
@@ -360,8 +361,8 @@ class EdgeCollapser {
     return true;
   }
 
-  /// Flips the longest edge of a flat triangle if the UVs are continuous there and the smaller height of both triangles
-  /// grows.
+  /// Flips the longest edge of a flat triangle if the UVs are continuous there, and if this increases the smaller of
+  /// the heights of both triangles. Returns whether it did.
   bool flip(std::size_t t) {
     std::size_t k = 0;
     for (std::size_t i = 1; i < 3; ++i)
@@ -416,7 +417,7 @@ class EdgeCollapser {
   std::vector<Triangle>& triangles_;
   std::vector<std::vector<std::size_t>> around_;  // triangles around each vertex
   std::set<std::pair<Index, Index>> on_border_;
-  double min_height_ = 0;  // minimum height [m]
+  double min_height_ = 0;  // triangles of smaller height are flat [m]
 };
 
 }  // namespace
@@ -450,7 +451,7 @@ MendingReport mend_sheet(LoadedMesh& loaded, double flattest) {
     std::iota(from.begin(), from.end(), 0);
     keep_vertices(loaded, from);
   }
-  // Repeat, since collapsing and flipping can make other triangles flat.
+  // Repeats this, because collapsing and flipping can make other triangles flat.
   for (int round = 0; round < kMaxCollapseRounds; ++round) {
     const std::size_t collapsed = EdgeCollapser(loaded, kHeightMargin * flattest).run();
     mended.collapsed += collapsed;

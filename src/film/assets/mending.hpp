@@ -13,7 +13,7 @@ struct MendingReport {
   std::size_t doubled = 0;    ///< removed triangles that have the same corners as another triangle
   std::size_t turned = 0;     ///< triangles flipped to match those around them
   std::size_t cut = 0;        ///< edges cut open: non-manifold or between opposite orientations
-  std::size_t pieces = 0;     ///< removed: small pieces, and triangles that cannot be detached
+  std::size_t pieces = 0;     ///< removed small pieces, and removed triangles that could not be detached
   double left_out = 0;        ///< area of `pieces` / area of the surface
   std::size_t collapsed = 0;  ///< collapsed or flipped edges of flat triangles
 
@@ -23,17 +23,16 @@ struct MendingReport {
   std::string describe() const;
 };
 
-/// Repairs a surface. `flattest`: minimum height of a triangle / longest edge of the mesh.
-/// - Of triangles with the same corners, as in surfaces modelled with two sides, one is kept.
-/// - Each connected piece is oriented like the majority of its area.
-/// - If more than two triangles share an edge, they are joined in pairs, the most nearly coplanar
-///   ones first, and otherwise detached. Two triangles that still face opposite ways are also
-///   detached. Small detached pieces are removed; larger ones are moved slightly away from the
-///   edge. Triangles that cannot be detached are removed.
-/// - A triangle is flat if its height is below 1.1 · `flattest` · (longest edge of the mesh). The
-///   shortest edge of a flat triangle is collapsed if it is short enough, else the longest edge is
-///   flipped, provided that the sheet stays manifold and its UVs stay continuous.
-/// - Vertices that no triangle uses are removed.
+/// Repairs a surface. `flattest`: minimum height of a triangle, relative to the longest edge of the mesh.
+/// - If several triangles have the same corners, as in surfaces modelled with two sides, keeps one of them.
+/// - Gives all triangles of a connected piece the orientation that most of its area has.
+/// - If more than two triangles share an edge, joins them in pairs, the most nearly coplanar ones first, and detaches
+///   the others. Also detaches pairs of opposite orientation. Removes small detached pieces, and moves larger ones
+///   slightly away from the edge. Removes triangles that cannot be detached.
+/// - A triangle is flat if its height is below 1.1 · `flattest` · (longest edge of the mesh). Collapses the shortest
+///   edge of a flat triangle if it is short enough, otherwise flips the longest edge, provided that the sheet stays
+///   manifold and its UVs stay continuous.
+/// - Removes vertices that no triangle uses.
 /// Updates UVs, colours and groups.
 MendingReport mend_sheet(LoadedMesh& loaded, double flattest);
 

@@ -38,9 +38,9 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   return first;
 }
 
-/// Merges vertices at exactly the same position (0 and −0 are equal), drops vertices that no face uses, and orders the
-/// others by their first use in faces. Adds the number of merged copies to `joined`. Returns the new index of each
-/// vertex; −1: dropped.
+/// Merges vertices at exactly the same position (0 and −0 are equal), removes vertices that no face uses, and orders
+/// the others by their first use in faces. Adds the number of merged copies to `joined`. Returns the new index of each
+/// vertex; −1: removed.
 std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   const std::vector<Index> first = first_at_same_place(soup.positions);
   std::vector<Index> renamed(first.size(), -1);
@@ -63,7 +63,7 @@ std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   return renamed;
 }
 
-/// Copies colours and groups of vertices. `renamed`: new index of each vertex; −1: dropped.
+/// Copies colours and groups of vertices. `renamed`: new index of each vertex; −1: removed.
 void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
   const std::size_t count = result.mesh.positions.size();
   for (std::size_t v = 0; v < renamed.size(); ++v) {
@@ -82,7 +82,8 @@ void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, Loade
   }
 }
 
-/// UVs of the triangles of make_topology(). `soup`: before its vertices are merged; its list of triangles is the same.
+/// UVs of the triangles of make_topology(). `soup`: the soup before its vertices are merged, with the same list of
+/// triangles.
 std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   std::vector<std::array<Vec2, 3>> corners;
   if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
@@ -92,7 +93,7 @@ std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
   return corners;
 }
 
-/// A border vertex, and the maximum distance of other border vertices that are merged with it [m].
+/// A border vertex, and the maximum distance at which another border vertex is merged with it [m].
 struct BorderVertex {
   Index vertex;
   double weld_distance;
@@ -114,7 +115,7 @@ std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double ratio) {
 Welded weld_borders(LoadedMesh& loaded, double ratio) {
   const std::vector<Vec3>& x = loaded.mesh.positions;
   std::vector<BorderVertex> border = border_of(loaded.mesh, ratio);
-  // Sort by the x coordinate, so that only vertices with similar x are compared.
+  // Sorts by the x coordinate, so that only vertices with similar x are compared.
   std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
   DisjointSets sets(x.size());
   Welded welded;
@@ -175,7 +176,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (up != scene::FileUp::as_file) turn = rotation_to_scene_axes(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {
     x = axes.scale * (turn * x);
-    // The bound also keeps products of squared lengths finite.
+    // The limit also ensures that products of squared lengths are finite.
     if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
       source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
                               x.z()));

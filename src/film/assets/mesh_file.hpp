@@ -16,7 +16,7 @@ namespace weft::assets {
 
 /// A mesh, and counts of the repairs that were made while reading it.
 struct LoadedMesh {
-  mesh::Mesh mesh;  ///< in metres, without uv; made of quads if the file has only quads, all with an area
+  mesh::Mesh mesh;  ///< in metres, without uv; has quads if all faces of the file are quads with an area
   /// Texture coordinates of the corners of each triangle, v upward; they can differ between triangles at one vertex.
   /// NaN for meshes of the file without texture coordinates; empty if no mesh has them.
   std::vector<std::array<Vec2, 3>> uv;
@@ -30,9 +30,9 @@ struct LoadedMesh {
   std::size_t joined_vertices = 0;    ///< copies of a vertex (for other UVs or normals) that were merged
 };
 
-/// How to interpret the lengths and axes of a mesh file. If `up` is as_file, the up axis of the
-/// file is the one that the file states (glTF, FBX, Collada), else `default_up`. The mesh is
-/// rotated to the axes of the scene.
+/// How to interpret the lengths and axes of a mesh file. If `up` is as_file, the up axis of the file is that stated in
+/// the file (glTF, FBX, Collada), or `default_up` if the file states none. The mesh is rotated to the axes of the
+/// scene.
 struct MeshAxes {
   double scale = 1;  ///< factor on all lengths
   scene::FileUp up = scene::FileUp::as_file;
@@ -41,10 +41,11 @@ struct MeshAxes {
 };
 
 /// Reads the surfaces of a file (OBJ, PLY, STL, glTF and other formats of assimp) as one mesh: those of the mesh or
-/// node `object`, or all if it is empty. Applies the transforms of nodes. A skinned mesh keeps its bind pose, placed by
-/// the bone with the largest sum of weights. Ignores points and lines. Positions are in metres if the file states its
-/// unit (FBX, Collada). Merges equal positions, so that a closed body is watertight. `where` names the scene entry,
-/// such as "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with `where`, the file and the reason.
+/// node `object`, or all if it is empty. Applies the transforms of nodes. A skinned mesh keeps its bind pose; the bone
+/// with the largest sum of weights determines its position. Ignores points and lines. Converts positions to metres if
+/// the file states its unit (FBX, Collada). Merges equal positions, so that a closed body is watertight. `where` names
+/// the scene entry, such as "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with `where`, the file
+/// and the reason.
 LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, const std::string& where,
                      const std::string& object = {});
 
@@ -54,10 +55,9 @@ struct Welded {
   double widest = 0;         ///< largest distance between merged vertices [m]
 };
 
-/// Merges border vertices that nearly coincide, as in files that keep panels separate. Two vertices
-/// are merged if their distance is at most `ratio` times the shortest border edge at each of them;
-/// merged vertices are placed at their mean. If the merged mesh is not manifold, changes nothing
-/// and returns zeros.
+/// Merges border vertices that nearly coincide, as in files in which panels are separate. Merges two vertices if their
+/// distance is at most `ratio` times the shortest border edge at each of them, and places them at their mean position.
+/// If the merged mesh is not manifold, changes nothing and returns zeros.
 Welded weld_borders(LoadedMesh& loaded, double ratio);
 
 }  // namespace weft::assets

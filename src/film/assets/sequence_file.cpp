@@ -15,11 +15,11 @@
 namespace weft::assets {
 namespace {
 
-/// Maximum size of the positions of all files [bytes]; far more than is practical.
+/// Maximum size of the positions of all files [bytes]. A larger size is not practical.
 constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 
-/// The vertex indices of the faces of an OBJ file, as text; empty for other files. Reads the file itself, because
-/// assimp makes a separate vertex for each corner.
+/// The vertex indices of the faces of an OBJ file, as text; empty for other formats. Reads the file without assimp,
+/// because assimp makes a separate vertex for each corner.
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
   if (ending_of(file) != ".obj") return numbers;
@@ -42,7 +42,8 @@ void check_same_faces(const Source& source, const std::filesystem::path& first_f
   if (other.positions.size() != first.positions.size())
     fail("vertices", first.positions.size(), other.positions.size());
   if (other.quads.size() != first.quads.size()) fail("quads", first.quads.size(), other.quads.size());
-  // Compare only the corners of polygons: their division into triangles depends on their shape, which may change.
+  // Compares only the corners of polygons, because their division into triangles depends on their shape, which may
+  // change.
   const bool same = other.polygons == first.polygons && other.quads == first.quads &&
                     face_numbers(source.file) == face_numbers(first_file);
   if (!same && other.triangles.size() != first.triangles.size())

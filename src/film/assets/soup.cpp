@@ -25,8 +25,8 @@ namespace {
 
 using Transform = Eigen::Matrix4d;
 
-/// Triangles with a smaller ratio area / (longest side)² count as having no area: their normals are only rounding
-/// errors of the single precision of assimp.
+/// A triangle counts as having no area if the ratio area / (longest side)² is smaller than this. Its normal then
+/// consists only of rounding errors, because assimp uses single precision.
 constexpr double kMinFaceArea = 1e-7;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -56,7 +56,7 @@ void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
   }
 }
 
-/// Appends one mesh, transformed to the world, with its morph targets at the weights that the file states.
+/// Appends one mesh, transformed to the world. Morph targets have the weights that the file states.
 void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Transform& to_world) {
   const std::size_t base = soup.positions.size();
   if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
@@ -75,7 +75,7 @@ void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Tra
       soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
   }
   append_groups(soup, part, base);
-  // A mirroring transform turns faces inside out: reverse the order of their corners.
+  // If the transform mirrors, faces would point inward. Reverses the order of their corners.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
   std::vector<Index> corners;
   for (const aiFace& face : std::span(part.mFaces, part.mNumFaces)) {
@@ -97,7 +97,7 @@ using PlacedNode = std::pair<const aiNode*, Transform>;
 
 std::vector<PlacedNode> placed_nodes(const aiNode& root) {
   std::vector<PlacedNode> nodes;
-  // The traversal has its own stack, since files can nest nodes deeper than the call stack allows.
+  // The traversal has its own stack, because nodes of a file can be nested more deeply than the call stack allows.
   std::vector<PlacedNode> stack{{&root, to_eigen(root.mTransformation)}};
   while (!stack.empty()) {
     const auto [node, to_world] = stack.back();
@@ -113,9 +113,9 @@ std::vector<PlacedNode> placed_nodes(const aiNode& root) {
 }
 
 /// Transform from mesh to world. For a mesh without usable bones, it is the transform of the mesh's node. Otherwise, it
-/// is (bone's node to world) × (bone offset) of the bone with the largest sum of weights. Bones whose transform is
-/// nearly singular are not usable. Characters use the same rule (character_reader.cpp), because glTF places skinned
-/// meshes by their bones, whichever node refers to them.
+/// is (bone's node to world) × (bone offset) of the bone with the largest sum of weights. A bone is not usable if this
+/// product is nearly singular. character_reader.cpp uses the same rule. The reason for the rule: in glTF, bones alone
+/// determine the position of a skinned mesh; the node that refers to the mesh has no effect.
 Transform placement_of(const aiMesh& part, const Transform& of_node,
                        const std::unordered_map<std::string, Transform>& placed) {
   Transform placing = of_node;
@@ -173,7 +173,8 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Soup soup;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
-  // Transforms of nodes by name. Of several nodes with one name, the first without a mesh counts, else the first.
+  // Transforms of nodes by name. If several nodes have the same name, the first without a mesh counts, or the first if
+  // all have meshes.
   std::unordered_map<std::string, Transform> placed;
   for (const bool has_mesh : {false, true})
     for (const auto& [node, to_world] : nodes)

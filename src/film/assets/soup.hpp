@@ -33,25 +33,25 @@ struct Soup {
   std::vector<int> up;  ///< one entry: up axis of the file or its format (0 x, 1 y, 2 z); empty: not stated
 };
 
-/// Reads the meshes whose own name or whose node's name is `object` (empty: all meshes),
-/// transformed to the world. Ignores points and lines. Throws std::runtime_error with the message
-/// of assimp or, if no mesh with vertices has the name, with the existing names. Damaged files can
-/// crash assimp or block it for ever: call this only through run_isolated().
+/// Reads the meshes whose name or whose node's name is `object` (empty: all meshes), and transforms them to the world.
+/// Ignores points and lines. Throws std::runtime_error with the message of assimp or, if no mesh with vertices has the
+/// name, with the existing names. Call this function only through run_isolated(), because damaged files can crash
+/// assimp or block it for ever.
 Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
 
-/// Appends a face. A face that is no quad is divided into triangles.
+/// Appends a face. Divides a face that is no quad into triangles.
 void append_face(Soup& soup, std::span<const Index> corners);
 
-/// The surface of a soup. A triangle has no area if, in `soup` and in all `later_positions`
-/// (positions in later files of a sequence), it has a repeated corner or all corners on a line. If
-/// the soup has only quads and both halves of each quad have an area, the surface has these quads.
-/// Otherwise, it has only triangles; those without area are removed, and `removed_triangles` is set
-/// to their number.
+/// The surface of a soup. If the soup has only quads, and both halves of each quad have an area, the surface has these
+/// quads. Otherwise, it has only triangles with an area; sets `removed_triangles` to the number of the others. A
+/// triangle has no area if it has a repeated corner or all corners on a line, in `soup` and in all `later_positions`
+/// (positions in later files of a sequence).
 mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions = {});
 
-/// Serialises a soup for transfer between two processes of the same program, and back.
+/// Serialises a soup for transfer between two processes of the same program.
 std::string to_bytes(const Soup& soup);
+/// The reverse of to_bytes(). Throws std::runtime_error if the data are incomplete.
 Soup from_bytes(std::string_view bytes);
 
 }  // namespace weft::assets

@@ -15,12 +15,12 @@
 namespace weft::assets {
 namespace {
 
-constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // address space limit for reading [bytes]
+constexpr std::uint64_t kMaxAddressSpace = std::uint64_t{16} << 30;  // limit for the child process [bytes]
 
-/// Refuses two kinds of PLY files: those whose header has no end, which block assimp 5.2 until the time limit, and
-/// those with triangle strips, since assimp reads only one triangle of each strip.
+/// Refuses two kinds of PLY files: those whose header has no end, because they block assimp 5.2 until the time limit;
+/// and those with triangle strips, because assimp reads only one triangle of each strip.
 void check_ply_header(const Source& source) {
-  constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of real headers
+  constexpr std::size_t kHeaderBytes = 1 << 16;  // a hundred times the size of usual headers
   const std::string start = read_start(source.file, kHeaderBytes);
   const bool ply = start.starts_with("ply") || start.starts_with("PLY");
   if (!ply) return;
@@ -30,13 +30,13 @@ void check_ply_header(const Source& source) {
     source.fail("expected faces, got triangle strips (tristrips), which are not read; export the file with faces");
 }
 
-/// CPU time limit for reading [s]: many times what assimp needs for its slowest text formats (about 10 MB/s), so that
-/// only files that block it for ever exceed the limit.
+/// CPU time limit for reading [s]. It is many times what assimp needs for its slowest text formats (about 10 MB/s), so
+/// that only files that block assimp for ever exceed it. `bytes`: size of the file.
 unsigned time_limit(std::uintmax_t bytes) {
   return 5 + static_cast<unsigned>(bytes >> 20);
 }
 
-/// Wall time limit / CPU time limit. It is large, since many processes may share a machine.
+/// Wall time limit, relative to the CPU time limit. It is large, because many processes may share a machine.
 constexpr unsigned kWallFactor = 20;
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace weft::assets {
 
-/// Maximum file size [bytes]. Larger files are scans, which are too detailed for collision in every frame.
+/// Maximum file size [bytes]. Larger files usually are 3D scans, whose meshes are too fine for collision.
 inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 
 /// Limit of coordinates [m]. A file with a larger coordinate counts as damaged: no scene is a thousand kilometres wide.
@@ -31,13 +31,14 @@ struct Source {
   /// The text that fail() throws; also used for warnings.
   std::string describe(const std::string& what) const;
 
-  /// Throws like fail() if the file is missing, no regular file, empty, larger than
-  /// kMaxMeshFileBytes, or a PLY file that assimp misreads or that blocks assimp for ever.
+  /// Throws like fail() if the file is missing, no regular file, empty, larger than kMaxMeshFileBytes, or a PLY file
+  /// that assimp misreads or that blocks assimp for ever.
   void check() const;
   /// Calls check(), then `read` in a child process, and returns its result. If the child fails or exceeds its limits on
   /// time and memory, throws like fail() with the reason.
   std::string read(const std::function<std::string()>& read) const;
-  /// Returns the result of `work`. Turns any exception other than Error into fail(), since the file causes it.
+  /// Returns the result of `work`. If `work` throws an exception other than Error, calls fail() with its message,
+  /// because the file is the cause.
   template <class Work>
   auto checked(const Work& work) const {
     try {

@@ -35,7 +35,8 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-// A line of OBJ without the comment after its numbers. Other lines stay as they are: names may contain #.
+// A line of OBJ without the comment after its numbers. Lines without numbers are not changed, because names may contain
+// the character #.
 std::string_view without_comment(std::string_view line) {
   constexpr std::array<std::string_view, 6> kWithNumbers{"v", "vt", "vn", "f", "l", "p"};
   const std::string_view start = trimmed(line);

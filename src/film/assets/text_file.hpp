@@ -7,8 +7,8 @@
 
 namespace weft::assets {
 
-/// Returns text that assimp reads in place of `file`, or nullopt if assimp can read the file
-/// itself. The text differs from the file as follows:
+/// Returns the text that assimp shall read instead of `file`, or nullopt if assimp can read `file` itself. The text
+/// differs from the file as follows:
 /// - All formats: it has no byte order mark, which assimp would read as a part of the first line.
 /// - OBJ: it has no comments in lines of numbers (vertices, UVs, normals, faces, line elements,
 ///   points).
