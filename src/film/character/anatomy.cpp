@@ -12,16 +12,17 @@
 namespace weft::character {
 namespace {
 
-/// Vectors shorter than this, absolutely or relative to the vector that they derive from, have no reliable direction.
+/// The direction of a vector is not reliable if its length is below this [m], or below this fraction of the length of
+/// the vector from which it was computed.
 constexpr double kNegligibleLength = 1e-9;
 
-/// Minimum mean weight, over all postures, of the directions that determine an axis. If the mean
-/// weight is smaller, a guess gets the missing weight. The weight of a hinge is the squared sine of
-/// its bend, so that elbows that stay bent by 13° need no guess.
+/// Minimum mean weight, over all postures, of the directions that determine an axis. If the mean weight is smaller, a
+/// guessed direction gets the missing weight. The weight of a hinge is the squared sine of its bend; an elbow that is
+/// always bent by 13° reaches the minimum.
 constexpr double kMinDeterminedWeight = 0.05;
 
-/// Widths of the Gaussian weights of postures (see falloff) by their angle from upright [rad]: of the whole trunk, and
-/// of each of its bones. The trunk leans by 2 to 5° in walking, by more than 15° in stooping.
+/// The weight of a posture decreases with its angle from upright. Widths of the Gaussians (see falloff) for the whole
+/// trunk, and for each of its bones [rad]. The trunk leans by 2 to 5° in walking, by more than 15° in stooping.
 constexpr double kStandingLean = 5 * kDegree, kStandingBoneLean = 20 * kDegree;
 
 Vec3 unit(const Vec3& v) {
@@ -59,8 +60,8 @@ class AnatomyFinder {
   AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
       : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
     own_.fill(Quat::Identity());
-    // `level_` replaces the vector to the left of the body if hip and shoulder joints are missing.
-    // This vector depends on `up` only, so that two skeletons get the same vector.
+    // `level_` replaces the vector to the left of the body if hip and shoulder joints are missing. It depends only on
+    // `up`, so that two skeletons get the same vector.
     level_ = up.unitOrthogonal();
   }
 
@@ -93,8 +94,8 @@ class AnatomyFinder {
     return sum;
   }
 
-  /// Weighted sum of the directions `shown`. If their mean weight is below kMinDeterminedWeight, the directions `guess`
-  /// get the missing weight.
+  /// Weighted sum of the directions `shown`, which the postures determine. If their mean weight is below
+  /// kMinDeterminedWeight, the directions `guess` get the missing weight.
   template <class Weight, class Shown, class Guess>
   Vec3 sum(Joint joint, const Weight& weight, const Shown& shown, const Guess& guess) const {
     double weight_sum = 0;
@@ -119,7 +120,7 @@ class AnatomyFinder {
 
   Vec3 along(const Posture& posture, Joint joint) const { return unit(skeleton_.bone(posture, joint)); }
 
-  /// The chest; in a skeleton without a chest, the spine or else the hips.
+  /// The chest; without a chest, the spine; without both, the hips.
   Joint trunk_joint() const {
     for (const Joint joint : {Joint::chest, Joint::spine})
       if (skeleton_.has(joint)) return joint;
@@ -132,8 +133,8 @@ class AnatomyFinder {
         axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
   }
 
-  /// Gives a joint the z axis along its mean bone, and the x axis as close as possible to `across`
-  /// (in the axes of the joint). If the mean bone is zero, the joint gets the axes of `parent`.
+  /// Gives a joint the z axis along its mean bone, and the x axis as close as possible to `across` (in the axes of the
+  /// joint). If the mean bone is zero, the joint gets the axes of `parent`.
   void align_with_bone(Joint joint, Joint parent, const Vec3& across) {
     const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
     if (unit(z).isZero()) return copy_axes(joint, parent);
@@ -144,8 +145,8 @@ class AnatomyFinder {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
       if (joint == Joint::head) return unit(p.places[joint_index(joint)] - p.places[joint_index(below)]);
-      // Some rigs have control nodes above the joint that they move. The bone of such a node points down; the direction
-      // of the trunk replaces it.
+      // Some rigs have control nodes above the joint that they move. The bone of such a node points down. Replaces it
+      // by the direction of the trunk.
       const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
       return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };
@@ -161,9 +162,8 @@ class AnatomyFinder {
       if (joint == Joint::hips && !hips.isZero()) return Vec3(hips);
       return shoulders.isZero() || joint == Joint::spine ? Vec3(hips + shoulders) : shoulders;
     });
-    // The x axis of the hips follows the line through the hip joints exactly, since this line
-    // determines the rotation of the hips best. For other joints, or if z is nearly parallel to the
-    // line, the z axis is exact.
+    // The x axis of the hips has exactly the direction of the line through the hip joints, because this line determines
+    // the rotation of the hips best. For other joints, or if z is nearly parallel to the line, the z axis is exact.
     const Vec3 line = unit(x), beside = z - z.dot(line) * line;
     own_[joint_index(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
   }
@@ -171,9 +171,9 @@ class AnatomyFinder {
   void find_limb_axes(Joint upper, Joint lower, Joint trunk, bool right) {
     if (!skeleton_.has(upper)) return;
     const bool arm = joint_index(upper) < joint_index(on_side(Joint::left_upper_leg, right));
-    // Guess of the hinge axis: arms that point to the side bend forward, legs that hang straight
-    // down bend backward. For other directions of the bone, the axis rotates with the bone along
-    // the shortest arc, and the weight of the guess decreases with the angle.
+    // Guess of the hinge axis: arms that point to the side bend forward, legs that hang straight down bend backward.
+    // For other directions of the bone, the axis rotates with the bone along the shortest arc, and the weight of the
+    // guess decreases with the angle.
     const auto guess = [&](const Posture& p, std::size_t) {
       const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
       const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));
@@ -210,7 +210,7 @@ class AnatomyFinder {
       return skeleton_.has(toes) ? along(p, foot)
                                  : Vec3(axis(p, shin, Vec3::UnitZ()).cross(axis(p, shin, Vec3::UnitX())));
     };
-    // Guess: the foot at a right angle to the shin, with straight toes.
+    // Guess: the foot is at a right angle to the shin, and the toes are straight.
     own_[joint_index(foot)] =
         axes_along(sum(foot, flat, upright(), axis_of(shin, -Vec3::UnitZ())), sum(foot, flat, forward, forward));
     if (!skeleton_.has(toes)) return;

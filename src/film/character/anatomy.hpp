@@ -1,4 +1,4 @@
-// Axes of body parts, independent of the axes of the joints in a file.
+// Axes of body parts. They do not depend on the axes that the joints have in a file.
 #pragma once
 
 #include <array>
@@ -11,21 +11,20 @@
 
 namespace weft::character {
 
-/// A character, and the nodes that are its joints. `joints`: for each of joint_names(), the node with that role; -1 if
-/// there is none.
+/// A character, and the nodes that are its joints. `joints`: for each of joint_names(), the node that is this joint; -1
+/// if there is none.
 struct Rig {
   const Character& character;
   std::span<const Index> joints;
 };
 
-/// Positions and rotations of the joints in one pose, in world coordinates. A missing joint has the
-/// position 0 and the identity rotation.
+/// Positions [m] and rotations of the joints in one pose, in world coordinates. A missing joint has the position 0 and
+/// the identity rotation.
 struct Posture {
   std::array<Vec3, kJointCount> places;
   std::array<Quat, kJointCount> rotations;
   std::array<Vec3, kJointCount> ends;  ///< mean position of the child nodes; position of the joint if it has no child
-  /// Vectors from the index to the little finger, of the left and the right hand [m]; zero if
-  /// unknown.
+  /// Vectors from the index to the little finger, of the left and the right hand [m]; zero if unknown.
   std::array<Vec3, 2> knuckles;
 };
 
@@ -47,8 +46,8 @@ class Skeleton {
   Vec3 across_shoulders(const Posture& posture) const;
   /// Midpoint between the upper-leg joints; position of Joint::hips if one of them is missing.
   Vec3 middle_of_hips(const Posture& posture) const;
-  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the neck,
-  /// else the head, the chest or the spine. If all of these are missing: bone() of the hips.
+  /// Vector from middle_of_hips() to the midpoint of the upper-arm joints. If one of these is missing: to the first
+  /// existing joint of neck, head, chest and spine. If all are missing: bone() of the hips.
   Vec3 trunk(const Posture& posture) const;
   /// Mean length (thigh plus shin) of the legs that have hip, knee and ankle joints; 0 if there is no such leg.
   double leg_length(const Posture& posture) const;
@@ -66,28 +65,25 @@ class Skeleton {
 /// Weights of the left and the right foot in one posture: 1 if the foot stands flat on the floor, 0 if not.
 using Flat = std::array<double, 2>;
 
-/// Finds, for each joint, the axes of its body part: a rotation from the coordinates of the part to
-/// those of the joint. The rotation is the identity for missing joints, and for the foot and the
-/// toes of a leg without a knee joint. Axes of body parts:
-/// - Hips, spine, chest, neck and head: x to the left of the body, z up when the body stands
-/// upright.
-/// - Shoulders: as the chest; without a chest, as the spine or else the hips.
+/// Finds, for each joint, the axes of its body part: a rotation from the coordinates of the part to those of the joint.
+/// The rotation is the identity for missing joints, and for the foot and the toes of a leg without a knee joint. Axes
+/// of body parts:
+/// - Hips, spine, chest, neck and head: x to the left of the body, z up when the body stands upright.
+/// - Shoulders: as the chest; without a chest, as the spine; without both, as the hips.
 /// - Arms and legs: z along the bone, x along the hinge axis of elbow or knee.
-/// - Hands: z along the bone, x out of the left palm and out of the back of the right hand. If the
-/// fingers are unknown, x is as close as possible to the x axis of the lower arm.
+/// - Hands: z along the bone, x out of the left palm and out of the back of the right hand. If the fingers are unknown,
+///   x is as close as possible to the x axis of the lower arm.
 /// - Feet and toes: z up when they are flat on the floor, x toward the toes.
-/// Only positions of joints and fingers determine the axes in the world; the rest pose of a file
-/// and the pose with zero angles have no effect. Each axis is a weighted mean over the postures.
-/// The weight of a posture is larger the more upright it is (z axes of the trunk), the squared sine
-/// of the bend (hinges), `flat` (feet and toes), and equal for all postures otherwise. If the mean
-/// weight is too small, a guess from the bone or from neighbouring joints gets the missing weight.
+/// Only positions of joints and fingers determine the axes in the world. The rest pose of a file and the pose with zero
+/// angles have no effect. Each axis is a weighted mean over the postures. The weight of a posture is larger the more
+/// upright it is (z axes of the trunk), the squared sine of the bend (hinges), `flat` (feet and toes), or 1 (all other
+/// axes). If the mean weight is too small, a guess from the bone or from neighbouring joints gets the missing weight.
 /// `flat`: one entry per posture. `up`: unit vector.
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
                                            std::span<const Flat> flat, const Vec3& up);
 
-/// The rotation whose z axis points along `z` and whose x axis is as close as possible to `x`. If
-/// `z` is 0, the z axis is (0, 0, 1). If `x` is 0 or parallel to `z`, the x axis is any
-/// perpendicular vector.
+/// The rotation whose z axis has the direction of `z` and whose x axis is as close as possible to `x`. If `z` is 0, the
+/// z axis is (0, 0, 1). If `x` is 0 or parallel to `z`, the x axis is any vector perpendicular to the z axis.
 Quat axes_along(const Vec3& z, const Vec3& x);
 
 }  // namespace weft::character

@@ -14,8 +14,8 @@ namespace {
 /// Distance of the skin from the bone at the start of growth, as a fraction of the final distance.
 constexpr double kInitialGrowth = 0.1;
 
-/// Length of a bone without other bones below it, such as that of the head, relative to the
-/// distance from its node to the mean position of its vertices.
+/// Length of a bone without other bones below it, such as that of the head, relative to the distance from its node to
+/// the mean position of its vertices.
 constexpr double kTerminalBoneRatio = 1.3;
 
 using Segment = std::array<Vec3, 2>;
@@ -27,8 +27,7 @@ Vec3 nearest_on(const Segment& segment, const Vec3& x) {
   return segment[0] + std::clamp((x - segment[0]).dot(along) / length_sq, 0.0, 1.0) * along;
 }
 
-/// Mean of the points of the segments that are nearest to x, weighted by the inverse fourth power
-/// of their distance.
+/// Mean of the point nearest to x on each segment, weighted by the inverse fourth power of its distance.
 Vec3 blended_point_on(const std::vector<Segment>& segments, const Vec3& x) {
   Vec3 sum = Vec3::Zero();
   double weights = 0;
@@ -59,10 +58,9 @@ std::vector<Vec3> mean_positions(const Character& character, const std::vector<V
   return middle;
 }
 
-/// Line segments of each bone: from its node to the nodes of the next bones below it. If there is
-/// no bone below it, the segment goes from its node through the mean position of its vertices. If
-/// several bones have one node, as in files with several meshes, they share the segments to bones
-/// below it.
+/// Line segments of each bone: from its node to the nodes of the next bones below it. If there is no bone below it, the
+/// segment extends from its node through the mean position of its vertices. If several bones have the same node, as in
+/// files with several meshes, they share the segments to bones below it.
 std::vector<std::vector<Segment>> segments_of(const Character& character, const std::vector<Vec3>& places,
                                               const std::vector<Vec3>& skin) {
   std::vector<bool> has_bone(character.nodes.size(), false);
@@ -85,8 +83,7 @@ std::vector<std::vector<Segment>> segments_of(const Character& character, const 
   return segments;
 }
 
-/// Stores which pairs of bones lie on one chain: the node of one bone is that of the other or is
-/// below it.
+/// Stores which pairs of bones lie on one chain: the node of one bone is the node of the other or a descendant of it.
 class BoneChains {
  public:
   explicit BoneChains(const Character& character) : count_(character.bones.size()), on_one_chain_(count_ * count_, 0) {
@@ -96,8 +93,8 @@ class BoneChains {
           on_one_chain_[b * count_ + c] = on_one_chain_[c * count_ + b] = 1;
   }
 
-  /// Weight of a vertex on bones that lie on one chain with `bone`, minus its weight on all other
-  /// bones, such as those of the other leg; clamped to [0, 1].
+  /// Weight of a vertex on bones that lie on one chain with `bone`, minus its weight on all other bones, such as those
+  /// of the other leg; clamped to [0, 1].
   double branch_weight(std::span<const Influence> influences, Index bone) const {
     double branch_weight = 0;
     for (const Influence& i : influences)

@@ -26,14 +26,15 @@ struct Ink {
   }
 };
 
-/// Opacity of an area with a soft outline: 0 up to the depth -edge / 2, 1 from edge / 2 on, smooth
-/// between. `depth`: how far a point is inside the outline, < 0: outside. Both have the same unit.
+/// Opacity of an area with a soft outline: 0 up to the depth -edge / 2, 1 from edge / 2 on, smooth between. `depth`:
+/// distance of a point inside the outline; < 0: outside. `edge`: width of the soft outline, in the same unit.
 double inside(double depth, double edge) {
   const double t = std::clamp(0.5 + depth / edge, 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
-/// The y coordinate of a polyline at x = `at`. Its x coordinates ascend; beyond its ends, y is constant.
+/// The y coordinate of a polyline at x = `at`. The x coordinates of its points must increase. Beyond its ends, y is
+/// constant.
 double height(std::span<const Vec2> line, double at) {
   if (at <= line.front().x()) return line.front().y();
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -59,12 +60,12 @@ Ink body_ink(double y, double z) {
   return ink;
 }
 
-/// Hair, seen from the side, with strands that run to the knot and around it; and ears, slightly redder than the skin.
+/// Hair, seen from the side, with strands toward the knot and around it; and ears, slightly redder than the skin.
 Ink head_ink(double y, double z) {
   Ink ink;
   ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
   const double back = y - kKnot.x(), up = z - kKnot.y(), r = std::hypot(back, up), angle = std::atan2(up, back);
-  // Strands fade toward the knot, where they would be finer than the pixels of the picture.
+  // Strands fade toward the knot, because they would be finer than the pixels of the picture there.
   const double fine = 0.5 * std::sin(31 * angle + 1) * std::sin(13 * angle + 0.3 * r) +
                       0.5 * std::sin(71 * angle + 0.5 * r) * std::sin(9 * angle + 2);
   const double coiled = 0.8 * std::sin(3 * angle + 4.6 * r) * std::sin(2 * angle + 1.3 * r + 1);
@@ -99,7 +100,7 @@ Ink face_ink(double x, double z) {
   const double thick = 0.27 - 0.06 * from_eye;
   ink.add(kHair, 0.62 * inside(thick - std::abs(z - brow), 0.3) * inside(1.9 - std::abs(from_eye), 0.9));
   ink.add(kShade * 0.5, 0.8 * inside(ellipse(side - 0.58, z - 159.35, 0.36, 0.22), 0.6));
-  // Lips: the upper one has a bow; a line separates them.
+  // Lips with a dark line between them. The upper edge of the upper lip is curved ("bow").
   const double bow = 0.16 * std::cos(2.2 * side), end = inside(2.35 - side, 0.5);
   const double wide = std::max(1 - side * side / (2.45 * 2.45), 0.0);
   const double mouth = 157.2 + 0.25 * bow;
@@ -136,8 +137,7 @@ struct PictureArea {
 };
 const PictureArea kBody{{-22, -1}, {14, 177}}, kFace{{-6, 153}, {6, 169}}, kHead{{-15, 150}, {15, 177}};
 
-/// A triangle uses the picture of the head or the face only if all its corners are above this
-/// height [cm].
+/// A triangle uses the picture of the head only if all its corners are above this height [cm].
 constexpr double kHeadFrom = 152;
 
 }  // namespace

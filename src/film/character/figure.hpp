@@ -6,8 +6,8 @@
 
 namespace weft::character {
 
-/// Makes the colours for the mesh of a mannequin at rest, z up, as pictures that are projected along the x or y axis.
-/// Unlike colours of vertices, pictures have sharp outlines on coarse triangles, too.
+/// Makes the colours for the mesh of a mannequin in the rest pose, z up, as pictures that are projected along the x or
+/// y axis. Pictures have sharp outlines even on coarse triangles; colours of vertices would not.
 Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build);
 
 }  // namespace weft::character

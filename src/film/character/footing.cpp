@@ -8,32 +8,31 @@
 namespace weft::character {
 namespace {
 
-// A foot is in contact if its ball is slower than kMaxContactSpeed [leg lengths/s] and less than
-// kMaxContactHeight [leg lengths] above floor_height(): 0.3 m/s and 4 cm for the leg of an adult,
-// 0.85 m. Toes in swing move at 3 to 5 m/s; noise in recordings moves standing feet at 0.05 to 0.15
-// m/s.
+// A foot is in contact if its ball is slower than kMaxContactSpeed [leg lengths/s] and less than kMaxContactHeight [leg
+// lengths] above floor_height(). For the leg of an adult, 0.85 m, this is 0.3 m/s and 4 cm. Toes in swing move at 3 to
+// 5 m/s; noise in recordings moves standing feet at 0.05 to 0.15 m/s.
 constexpr double kMaxContactSpeed = 0.35, kMaxContactHeight = 0.05;
 /// Maximum height of the ankle of a flat foot above Footsteps::ankle_height [leg lengths].
 constexpr double kMaxFlatAnkleHeight = 0.03;
-/// The speed at a key is averaged from the last key that is at least half of this time earlier to
-/// the first key that is at least half of it later [s].
+/// Window of the mean speed at a key [s]: from the last key that is at least half of this time earlier to the first key
+/// that is at least half of it later.
 constexpr double kSpeedWindow = 1.0 / 30;
-/// Shorter contacts are ignored [s].
+/// Minimum duration of a contact [s]. Shorter contacts are ignored.
 constexpr double kMinContactTime = 0.08;
-/// If the ball is farther than this from its position at the start of a contact, as in shuffling, a
-/// new contact begins [leg lengths].
+/// A new contact begins if the ball is farther than this from its position at the start of the contact, as in shuffling
+/// [leg lengths].
 constexpr double kMaxBallMotion = 0.08;
-/// A histogram counts the heights of slow feet. The floor is its lowest peak that is at least this fraction of its
-/// highest peak. Initial poses of recordings and outliers lie below the floor, stairs and chairs above it.
+/// floor_height() counts the heights of slow feet. The floor is the lowest peak of these counts that is at least this
+/// fraction of the highest peak. Initial poses of recordings and outliers are below the floor, stairs and chairs above.
 constexpr double kMinFrequencyRatio = 0.5;
-/// Time in which a foot blends from a contact into its own motion and back [s]; a step takes 0.4 s or more.
+/// Time in which a foot blends from a contact into its own motion and back [s]. A step takes 0.4 s or more.
 constexpr double kFootBlendTime = 0.15;
 /// A correction of the hips at a key fades within this time before and after the key (see plant_feet) [s].
 constexpr double kHipBlendTime = 0.25;
-/// Maximum distance from hip to ankle, as a fraction of thigh plus shin: the knee keeps a bend of 5° and does not snap
-/// straight.
+/// Maximum distance from hip to ankle, as a fraction of thigh plus shin. The knee then keeps a bend of 5°; without this
+/// limit, it would straighten abruptly.
 constexpr double kStraightLegRatio = 0.999;
-/// Cosine of the smallest angle between thigh and shin: of a knee that is bent by 155°, where calf and thigh touch.
+/// Cosine of the smallest angle between thigh and shin. The knee is then bent by 155°, and calf and thigh touch.
 constexpr double kFoldedKneeCosine = 0.906;
 
 /// The value below which the fraction `fraction` of all values lies.
@@ -88,8 +87,8 @@ std::vector<Contact> contacts_of(const FootTrack& ball, std::span<const double> 
   return contacts;
 }
 
-/// Height of the ball joints of feet that stand on the floor. If no ball joint is ever slower than
-/// kMaxContactSpeed, the height of the lowest one.
+/// Height of the ball joints of feet that stand on the floor [m]. If no ball joint is ever slower than
+/// kMaxContactSpeed, the lowest height of any.
 double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   std::vector<double> slow;
   double lowest = std::numeric_limits<double>::infinity();
@@ -100,7 +99,7 @@ double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
     }
   if (slow.empty()) return lowest;
   std::ranges::sort(slow);
-  // Per value, the number of values between it and kMaxContactHeight above it.
+  // Per height, the number of heights between it and kMaxContactHeight above it.
   std::vector<std::ptrdiff_t> counts;
   for (auto h = slow.begin(); h != slow.end(); ++h)
     counts.push_back(std::upper_bound(h, slow.end(), *h + kMaxContactHeight * leg) - h);
@@ -111,8 +110,8 @@ double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   return slow[k];
 }
 
-/// Extends a quantity that is defined only in contacts to all keys: outside contacts, the values at the ends of the
-/// nearest contacts fade with time.
+/// Extends a quantity that is defined only in contacts to all keys. Outside contacts, the values at the ends of the
+/// nearest contacts fade to zero with time.
 class ContactBlend {
  public:
   ContactBlend(const std::vector<Contact>& contacts, std::span<const double> times)
@@ -135,7 +134,7 @@ class ContactBlend {
  private:
   static constexpr double kNoNeighbour = std::numeric_limits<double>::infinity();
 
-  /// Time from the end of contact c to the start of the next.
+  /// Time from the end of contact c to the start of the next [s].
   double gap(std::size_t c) const { return times_[contacts_[c + 1].first] - times_[contacts_[c].last]; }
 
   static double weight(double after, double gap) { return 1 - ease(after / std::min(kFootBlendTime, gap)); }
@@ -150,14 +149,14 @@ double min_reach(const Leg& leg) {
   return std::sqrt(a * a + b * b - 2 * a * b * kFoldedKneeCosine);
 }
 
-/// Maximum distance from hip to ankle [m]. A leg that is straighter in the motion may stay so.
+/// Maximum distance from hip to ankle [m]: kStraightLegRatio of the leg length or, if larger, that in the motion.
 double max_reach(const Leg& leg) {
   return std::max(kStraightLegRatio * ((leg.knee - leg.hip).norm() + (leg.ankle - leg.knee).norm()),
                   (leg.ankle - leg.hip).norm());
 }
 
-/// Rise of the hips [m] that makes the distance from hip to ankle equal to `distance`. `to_ankle`: vector from the hip
-/// to the ankle before the rise. Negative if the hips must move down; 0 if no rise achieves this.
+/// Rise of the hips [m] that makes the distance from hip to ankle equal to `distance`; negative if the hips must move
+/// down, 0 if no rise achieves this. `to_ankle`: vector from the hip to the ankle before the rise.
 double rise_for(double distance, const Vec3& to_ankle, const Vec3& up) {
   const double down = -up.dot(to_ankle), level_sq = (to_ankle + down * up).squaredNorm();
   return distance * distance > level_sq ? std::sqrt(distance * distance - level_sq) - down : 0;
@@ -170,8 +169,8 @@ double rise_of_hips(const Leg& leg, const Vec3& ankle, const Vec3& up) {
   return 0;
 }
 
-/// For each key, the largest of the values `needed` (>= 0) at all keys, where the value of another
-/// key fades to 0 with its time distance within kHipBlendTime.
+/// Spreads each value of `needed` (>= 0) to other keys, fading to 0 at the time distance kHipBlendTime. Returns for
+/// each key the largest of its own value and the values spread to it.
 std::vector<double> spread_over_time(const std::vector<double>& needed, std::span<const double> times) {
   std::vector<double> result = needed;
   for (std::size_t k = 0; k < needed.size(); ++k) {
@@ -214,7 +213,7 @@ Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> post
       for (std::size_t k = contact.first; k <= contact.last; ++k) standing.push_back(ankles[right].heights[k]);
   }
   if (standing.empty()) return steps;
-  steps.ankle_height = quantile(standing, 0.25);  // a low quantile, since the heel rises late in a contact
+  steps.ankle_height = quantile(standing, 0.25);  // a low quantile, because the heel rises late in a contact
   for (const bool right : {false, true})
     for (const Contact& contact : steps.contacts[right])
       for (std::size_t k = contact.first; k <= contact.last; ++k)
@@ -228,12 +227,12 @@ Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> post
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up) {
   std::vector<Stance> stances(legs.size());
-  std::vector<double> up_by(legs.size(), 0), down_by(legs.size(), 0);  // of the hips [m]
+  std::vector<double> up_by(legs.size(), 0), down_by(legs.size(), 0);  // displacement of the hips [m]
   const auto above = [&](const Leg& leg) { return std::min(up.dot(leg.ball), up.dot(leg.heel)) - floor; };
   for (const bool right : {false, true}) {
     const std::vector<Contact>& contacts = steps.contacts[right];
     const ContactBlend between(contacts, times);
-    std::vector<Vec3> anchors;  // mean positions of the ball
+    std::vector<Vec3> anchors;  // per contact: mean position of the ball
     for (const Contact& contact : contacts) {
       Vec3 sum = Vec3::Zero();
       for (std::size_t k = contact.first; k <= contact.last; ++k) sum += legs[k][right].ball;

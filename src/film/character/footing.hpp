@@ -1,4 +1,4 @@
-// Foot contacts of a motion, and the leg poses that keep them.
+// Foot contacts of a motion, and the poses of legs that keep feet in contact.
 #pragma once
 
 #include <array>
@@ -10,20 +10,21 @@
 
 namespace weft::character {
 
-/// Keys `first` to `last`, both included, during which the ball of a foot stays in place.
+/// The keys from `first` to `last` (inclusive) at which the ball of a foot stays in place.
 struct Contact {
   std::size_t first = 0, last = 0;
 };
 
+/// Contacts of both feet with the floor.
 struct Footsteps {
   std::array<std::vector<Contact>, 2> contacts;  ///< of the left and the right foot, in chronological order
-  std::vector<Flat> flat;                        ///< per posture
+  std::vector<Flat> flat;                        ///< per posture: whether each foot is flat on the floor
   double ankle_height = 0;                       ///< height of the ankles of flat feet [m]
 };
 
 /// Finds the contacts of a motion from the speed and the height of the toe joints, or of the ankles if feet have no
 /// toes. `times`: of the postures, increasing [s]. `up`: unit vector. If no leg has hip, knee and ankle joints, or if
-/// no foot is ever in contact, `contacts` are empty, and ankle_height is the height of the lowest ankle (infinite
+/// no foot is ever in contact, `contacts` is empty, and ankle_height is the lowest height of any ankle (infinite
 /// without feet).
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
@@ -38,29 +39,28 @@ struct Leg {
 /// The left and the right leg.
 using Legs = std::array<Leg, 2>;
 
-/// Corrections at one key that keep the feet in contact in place.
+/// Corrections at one key. They keep feet that are in contact with the floor in place.
 struct Stance {
-  double rise = 0;                                          ///< of the hips [m]; < 0: down
-  std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< of the feet, relative to the motion [m]
+  double rise = 0;                                          ///< upward displacement of the hips [m]
+  std::array<Vec3, 2> shift{Vec3(0, 0, 0), Vec3(0, 0, 0)};  ///< displacement of each foot from the motion [m]
   std::array<bool, 2> in_contact{};
 };
 
-/// Computes, per key, the corrections that keep feet in place. During a contact, the ball of the
-/// foot stays at its mean horizontal position over the contact, and the lower one of ball and heel
-/// is on the floor. The shift of the foot fades within 0.15 s before and after the contact, or
-/// within the time to the next contact if it is shorter. No ball or heel goes below the floor. The
-/// hips move down if a leg is too short to reach its shifted ankle, and up if a knee would bend too
-/// far. `legs`: of the body, per key. `floor`: height of the floor, on which the body stands at
-/// rest [m].
+/// Computes, per key, the corrections that keep feet in place. During a contact, the ball of the foot stays at its mean
+/// horizontal position over the contact, and the lower one of ball and heel is on the floor. The shift of the foot
+/// fades within 0.15 s before and after the contact, or within the time to the next contact if this is shorter. Neither
+/// ball nor heel goes below the floor. The hips move down if a leg is too short to reach its shifted ankle, and up if a
+/// knee would bend too far. `legs`: of the body, per key. `floor`: height of the floor, on which the body stands in its
+/// rest pose [m].
 std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& steps, std::span<const double> times,
                                double floor, const Vec3& up);
 
-/// Rotations of the upper and the lower leg that are applied to the present pose, in world axes.
+/// Rotations of the upper and the lower leg, in world axes, to be applied to the present pose.
 struct LegTurns {
   Quat upper, lower;
 };
-/// Two-bone inverse kinematics: the rotations that bring the ankle to a given position, or as near
-/// to it as the limits of the knee allow. The knee bends in the present plane of the leg.
+/// Two-bone inverse kinematics: the rotations that move the ankle to the position `ankle`, or as near to it as the
+/// limits of the knee allow. The knee bends in the present plane of the leg.
 LegTurns reach(const Leg& leg, const Vec3& ankle);
 
 }  // namespace weft::character

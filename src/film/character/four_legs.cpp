@@ -9,8 +9,8 @@
 namespace weft::character {
 namespace {
 
-/// A motion is on all fours only if the mean |sine| of the angle between trunk and horizontal is at most this; 0.5 is
-/// 30°.
+/// A motion is on all fours only if the mean absolute sine of the angle between trunk and horizontal is at most this. A
+/// sine of 0.5 is an angle of 30°.
 constexpr double kMaxTrunkSlope = 0.5;
 
 /// A hand is on the floor if it is less than this above the lowest foot [leg lengths].

@@ -11,22 +11,21 @@
 namespace weft::character {
 namespace {
 
-constexpr double kHipSwing = 1.6;       ///< factor on the recorded pelvis yaw, for longer legs and a catwalk gait
+constexpr double kHipSwing = 1.6;  ///< factor on the recorded pelvis yaw; above 1 for longer legs and a catwalk gait
 constexpr double kShoulderSwing = 1.5;  ///< factor on the recorded chest yaw, which is opposite to that of the pelvis
 constexpr double kChestNod = 0.8, kHeadNod = -0.4,
                  kHeadRoll = -0.4;  ///< ratios of pitch (chest / pelvis, head / pelvis) and of roll (head / chest)
 constexpr double kShoulderTurnRatio = 0.12;  ///< rotation of a shoulder / rotation of its arm
-// Hanging arms have elbows bent by kElbowAtRest; walking adds kElbowRatio of the difference between
-// the recorded bend and kElbowAtRest. The upper arms keep the angle Walk::arms_out from the
-// vertical on average. The forearms turn back toward the vertical by the fraction kForearmTurnRatio
-// of this angle, at most by kMaxForearmTurn, and less beside wide hips. Angles in degrees.
+// The elbows of hanging arms are bent by kElbowAtRest. Walking adds kElbowRatio times the difference between the
+// recorded bend and kElbowAtRest. The mean angle of the upper arms from the vertical is Walk::arms_out. The forearms
+// are turned back toward the vertical by kForearmTurnRatio times this angle, but at most by kMaxForearmTurn, and less
+// beside wide hips. Angles in degrees.
 constexpr double kElbowAtRest = 14, kElbowRatio = 0.75, kForearmTurnRatio = 0.75, kMaxForearmTurn = 4.5;
-/// Minimum distance from the skin of the hips to the middle of a hanging hand, for a height of 175
-/// cm [cm].
+/// Minimum distance from the skin of the hips to the middle of a hanging hand, for a body height of 175 cm [cm].
 constexpr double kHandClearance = 8;
-// In a turn the head rotates first, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering:
-// coordination and control of body center of mass, head and body reorientation", 1999). Lead times relative to the hips
-// [s].
+// Lead times of the rotation of chest and head in a turn, relative to the hips [s]. The head rotates first, then the
+// chest, then the hips (Patla, Adkin & Ballard, "Online steering: coordination and control of body center of mass, head
+// and body reorientation", 1999).
 constexpr double kChestLead = 0.12, kHeadLead = 0.28;
 
 Quat axis_rotation(double angle, const Vec3& axis) {
@@ -36,7 +35,7 @@ Quat axis_rotation(double angle, const Vec3& axis) {
 /// Phase and relative size of the walking motion at one key.
 struct Sway {
   double phase = 0;
-  double size = 0;  ///< 0: standing; 1: step / leg length as recorded; at most 1.3
+  double size = 0;  ///< 0: standing; 1: step length / leg length as in the recording; at most 1.3
 };
 
 /// Computes the keys of a walk from feet, track and curves.
@@ -45,7 +44,7 @@ class Walker {
   /// Uses the first `keys` keys of the plan.
   Walker(const Physique& body, const StepPlan& plan, double arms_out, int keys)
       : body_(body), plan_(plan), arms_out_(arms_out), keys_(keys) {
-    // Feet and balance need keys beyond both ends.
+    // Feet and balance_body() need keys before the first and after the last key.
     const int margin = 2 * plan.period();
     forearm_turn_ = turn_of_forearms();
     track_ = balance_body(body, plan, -margin, keys + margin);
@@ -71,7 +70,7 @@ class Walker {
     return {track_.phase[track_.index(key)], relative_speed * std::min(step / recorded_step, 1.3)};
   }
 
-  /// Heading that the body has `ahead` seconds after the key.
+  /// Heading of the body at the time `ahead` [s] after the key.
   Quat heading(int key, double ahead = 0) const {
     return axis_rotation(track_.yaw_at(key + static_cast<int>(std::round(ahead / plan_.key_time))), Vec3::UnitZ());
   }
@@ -103,7 +102,8 @@ class Walker {
     const double roll = size * walking::chest_roll.at(phase);
     const Quat chest = heading(k, kChestLead) *
                        tilt_rotation(size * kShoulderSwing * walking::chest_yaw.at(phase), roll, kChestNod * nod);
-    // The head yaws less than the chest, and pitches and rolls against it, so that the gaze stays steady.
+    // The head yaws less than the chest, and its pitch and roll are opposite to those of the chest, which keeps the
+    // gaze steady.
     const Quat head =
         heading(k, kHeadLead) * tilt_rotation(size * walking::head_yaw.at(phase), kHeadRoll * roll, kHeadNod * nod);
     global[joint_index(Joint::hips)] = hips;
@@ -122,8 +122,8 @@ class Walker {
     return static_cast<Joint>(joint_index(left) + static_cast<std::size_t>(side) * kSideJointCount);
   }
 
-  /// Outward rotation of the forearms relative to the upper arms [degrees]; negative (inward), unless wide hips need
-  /// more clearance.
+  /// Outward rotation of the forearms relative to the upper arms [degrees]. It is negative (inward), unless wide hips
+  /// require more clearance.
   double turn_of_forearms() const {
     const auto at = [this](Joint joint) { return body_.joints[joint_index(joint)]; };
     const Vec3 &shoulder = at(Joint::left_upper_arm), &elbow = at(Joint::left_lower_arm), &wrist = at(Joint::left_hand);
@@ -154,7 +154,7 @@ class Walker {
     global[joint_index(of_side(Joint::left_hand, side))] = lower;
   }
 
-  /// The rotation that takes the direction along0 exactly to along1, and side0 as close as possible to side1.
+  /// The rotation that maps the direction along0 exactly to along1, and side0 as close as possible to side1.
   static Quat rotation_between_frames(const Vec3& along0, const Vec3& side0, const Vec3& along1, const Vec3& side1) {
     const auto axes = [](const Vec3& along, const Vec3& side) {
       Mat3 m;
@@ -179,7 +179,7 @@ class Walker {
     const Vec3 along = to_ankle.normalized();
     Vec3 axis = global[joint_index(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
     axis = (axis - axis.dot(along) * along).normalized();
-    // Law of cosines. Of its two solutions, takes that with the knee in front.
+    // The law of cosines has two solutions. Uses that with the knee in front.
     const double cosine = (a * a + d * d - b * b) / (2 * a * d);
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const Vec3 thigh = a * (cosine * along + sine * along.cross(axis).normalized());

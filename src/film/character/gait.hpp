@@ -15,8 +15,9 @@ struct Walk {
 };
 
 /// Makes a walk. Feet stay on their footholds (Feet, gait_feet.hpp), the body balances above the feet (balance_body,
-/// gait_track.hpp), and all other angles follow the curves of namespace walking (gait_curves.hpp). `mannequin`: made by
-/// make_mannequin, of any build. The clip has about 60 keys per second, such that each step has an even number of keys.
+/// gait_track.hpp), and all other angles follow the curves of namespace walking (gait_curves.hpp). `mannequin`: of any
+/// build, made by make_mannequin(). The clip has about 60 keys per second; the exact rate makes the number of keys per
+/// step even.
 Clip make_walk(const Character& mannequin, const Walk& walk);
 
 }  // namespace weft::character

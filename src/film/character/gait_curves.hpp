@@ -5,8 +5,8 @@
 
 namespace weft::character {
 
-/// mean + Σ_k (cosine[k] cos(2π (k + 1) phase) + sine[k] sin(2π (k + 1) phase)). Phase: 0 at a
-/// strike of the left heel, 1 at the next one.
+/// The curve mean + Σ_k (cosine[k] cos(2π (k + 1) phase) + sine[k] sin(2π (k + 1) phase)). Phase: 0 at a strike of the
+/// left heel, 1 at the next one.
 struct HarmonicCurve {
   double mean = 0;
   std::array<double, 6> cosine{}, sine{};
@@ -20,14 +20,14 @@ struct HarmonicCurve {
 /// of the hips (Zeni et al., "Two simple methods for determining gait events", 2008); the phase is linear between
 /// strikes. The harmonics are a least-squares fit to all frames between the first and the last strike. Each curve of
 /// one side is fitted to the data of both sides, those of the right shifted by half a stride. Yaw and roll of trunk and
-/// head have odd harmonics only, pitch of the pelvis has even ones only. Pelvis yaw omits a fifth harmonic of 0.6°,
-/// which would shake cloth on the hips. All angles are in degrees. Root mean square residuals: foot pitch 2.5°, arm
-/// 3.4°, elbow 2.9°, all other angles below 1.7°.
+/// head have only odd harmonics, pitch of the pelvis has only even ones. Pelvis yaw has no fifth harmonic: that of the
+/// recording, 0.6°, would shake cloth on the hips. All angles are in degrees. Root mean square residuals: foot pitch
+/// 2.5°, arm 3.4°, elbow 2.9°, all other angles below 1.7°.
 namespace walking {
 
-constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording: speed [m/s], stride time [s]
-constexpr double kLegLength = 0.788;               ///< hip to ankle [m]
-constexpr double kFlatPitch = -10.8;               ///< foot_pitch of a flat foot [degrees]
+constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< speed [m/s] and stride time [s] in the recording
+constexpr double kLegLength = 0.788;               ///< distance from hip to ankle of the recorded person [m]
+constexpr double kFlatPitch = -10.8;               ///< value of foot_pitch for a flat foot [degrees]
 
 // Positive yaw turns to the left, positive roll raises the left side, and positive pitch tilts forward.
 constexpr HarmonicCurve pelvis_yaw{0, {-0.52, 0, 0, 0, 0, 0}, {-2.52, 0, -0.16, 0, 0, 0}};
@@ -48,7 +48,7 @@ constexpr HarmonicCurve arm_out{1.47, {-3.60, 0, 0.02, 0.12, 0.01, -0.02}, {0.91
 constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {2.17, -3.43, 0.02, 0.28, 0.23, 0.02}};
 
 /// Knee flexion: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° at toe-off and 60° in initial
-/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). A spline drawn by eye connects these
+/// swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13). A manually chosen spline connects these
 /// values; the harmonics approximate it within 0.6°. The knee angles of the recording are not usable: they are 20°
 /// larger in stance, and clipped at 0.
 constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};

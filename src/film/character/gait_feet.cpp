@@ -10,23 +10,22 @@
 namespace weft::character {
 namespace {
 
-constexpr double kStandingKnee = 6;   ///< knee bend of a standing leg [degrees]; less looks stiff
+constexpr double kStandingKnee = 6;   ///< knee bend of a standing leg [degrees]; a smaller bend looks stiff
 constexpr double kPitchRatio = 0.79;  ///< factor on the recorded foot pitch, which is too large
-/// A leg determines the height of the pelvis until this time before the strike of the other leg
-/// [strides].
+/// A leg determines the height of the pelvis until this time before the strike of the other leg [strides].
 constexpr double kReleaseFraction = 0.17;
 /// A leg determines the height of the pelvis from this time after its strike on [strides].
 constexpr double kTakeoverFraction = 0.13;
 constexpr double kLateKneeRatio = 0.75;    ///< factor on the knee curve before toe-off
 constexpr double kHeelRiseLength = 0.002;  ///< length that smooths the start of the heel rise [m]
-/// Knee bend added in swing, since kLateKneeRatio reduces the bend at toe-off [degrees].
+/// Knee bend added in swing [degrees], because kLateKneeRatio reduces the bend at toe-off.
 constexpr double kSwingKneeShift = 13;
-constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< angles [degrees] and factor in toe_pitch
+constexpr double kToesFlat = 22, kToesRound = 16, kToePitchRatio = 0.75;  ///< see toe_pitch() [degrees, degrees, 1]
 constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toes [degrees]
 constexpr double kInPlaceKneeLift = 32;  ///< additional knee bend in a step in place [degrees]
-constexpr double kToeClearRatio = 0.36;  ///< peak pitch added in swing / (downward pitch rate at toe-off × swing time)
+constexpr double kToeClearRatio = 0.36;  ///< peak of the pitch added in swing / (pitch rate at toe-off × swing time)
 
-/// A value with its first and second derivative by key.
+/// A value with its first and second derivative with respect to the key number (`rate`, `bend`).
 template <class Value>
 struct Jet {
   Value value, rate, bend;
@@ -59,8 +58,8 @@ double early_bump(double s) {
   return 119.2 * s * s * s * (1 - s) * (1 - s) * (1 - s) * (1 - s);
 }
 
-/// Like bump(), with its maximum at s = 0.6 and a non-zero second derivative at s = 1: the steep
-/// fall keeps a foot that is set down from skimming the floor.
+/// Like bump(), with its maximum at s = 0.6 and a non-zero second derivative at s = 1. The steep decrease at the end
+/// prevents a foot from touching the floor before its foothold.
 double late_bump(double s) {
   return 28.9 * s * s * s * (1 - s) * (1 - s);
 }
@@ -109,10 +108,9 @@ Vec3 Feet::hip(int side, int key) const {
   return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) + hips_[track_.index(key)][side];
 }
 
-/// Knee bend of a stance leg [degrees]: kStandingKnee, plus the difference of walking::knee from
-/// kStandingKnee in two parts. The part after the strike is scaled by the size of the step to this
-/// foothold, the part before toe-off by the size of the next step and by kLateKneeRatio. Sizes
-/// above 1 count as 1.
+/// Knee bend of a stance leg [degrees]: kStandingKnee plus the difference between walking::knee and kStandingKnee. This
+/// difference has two parts: the part after the strike is scaled by the size of the step to this foothold, the part
+/// before toe-off by the size of the next step and by kLateKneeRatio. Sizes above 1 count as 1.
 double Feet::knee(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
@@ -130,8 +128,8 @@ double Feet::leg_extent(double knee) const {
   return std::sqrt(a * a + b * b + 2 * a * b * std::cos(knee * kDegree));
 }
 
-/// Foot pitch after a strike [rad]: the recorded pitch, scaled by kPitchRatio and the size of the
-/// step. It fades to exactly 0 within 0.12 strides.
+/// Foot pitch after a strike [rad]: the recorded pitch, scaled by kPitchRatio and the size of the step. It fades to
+/// exactly 0 within 0.12 strides.
 double Feet::strike_pitch(const Plant& plant, int key) const {
   const double since = plan_.strides_since_strike(plant, key);
   if (since > 0.12) return 0;
@@ -139,17 +137,17 @@ double Feet::strike_pitch(const Plant& plant, int key) const {
   return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
 }
 
-/// Pitch of the toes relative to the floor [rad]. It is 0 until the foot is pitched down by kToesFlat. From there on
-/// the toes roll over their tips, by kToePitchRatio of the further pitch; a parabola over kToesRound smooths the
-/// transition.
+/// Pitch of the toes relative to the floor [rad]. It is 0 until the foot is pitched down by kToesFlat. From there on,
+/// the toes roll over their tips by kToePitchRatio times the further pitch. A parabola over the angle kToesRound
+/// smooths the transition.
 double Feet::toe_pitch(double pitch) {
   const double beyond = -pitch - kToesFlat * kDegree, round = kToesRound * kDegree;
   if (beyond <= 0) return 0;
   return -kToePitchRatio * (beyond < round ? beyond * beyond / (2 * round) : beyond - round / 2);
 }
 
-/// Position of the ankle of a rolling foot. If `pitch` > 0, the foot rolls over its round heel, so that the contact
-/// point moves back. Else it bends at the ball and rolls over the toe tips.
+/// Position of the ankle of a rolling foot [m]. If `pitch` > 0, the foot rolls over its round heel, so that the contact
+/// point moves back. Otherwise, it bends at the ball and rolls over the toe tips.
 Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   const auto turned = [](double forward, double up, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -168,8 +166,8 @@ Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
   return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * ahead_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
 }
 
-/// Foot pitch in stance [rad]: strike_pitch() early in stance. Late in stance, the heel rises until
-/// the knee has the bend knee().
+/// Foot pitch in stance [rad]: early in stance, strike_pitch(); late in stance, the pitch at which the raised heel
+/// gives the knee the bend knee().
 double Feet::standing_pitch(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const double share = smooth_ramp(kStance - plan_.until_off(here, key), 0.24, 0.36);
@@ -213,7 +211,8 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
     };
   };
   Jet<Values> strike = jet_of(values_of(number + 1), to.strike);
-  // The velocity and acceleration of the knee do not match those after the strike: the heel lands abruptly.
+  // The velocity and acceleration of the knee at the strike are 0. They need not match those after the strike, because
+  // the heel lands abruptly.
   strike.rate[0] = strike.bend[0] = 0;
   Jet<Values> off = jet_of(values_of(number), from.off);
   off.bend[3] = 0;
@@ -243,13 +242,12 @@ double Feet::height_above(int side, std::size_t number, int key) const {
   const Plant& here = plant(side, number);
   const Vec3 leg = hip(side, key) - rolling_ankle(here, strike_pitch(here, key));
   const double d = leg_extent(knee(side, number, key));
-  // Here hip() puts Joint::hips at height 0, since heights_ is not computed yet.
+  // heights_ is not computed yet. hip() therefore assumes that Joint::hips is at height 0.
   return std::sqrt(d * d - leg.head<2>().squaredNorm()) - leg.z();
 }
 
-/// Computes the heights of the pelvis. While neither leg determines the height, it is interpolated.
-/// A correction of the interpolated height gives the knee of the leading leg the bend knee() at its
-/// strike.
+/// Computes the heights of the pelvis. While no leg determines the height, it is interpolated and then corrected, such
+/// that the knee of the leading leg has the bend knee() at its strike.
 void Feet::find_heights() {
   struct Support {
     int side;

@@ -11,25 +11,25 @@ namespace weft::character {
 /// State of one foot at one key.
 struct FootState {
   Vec3 ankle = Vec3::Zero();  ///< [m]
-  double yaw = 0;             ///< of the foot, relative to its direction at rest [rad]
+  double yaw = 0;             ///< rotation of the foot about the vertical, relative to the rest pose [rad]
   double pitch = 0;           ///< [rad]; > 0: toes up, 0: flat
   double toes = 0;            ///< upward bend of the toes relative to the foot [rad]
 };
 
-/// Positions of the left and the right hip joint relative to Joint::hips, in world axes [m]. One
-/// entry per key, from the first key of the track on.
+/// Positions of the left and the right hip joint relative to Joint::hips, in world axes [m]. One entry per key, from
+/// the first key of the track on.
 using HipOffsets = std::vector<std::array<Vec3, 2>>;
 
 /// Computes the paths of both feet and the height of the pelvis, such that knees bend as in human walking.
 ///
-/// The knee of the stance leg follows the curve walking::knee. From shortly after the strike of
-/// this leg until shortly before the strike of the other foot, the height of the pelvis follows
-/// from this bend. Between these intervals, the height is interpolated. Late in stance, the heel
-/// rises until the knee has the bend of the curve, also between these intervals.
+/// The knee of the stance leg follows the curve walking::knee. From shortly after the strike of this leg until shortly
+/// before the strike of the other foot, this bend determines the height of the pelvis. Between these intervals, the
+/// height is interpolated. Late in stance, the heel rises until the knee has the bend of the curve, also between these
+/// intervals.
 ///
 /// In swing, knee bend, leg direction and foot pitch are interpolated from toe-off to the strike. At both ends, their
-/// values, velocities and accelerations match those in stance, except for the velocity and acceleration of the knee at
-/// the strike, and for the acceleration of the pitch at toe-off.
+/// values, velocities and accelerations equal those in stance, except the velocity and acceleration of the knee at the
+/// strike, and the acceleration of the pitch at toe-off.
 ///
 /// A foot in stance rolls without sliding, in this order: over its round heel; flat; bending about the ball, first with
 /// flat toes, then over the toe tips.

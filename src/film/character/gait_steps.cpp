@@ -9,14 +9,14 @@ namespace weft::character {
 namespace {
 
 constexpr double kKeysPerSecond = 60;
-constexpr double kHalfTrack = 0.048;     ///< ankle to midline / body height; at the recorded 0.038, thighs touch
+constexpr double kHalfTrack = 0.048;     ///< ankle to midline / body height; thighs touch at the recorded 0.038
 constexpr double kOutwardDetour = 0.07;  ///< outward detour of a foot that turns with the body [m]
 constexpr double kFirstStepRatio = 0.65,
                  kLastStepRatio = 0.75;        ///< lengths of the first and the last step, relative to a steady step
 constexpr double kWeightShiftFraction = 0.45;  ///< time in which the weight shifts before the first step [strides]
 
-/// Rotation of the body at each step of a U-turn [degrees], toward the foot that steps first (the inner foot). At the
-/// steps of the inner foot (entries 0 and 2) it is larger, so that toes do not collide.
+/// Rotation of the body at each step of a turn by 180° [degrees], toward the foot that steps first (the inner foot).
+/// The rotation at the steps of the inner foot (entries 0 and 2) is larger, so that toes do not collide.
 constexpr std::array<double, 4> kTurnAngles{54, 36, 54, 36};
 constexpr double kTurnStep = 0.11;  ///< forward distance per step of a turn [m], for a height of 1.75 m
 
@@ -27,18 +27,17 @@ Vec2 left_of(double yaw) {
   return {std::cos(yaw), std::sin(yaw)};
 }
 
-/// Size of steady steps: step length / leg length, relative to the recorded walk; clamped to 0.5 to
-/// 1.2.
+/// Size of steady steps: step length / leg length, relative to that of the recorded walk; clamped to 0.5 to 1.2.
 double step_size(const Physique& body, const Pace& pace) {
   const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
   return std::clamp(pace.step_length / recorded, 0.5, 1.2);
 }
 
-/// One step: motion of the body relative to the preceding step. The foot is placed beside the body.
+/// One step: motion of the body relative to its position at the preceding step. The foot is placed beside the body.
 struct Step {
   double forward = 0, left = 0;  ///< [m]
   double turn = 0;               ///< [rad]
-  double size = 1;
+  double size = 1;               ///< see Plant::size
 };
 
 /// Collects the steps of a walk.
@@ -88,8 +87,8 @@ class Planner {
   int next_strike_ = 0;
 };
 
-/// Adds the steps of a straight path, beginning with the foot `side`. `left`: total offset to the left [m], spread over
-/// at most four steps from step `from` on. Returns the side of the next foot.
+/// Adds the steps of a straight path, beginning with the foot `side`. `left`: total offset to the left [m], divided
+/// among at most four steps from step `from` on. Returns the side of the next foot.
 int add_straight_steps(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left,
                        int from) {
   const int aside = std::min(4, steps);
@@ -150,7 +149,7 @@ Physique physique_of(const Character& mannequin) {
   body.thigh = (knee - hip).norm();
   body.shin = (ankle - knee).norm();
   body.stance_forward = 1.3 * cm;
-  // The bounds select the trunk; hands at rest are farther out.
+  // These limits select the trunk. Hands in the rest pose are farther out.
   for (const Vec3& p : mannequin.mesh.positions)
     if (p.z() > 75 * cm && p.z() < 98 * cm && p.x() < 35 * cm)
       body.hips_half_width = std::max(body.hips_half_width, p.x());
@@ -159,7 +158,7 @@ Physique physique_of(const Character& mannequin) {
 
 Pace pace_of(double speed, double height) {
   constexpr double walk_ratio = 0.0062;     // m/(steps/min), from the recording
-  constexpr double recorded_height = 1.70;  // m, estimated from the walker's legs
+  constexpr double recorded_height = 1.70;  // m, estimated from the leg length in the recording
   const double length = std::sqrt(walk_ratio * height / recorded_height * 60 * speed);
   return {length, length / speed};
 }
@@ -182,16 +181,16 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
   const int fitting = static_cast<int>(std::round(walk.distance / pace.step_length + shorter));
   const int steps = std::max(2, fitting);
   pace.step_length = walk.distance / (steps - shorter);
-  // If the distance is too short for two such steps, the two steps get shorter and keep their duration.
+  // If the distance is too short for two such steps, the two steps are shorter and keep their duration.
   if (fitting >= 2) pace.step_time = pace.step_length / walk.speed;
   Planner planner(body, pace, walk.stand);
   int side = 1;
   if (walk.turn_back) {
-    // The steps before the turn take half of its sideways offset, the steps after it the other half.
+    // The turn displaces the body sideways. The steps before it compensate half of this, the steps after it the rest.
     const Vec2 arc = turn_displacement(body);
-    // The first step of the turn covers the rest of the distance.
+    // The first step of the turn covers the last part of the distance.
     const double ahead = std::cos(kTurnAngles[0] * kDegree) * kTurnStep * body.height / 1.75;
-    // If the walk is shorter than the turn, the character turns where it stands instead of stepping backward.
+    // If the walk is shorter than the turn, the steps have length 0, so that the body does not step backward.
     pace.step_length = std::max(0.0, pace.step_length - ahead / (steps - shorter));
     const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();
     side = add_straight_steps(planner, body, pace, steps, side, aside, std::max(0, steps - 4));

@@ -1,5 +1,5 @@
-// Positions and times of the footholds of a walk. Times are counted in keyframe intervals ("keys"). A step is half a
-// stride and has an even number of keys.
+// Positions and times of the footholds of a walk. The unit of times is the interval between key frames ("key"). A step
+// is half a stride and has an even number of keys.
 #pragma once
 
 #include <array>
@@ -11,21 +11,22 @@
 
 namespace weft::character {
 
-/// Measures of a body that a walk depends on [m]. A foot at rest has its sole flat on z = 0.
+/// Measures of a body on which a walk depends [m]. In the rest pose, soles are flat on z = 0.
 struct Physique {
-  std::array<Vec3, kJointCount> joints;  ///< positions at rest
+  std::array<Vec3, kJointCount> joints;  ///< positions in the rest pose
   double height = 0;
-  double foot_yaw = 0;  ///< of the left foot, outward [rad]
+  double foot_yaw = 0;  ///< outward rotation of the left foot [rad]
   double ankle_height = 0;
-  double ball_forward = 0, ball_height = 0;  ///< joint of the toes, relative to the point on the floor below the ankle
+  double ball_forward = 0, ball_height = 0;  ///< position of the toe joint, relative to the floor point below the ankle
   double heel_back = 0, heel_radius = 0;     ///< radius of the round heel; its centre is `heel_back` behind the ankle
-  double toe_length = 0, toe_radius = 0;     ///< ball to centre of the round toe tips; their radius
+  double toe_length = 0, toe_radius = 0;     ///< distance from ball to centre of the round toe tips; their radius
   double thigh = 0, shin = 0;
   double hips_half_width = 0;  ///< half width of the trunk at the height of the hanging hands
   double stance_forward = 0;   ///< distance of the hips in front of the ankles of a standing body
 
   double leg() const { return thigh + shin; }
 };
+/// Measures a mannequin in its rest pose.
 Physique physique_of(const Character& mannequin);
 
 /// Length and duration of a step in steady walking.
@@ -34,12 +35,11 @@ struct Pace {
   double step_time = 0;    ///< half a stride [s]
 };
 
-/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is the
-/// same at all speeds: that of the recorded walk (gait_curves.hpp), 0.0062 m/(steps/min) at a
-/// height of 1.70 m, scaled by the height. In people the walk ratio is about 0.0065 m/(steps/min)
-/// (Sekiya & Nagasaki, "Reproducibility of the walking patterns of normal young adults", 1998) and
-/// constant for speeds from 1.03 m/s on (Murakami & Otaka, "Estimated lower speed boundary at which
-/// the walk ratio constancy is broken", 2017).
+/// Pace for a speed [m/s] and a body height [m]. The walk ratio (step length / step rate) is the same at all speeds:
+/// that of the recorded walk (gait_curves.hpp), 0.0062 m/(steps/min) at a height of 1.70 m, scaled by the height. In
+/// people, the walk ratio is about 0.0065 m/(steps/min) (Sekiya & Nagasaki, "Reproducibility of the walking patterns of
+/// normal young adults", 1998) and constant for speeds from 1.03 m/s on (Murakami & Otaka, "Estimated lower speed
+/// boundary at which the walk ratio constancy is broken", 2017).
 Pace pace_of(double speed, double height);
 
 /// Number of keys in a step; always even.
@@ -53,17 +53,17 @@ inline constexpr double kOverlap = 0.10;  ///< double support after a strike [st
 /// A foothold: a position where a foot stands for some time.
 struct Plant {
   Vec2 at = Vec2::Zero();  ///< point on the floor below the ankle while the sole is flat [m]
-  double yaw = 0;          ///< of the body above it, 0 toward -y, + to the left [rad]
-  double foot_yaw = 0;     ///< of the foot: `yaw` plus the outward rotation of the toes [rad]
-  int strike = -kFarKey;   ///< key of the heel strike; default, for the first foothold: before all keys
-  int off = kFarKey;       ///< key of toe-off; default, for the last foothold: after all keys
-  double aside = 0;        ///< outward detour around the other foot, halfway through the step to this foothold [m]
+  double yaw = 0;          ///< heading of the body at this foothold, 0 toward -y, + to the left [rad]
+  double foot_yaw = 0;     ///< heading of the foot: `yaw` plus the outward rotation of the toes [rad]
+  int strike = -kFarKey;   ///< key of the heel strike; before all keys for the first foothold
+  int off = kFarKey;       ///< key of toe-off; after all keys for the last foothold
+  double aside = 0;        ///< outward detour around the other foot, in the middle of the step to this foothold [m]
   double size = 1;         ///< size of the step to this foothold, relative to a step of the recorded walk
 };
 
-/// Footholds of both feet.
+/// Footholds of both feet, and timing of the steps.
 struct StepPlan {
-  std::array<std::vector<Plant>, 2> plants;  ///< of the left and the right foot
+  std::array<std::vector<Plant>, 2> plants;  ///< footholds of the left and the right foot
   struct Strike {
     int key, side;
   };
@@ -72,17 +72,17 @@ struct StepPlan {
   int step_keys = 0;            ///< keys in a step
   double speed = 0;             ///< steady walking speed [m/s]
 
-  /// Keys in a stride.
+  /// Number of keys in a stride.
   int period() const { return 2 * step_keys; }
-  /// Number of the foothold where this foot stands at this key, or stood last.
+  /// Number of the foothold where the foot `side` stands at the key `key`; in swing, where it stood last.
   std::size_t plant_at(int side, int key) const;
   /// Strides since the heel strike, and strides until toe-off; large if the foothold has no strike or no toe-off.
   double strides_since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
   double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
 };
 
-/// Plans a walk that begins and ends with standing, and turns halfway if `walk.turn_back`. Adjusts the pace such that a
-/// whole number of steps covers the distance.
+/// Plans a walk that begins and ends with standing and, if `walk.turn_back`, turns around at its far end. Adjusts the
+/// pace such that a whole number of steps covers the distance.
 StepPlan plan_walk(const Physique& body, const Walk& walk);
 
 }  // namespace weft::character

@@ -10,12 +10,13 @@ namespace {
 
 constexpr double kGravity = 9.81;          // m/s²
 constexpr double kMassHeight = 0.55;       // height of the centre of mass / body height
-constexpr double kForesightStrides = 0.7;  // footholds farther in past or future have no effect [strides]
-// Offsets of bearing_point() [m], for a height of 1.75 m: backward at the strike (< 0: forward), forward at toe-off.
+constexpr double kForesightStrides = 0.7;  // footholds farther in the past or future have no effect [strides]
+// Offsets of bearing_point() for a body height of 1.75 m [m]: backward at the strike (< 0: forward), forward at
+// toe-off.
 constexpr double kRollBack = -0.01;
 constexpr double kRollForward = 0.175;
 
-/// Centred moving average over `width` keys (even); both end keys have half weight.
+/// Centred moving average over `width` keys (an even number). The keys at both ends have half weight.
 template <class Value>
 std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   std::vector<Value> means;
@@ -31,10 +32,10 @@ std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
   return means;
 }
 
-/// Mean of p with weights exp(-ω |τ|) in past and future. The weights fade to 0 at `half_width` keys, so that a
-/// standing body does not move.
+/// Mean of p over past and future with the weights exp(-ω |τ|), τ being the time difference. The weights fade to 0 at
+/// `half_width` keys, so that a standing body does not move. `omega`: ω [1/s].
 std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_time, int half_width) {
-  std::vector<double> weights;  // at a distance of d keys
+  std::vector<double> weights;  // by distance in keys
   double sum = 0;
   for (int d = 0; d < half_width; ++d) {
     weights.push_back(std::exp(-omega * d * key_time) * (1 - smooth_ramp(d, 0.5 * half_width, half_width)));
@@ -52,14 +53,14 @@ std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_t
   return means;
 }
 
-/// Part of the body weight on a foot, 0 to 1, not yet normalised over both feet.
+/// Fraction of the body weight on a foot, 0 to 1. The sum over both feet is not yet 1.
 double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
   const double on = std::clamp(plan.strides_since_strike(plant, key) / kOverlap, 0.0, 1.0);
   const double off = std::clamp(plan.until_off(plant, key) / kOverlap, 0.0, 1.0);
   return std::min(on, off);
 }
 
-/// Bearing point: the point below the foot that bears the weight. It moves forward during stance.
+/// The point below a foot that bears the weight [m]. It moves forward during stance.
 Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
   const double cm = body.height / 175;
   const double back = kRollBack * (1 - smooth_ramp(plan.strides_since_strike(plant, key), 0, 0.3)) * plant.size;

@@ -20,11 +20,12 @@ struct Track {
   double yaw_at(int key) const;  ///< beyond the ends, the value at the nearer end
 };
 
-/// Treats the body as an inverted pendulum on the feet: x'' = ω² (x - p), where x is the middle of the hips, p the
-/// point that bears the weight, and ω = √(g / height of the centre of mass) (Kajita et al., "The 3D linear inverted
-/// pendulum mode", 2001). The only bounded solution x is the mean of p over past and future, with weights ω/2 exp(-ω
-/// |τ|) at the time difference τ. Therefore the weight moves to the stance leg before the other foot lifts off, and the
-/// body leans into the first step and slows down before it stops. Computes the keys `first` to `last`.
+/// Computes the keys `first` to `last` of the body's motion. Treats the body as an inverted pendulum on the feet:
+/// x'' = ω² (x - p), where x is the middle of the hips, p the point that bears the weight, and ω = √(g / height of the
+/// centre of mass) (Kajita et al., "The 3D linear inverted pendulum mode", 2001). The only bounded solution x is the
+/// mean of p over past and future, with the weight ω/2 exp(-ω |τ|) at the time difference τ. The weight therefore moves
+/// to the stance leg before the other foot lifts off, and the body moves forward before the first step and slows down
+/// before it stops.
 Track balance_body(const Physique& body, const StepPlan& plan, int first, int last);
 
 }  // namespace weft::character

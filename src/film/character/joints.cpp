@@ -13,7 +13,7 @@
 namespace weft::character {
 namespace {
 
-/// A joint and its names in rigs. If a rig has several of these names, the first in this list counts.
+/// A joint and its names in rigs. If a rig has several of these names, the first one in `aliases` counts.
 struct BodyPart {
   std::string name;
   std::vector<std::string> aliases;
@@ -42,7 +42,7 @@ const std::vector<BodyPart> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// Whether a word in the name of a node says nothing about side or joint. Such words occur in Biped, Rigify, Source,
+/// Whether a word in the name of a node is independent of side and joint. Such words occur in Biped, Rigify, Source,
 /// VRM, Character Creator, Meebits, and in Mixamo rigs from which a program has removed the colon.
 bool is_filler_word(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
@@ -50,7 +50,8 @@ bool is_filler_word(const std::string& word) {
   return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
 }
 
-// Programs write characters that FBX does not allow in a name as "FBXASC" and their code: "Arm.L" is "ArmFBXASC046L".
+// Decodes characters that FBX does not allow in a name. Programs write them as "FBXASC" and their code: "Arm.L" is
+// "ArmFBXASC046L".
 std::string without_fbx_escapes(std::string name) {
   constexpr std::string_view kEscape = "FBXASC";
   constexpr std::size_t kDigits = 3;
@@ -66,7 +67,7 @@ std::string without_fbx_escapes(std::string name) {
 }
 
 /// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" contain "upper", "arm" and "l". Digits
-/// belong to the preceding word. The name of a rig before a colon is dropped.
+/// belong to the preceding word. Ignores the name of a rig before a colon.
 std::vector<std::string> words_of(const std::string& written) {
   const std::string name = without_fbx_escapes(written);
   std::vector<std::string> words;
@@ -78,7 +79,7 @@ std::vector<std::string> words_of(const std::string& written) {
       inside = inside && i + 1 < name.size() && std::isdigit(static_cast<unsigned char>(name[i + 1])) != 0;
       continue;
     }
-    // A capital begins a word if the character before it is no capital, or if the one after it is a
+    // A capital letter begins a word if the character before it is no capital letter, or if the character after it is a
     // lower-case letter: "LeftArm", "LHipJoint".
     const bool after_small = i > start && std::isupper(static_cast<unsigned char>(name[i - 1])) == 0;
     const bool before_small = i + 1 < name.size() && std::islower(static_cast<unsigned char>(name[i + 1])) != 0;
@@ -132,10 +133,9 @@ bool is_above(std::span<const Node> nodes, Index above, Index node) {
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// Determines the joints of the trunk from the tree. Hips: the node at which legs and spine branch,
-/// or a node above it that is named as the hips. Chest: the node at which the arms branch. Spine:
-/// the node halfway between hips and chest; of two middle nodes, the lower one; -1 if there is no
-/// node between them.
+/// Determines the joints of the trunk from the tree. Hips: the node at which legs and spine branch, or an ancestor of
+/// it that has a name of the hips. Chest: the node at which the arms branch. Spine: the node halfway between hips and
+/// chest, or the lower one of two middle nodes; -1 if there is no node between them.
 void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   const auto at = [&](Joint joint) -> Index& { return joints[joint_index(joint)]; };
   Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
@@ -149,7 +149,7 @@ void determine_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   if (arms >= 0 && arms == at(Joint::neck)) arms = nodes[arms].parent;
   if (!is_above(nodes, at(Joint::hips), arms)) return;
   at(Joint::chest) = arms;
-  std::vector<Index> between;  // from the chest down, without a node at the place of the hips
+  std::vector<Index> between;  // from the chest down, without a node at the same position as the hips
   for (Index n = nodes[arms].parent; n != at(Joint::hips); n = nodes[n].parent)
     if (!nodes[n].local.translation().isZero() || nodes[n].parent != at(Joint::hips)) between.push_back(n);
   at(Joint::spine) = between.empty() ? -1 : between[between.size() / 2];
@@ -162,15 +162,15 @@ bool has_all_limbs(const std::vector<Index>& joints) {
       [&](Joint left) { return joints[joint_index(left)] >= 0 && joints[joint_index(on_side(left, true))] >= 0; });
 }
 
-/// A prefix or suffix counts as the name of a rig if at least this number of nodes share it: the size of a minimal
-/// skeleton.
+/// A prefix or suffix counts as the name of a rig if at least this number of nodes have it. This is the size of a
+/// minimal skeleton.
 constexpr std::size_t kMinRigNodes = 15;
 
-/// Minimum length of a prefix or suffix without a separator. Shorter ones are shared by chance, or
-/// name the sides of a body.
+/// Minimum length of a prefix or suffix without a separator. Names have shorter ones in common by chance, or they name
+/// the sides of a body.
 constexpr std::size_t kMinPrefixLength = 3;
 
-/// Prefixes that end with a separator and are shared by at least kMinRigNodes nodes, longest first.
+/// Prefixes that end with a separator and that at least kMinRigNodes nodes have in common, longest first.
 std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
   std::map<std::string, std::size_t> counts;
   for (const Node& node : nodes)
@@ -183,9 +183,8 @@ std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
   return prefixes;
 }
 
-/// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes
-/// names share, longest first. Omits a prefix if a longer one that begins with it is shared by as
-/// many names.
+/// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes names have in
+/// common, longest first. Omits a prefix if as many names have a longer prefix that begins with it.
 std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : names)
@@ -193,7 +192,7 @@ std::vector<std::string> prefixes_without_separator(const std::vector<std::strin
   std::vector<std::string> prefixes;
   for (const auto& [text, count] : counts) {
     if (text.size() < kMinPrefixLength || count < kMinRigNodes) continue;
-    // The map is sorted, so entries that begin with this text follow it directly.
+    // The map is sorted. Entries that begin with this text therefore follow it directly.
     bool is_maximal = true;
     for (auto next = counts.upper_bound(text); next != counts.end() && next->first.starts_with(text); ++next)
       is_maximal = is_maximal && next->second < count;
@@ -214,8 +213,8 @@ struct Affixes {
   }
 };
 
-/// Candidates for the affixes of a rig, in this order: prefixes with a separator, prefixes without one, then each
-/// suffix, alone and with each prefix.
+/// Candidates for the affixes of a rig, in this order: prefixes with a separator; prefixes without one; each suffix,
+/// alone and with each prefix.
 std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
   std::vector<std::string> names, reversed;
   for (const Node& node : nodes) {
@@ -301,9 +300,8 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
     for (const BodyPart& part : kSides) joints.push_back(find(side, part));
-    // Resolves ambiguous names. A "shoulder" is the upper arm if no other node is the upper arm. A
-    // "foot" is the toes if there is an ankle. A "leg" is the lower leg if no other node is the
-    // lower leg.
+    // Resolves ambiguous names. A "shoulder" is the upper arm if no other node is the upper arm. A "foot" is the toes
+    // if there is an ankle. A "leg" is the lower leg if no other node is the lower leg.
     if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
@@ -315,9 +313,9 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
 
 namespace {
 
-/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l
-/// knee_048"). Does so only if the names end with at least kMinRigNodes different numbers, and at
-/// most 10 % of the numbers are repetitions. Numbers that rigs give to spines and fingers repeat.
+/// Removes the number that Sketchfab appends to the name of each bone ("CC_Base_L_Calf_05", "l knee_048"). Does so only
+/// if the names end with at least kMinRigNodes different numbers, and if at most 10 % of the numbers are repetitions:
+/// numbers that rigs themselves give to spines and fingers are repeated more often.
 std::vector<Node> without_numbers(std::vector<Node> nodes) {
   const auto number_of = [](const std::string& name) {
     const std::size_t mark = name.rfind('_');
@@ -338,10 +336,9 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
   return nodes;
 }
 
-/// Finds joints by name. If not all arms and legs are found, removes the affixes of a rig from the
-/// names and tries again ("UnityChan_LeftArm", "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt").
-/// If several affixes give all arms and legs, as in a file with several rigs, selects the rig with
-/// most joints that influence skin or move.
+/// Finds joints by name. If not all arms and legs are found, tries again without the affixes of a rig, as in
+/// "UnityChan_LeftArm", "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt". If this succeeds for several affixes, as in
+/// a file with several rigs, selects the rig with most joints that influence skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<bool> is_active(character.nodes.size(), false);
   for (const Bone& bone : character.bones) is_active[bone.node] = true;

@@ -36,37 +36,36 @@ enum class Joint : std::uint8_t {
   right_toes,
 };
 inline constexpr std::size_t kJointCount = 21;
-inline constexpr std::size_t kSideJointCount = 8;  ///< per side
+inline constexpr std::size_t kSideJointCount = 8;  ///< number of joints on each side
 
 constexpr std::size_t joint_index(Joint joint) {
   return static_cast<std::size_t>(joint);
 }
 
-/// A joint of the left side, or its mirror image if `right`.
+/// The joint `left` of the left side or, if `right`, its mirror image.
 constexpr Joint on_side(Joint left, bool right) {
   return static_cast<Joint>(joint_index(left) + (right ? kSideJointCount : 0));
 }
 
 std::string_view name(Joint joint);
-/// The parent joint; that of the hips is the hips.
+/// The parent joint. The hips are their own parent.
 Joint parent(Joint joint);
 
 /// Names in the order of Joint: Hips, Spine, Chest, Neck, Head, then for Left and Right: Shoulder, UpperArm, LowerArm,
 /// Hand, UpperLeg, LowerLeg, Foot, Toes.
 const std::vector<std::string>& joint_names();
 
-/// The name in lower case, without underscores: "LeftUpperArm" and "left_upper_arm" are the same.
+/// The name in lower case, without underscores, so that "LeftUpperArm" and "left_upper_arm" are equal.
 std::string normalise_word(const std::string& name);
 
 /// Index of a name in joint_names(), compared by normalise_word(); -1 for other names.
 Index joint_number(const std::string& name);
 
-/// For each of joint_names(), the node with that role; -1 if there is none. Finds nodes by the
-/// names of common rigs (a table in joints.cpp). If both upper arms and both upper legs are found,
-/// the nodes at which they branch off determine hips, spine and chest instead. Case, separators,
-/// the name of a rig before a colon, and words such as Bip01 or bone are ignored. If several nodes
-/// have the same name, the first active one counts; if none of them is active, the first one.
-/// `is_active`: per node, whether it influences skin or moves; empty: all are active.
+/// For each of joint_names(), the node that is this joint; -1 if there is none. Finds nodes by the names of common rigs
+/// (a table in joints.cpp). If both upper arms and both upper legs are found, the nodes at which they branch off
+/// determine hips, spine and chest instead. Ignores case, separators, the name of a rig before a colon, and words such
+/// as Bip01 or bone. If several nodes have the same name, the first active one counts, or the first one if none is
+/// active. `is_active`: per node, whether it influences skin or moves; empty: all are active.
 std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vector<bool>& is_active = {});
 
 /// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix, such as the name of the

@@ -12,25 +12,24 @@
 namespace weft::character {
 namespace {
 
-/// Two places of the skin belong to different limbs if the difference() of their limb weights exceeds this. A smaller
-/// difference occurs near a joint, where weights change gradually and skin may fold onto itself.
+/// Two points of the skin belong to different limbs if the difference() of their limb weights exceeds this. Smaller
+/// differences occur near a joint, where weights change gradually and skin may fold onto itself.
 constexpr float kMinWeightDifference = 0.15F;
 
 /// Lines from bone to skin per parallel task. A task takes some hundred microseconds.
 constexpr std::size_t kLinesPerTask = 512;
 
-/// Number of grid cells along the longest side of the body; the cells of a person have 3 cm.
+/// Number of grid cells along the longest side of the body. The cells of a person are 3 cm wide.
 constexpr double kCellsPerSide = 60;
 
-/// Maximum number of rounds of move_skin(). If the surfaces of two limbs face each other, one round is enough;
-/// otherwise each round halves the missing clearance.
+/// Maximum number of rounds of move_skin(). If the surfaces of two limbs face each other, one round is enough.
+/// Otherwise, each round halves the missing clearance.
 constexpr int kMaxRounds = 8;
 
-/// move_skin() ends if no vertex moves by more than this fraction of the clearance in a round,
-/// apart from smoothing.
+/// move_skin() ends if, in a round and without smoothing, no vertex moves by more than this fraction of the clearance.
 constexpr double kMissingTolerance = 0.02;
 
-/// Smoothing passes per round: dents extend over at least this number of edges.
+/// Number of smoothing passes per round. Dents then extend over at least this number of edges.
 constexpr int kSmoothingPasses = 3;
 
 /// Clearance between body and ground, as a fraction of the clearance between limbs.
@@ -39,26 +38,26 @@ constexpr double kGroundClearanceRatio = 0.5;
 /// Each of two limbs moves back by at most this fraction of the clearance that is missing between them.
 constexpr double kMaxGivenFraction = 0.5;
 
-/// Minimum remaining fraction of the distance from bone to skin; a thinner limb looks deflated.
+/// Minimum remaining fraction of the distance from bone to skin. A thinner limb looks unnatural.
 constexpr double kMinRemainingFraction = 0.5;
 
-/// Skin without cloth nearby follows its neighbours by at most this distance [m]; 5 mm are visible.
+/// Skin without cloth nearby follows its neighbours by at most this distance [m]. A displacement of 5 mm is visible.
 constexpr double kMaxMoveWithoutCloth = 0.004;
 
-/// Skin near cloth moves by at most this distance [m] or, if it is larger, by twice the clearance. Limbs that overlap
-/// more deeply still overlap afterwards; larger moves would be visible.
+/// Skin near cloth moves by at most this distance [m] or twice the clearance, whichever is larger. Limbs that overlap
+/// more deeply still overlap afterwards, because larger displacements would be visible.
 constexpr double kMaxMoveNearCloth = 0.03;
 
-/// The nearness of cloth to one limb also applies to skin of another limb inside it: fully up to half of this depth
-/// [m], then falling to 0 at this depth.
+/// The nearness of cloth to a limb also applies to skin of another limb inside it: fully up to half of this depth [m],
+/// then decreasing to 0 at this depth.
 constexpr double kMaxNearClothDepth = 0.05;
 
-/// Skin follows its neighbours fully over edges up to this length [m], and less over longer ones, so that dents in
-/// coarse meshes are as narrow as in fine ones.
+/// Skin follows its neighbours fully over edges up to this length [m], and less over longer edges. Dents in coarse
+/// meshes are then as narrow as in fine ones.
 constexpr double kFullFollowEdge = 0.02;
 
-/// The number of the limb of each joint (see kLimbNames), in the order of Joint. The trunk includes neck, head and
-/// shoulders; hands belong to lower arms, feet to lower legs, as hands and feet are too thin to move back separately.
+/// The number of the limb of each joint (index into kLimbNames), in the order of Joint. The trunk includes neck, head
+/// and shoulders. Hands belong to lower arms and feet to lower legs, because they are too thin to move back separately.
 constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2, 3, 4,
                                                            4, 4, 0, 5, 6, 6, 7, 8, 8, 8};
 constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left upper arm",  "left lower arm",
@@ -88,7 +87,7 @@ std::vector<LimbClearance::LimbWeights> limb_weights_of(const Rig& rig) {
   return weights;
 }
 
-/// Half of the sum of all differences: 0 for equal weights, 1 for weights without a common limb.
+/// Half of the sum of all absolute differences: 0 for equal weights, 1 for weights without a common limb.
 float difference(const LimbClearance::LimbWeights& a, const LimbClearance::LimbWeights& b) {
   float sum = 0;
   for (std::size_t l = 0; l < a.size(); ++l) sum += std::abs(a[l] - b[l]);
@@ -99,7 +98,7 @@ float difference(const LimbClearance::LimbWeights& a, const LimbClearance::LimbW
 Character rebind_to_bones(const Character& body, const std::vector<Vec3>& places) {
   Character rebound{body.nodes, body.bones, {}, body.first_influence, body.influences, {}, {}, {}, {}, {}};
   const Pose rest = rest_pose(rebound);
-  // Images of the origin and of the unit vectors under the skinning map of each vertex.
+  // Positions to which the skinning map of each vertex moves the origin and the unit vectors.
   std::array<std::vector<Vec3>, 4> images;
   for (int k = 0; k < 4; ++k) {
     rebound.mesh.positions.assign(places.size(), k == 0 ? Vec3(Vec3::Zero()) : Vec3(Vec3::Unit(k - 1)));
@@ -144,10 +143,10 @@ LimbClearance::LimbClearance(const Rig& rig, const VertexMask& touched, std::vec
   for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
-// Computes the missing clearance per vertex: the length of its line from the first entry into
-// another limb to the end of the line, minus this length at rest. The line goes from the bone to
-// the skin and is extended by the clearance. `from`: points on the bones. `skin`: unmoved skin,
-// which defines the lines. `x`: present positions of the skin.
+// Computes the missing clearance per vertex. The line of a vertex goes from the bone to the skin and is extended by the
+// clearance. The missing clearance is the length of this line from the first entry into another limb to its end, minus
+// the same length in the rest pose. `from`: points on the bones. `skin`: unmoved skin, which defines the lines. `x`:
+// present positions of the skin.
 void LimbClearance::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                                  std::vector<MissingClearance>& missing) const {
   Box3 box;
@@ -158,7 +157,7 @@ void LimbClearance::find_missing(std::span<const Vec3> from, std::span<const Vec
     for (std::size_t v = begin; v < end; ++v) {
       missing[v] = {};
       const double length = (skin[v] - from[v]).norm();
-      // If more than the clearance is missing at rest, limbs cross there on purpose, as the plates of armour do.
+      // If more than the clearance is missing in the rest pose, limbs cross there on purpose, such as plates of armour.
       if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > clearance_) continue;
       const Vec3 to = x[v] + clearance_ / length * (skin[v] - from[v]);
       const mesh::Entry entry = grid.find_first_crossing(from[v], to, [&](Index t) {
@@ -174,8 +173,9 @@ void LimbClearance::find_missing(std::span<const Vec3> from, std::span<const Vec
   });
 }
 
-// Moves each vertex back at least by the mean fraction of its neighbours. A neighbour counts less over an edge longer
-// than kFullFollowEdge. `lengths`: of the edges. `remaining`: per vertex, the fraction of its line that remains.
+// Moves each vertex back by at least the mean fraction by which its neighbours moved back. A neighbour counts less if
+// its edge is longer than kFullFollowEdge. `lengths`: of the edges [m]. `remaining`: per vertex, the fraction of its
+// line that remains.
 void LimbClearance::smooth(std::span<const double> lengths, std::vector<double>& remaining) const {
   std::vector<double> sums(remaining.size()), counts(remaining.size());
   for (int round = 0; round < kSmoothingPasses; ++round) {
@@ -192,8 +192,8 @@ void LimbClearance::smooth(std::span<const double> lengths, std::vector<double>&
   }
 }
 
-// Lifts skin out of the ground. Does not lift skin whose points on the bones are in the ground:
-// either the scene intends this, or lifting the skin does not help.
+// Lifts skin out of the ground. Does not lift skin whose points on the bones are in the ground: either the author of
+// the scene intends this, or lifting the skin does not help.
 void LimbClearance::lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
@@ -204,9 +204,9 @@ void LimbClearance::lift_from_ground(std::span<const Vec3> from, std::span<Vec3>
     }
 }
 
-// Finds the vertex that moved farthest: first back from `before` to `unlifted`, then up to `x`.
-// `other`: per vertex, the triangle of another limb that made it move back; -1: none, the vertex at
-// most followed its neighbours.
+// Finds the vertex that moved farthest. A vertex first moves back from `before` to `unlifted`, then up to `x`. `other`:
+// per vertex, the triangle of another limb from which it moved back; -1: it did not move, or only followed its
+// neighbours.
 Moved LimbClearance::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
                               std::vector<Index> other) const {
   Moved moved;
@@ -219,7 +219,7 @@ Moved LimbClearance::farthest(std::span<const Vec3> before, std::span<const Vec3
   moved.limb = name_of(limb_weights_[v]);
   moved.away_from = "ground";
   if ((x[v] - unlifted[v]).norm() > (unlifted[v] - before[v]).norm()) return moved;
-  // If the vertex only followed its neighbours, `other` spreads along edges from the nearest skin that has one.
+  // If the vertex only followed its neighbours, spreads `other` along edges until the vertex has a triangle.
   std::vector<Index> known;
   while (other[v] < 0 && known != other) {
     known = other;
@@ -239,7 +239,7 @@ Moved LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
   std::vector<double> lengths;
   for (const auto& [a, b] : edges_) lengths.push_back((original[a] - original[b]).norm());
   std::vector<double> remaining(touched_.size(), 1);
-  // Largest move of each vertex due to its own missing clearance [m]. Smoothing may move the vertex farther.
+  // Largest displacement of each vertex due to its own missing clearance [m]. Smoothing may move the vertex farther.
   std::vector<double> max_given(touched_.size(), 0);
   std::vector<float> near = near_;
   std::vector<Index> other(touched_.size(), -1);
@@ -258,7 +258,7 @@ Moved LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
       remaining[v] = std::min(before, std::max(lower_limit, before - kMaxGivenFraction * missing[v].distance / length));
       changed |= (before - remaining[v]) * length > kMissingTolerance * clearance_;
     }
-    // Smooths in every round: a vertex that moves back alone leaves its neighbours inside the other limb.
+    // Smooths in every round. Otherwise, neighbours of a vertex that moves back alone would stay inside the other limb.
     smooth(lengths, remaining);
     for (std::size_t v = 0; v < remaining.size(); ++v) {
       if (!(remaining[v] < 1)) continue;

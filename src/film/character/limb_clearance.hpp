@@ -1,4 +1,4 @@
-// Makes clearance for cloth between the limbs of a body: if two limbs near cloth come too close or overlap, the skin of
+// Makes clearance for cloth between the limbs of a body: if two limbs near cloth are too close or overlap, the skin of
 // both moves back toward its bones.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace weft::character {
 
-/// A plane above which skin is kept, in the coordinates of the body.
+/// A plane above which skin must be, in the coordinates of the body.
 struct Ground {
   Vec3 up{0, 0, 1};   ///< of unit length
   double height = 0;  ///< up · x of the plane [m]
@@ -24,17 +24,17 @@ struct Ground {
 struct Moved {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
-  std::string limb;       ///< limb that the vertex belongs to
-  std::string away_from;  ///< the other limb, or "ground" if lifting moved the vertex farther than moving back
+  std::string limb;       ///< limb to which the vertex belongs
+  std::string away_from;  ///< the other limb; "ground" if the vertex moved farther up from the ground than back
 };
 
-/// Moves skin back along the lines from its bones to the skin, to make clearance for cloth. Limbs
-/// are upper arms, lower arms with hands, upper legs, lower legs with feet, and the trunk with head
-/// and shoulders. If cloth is near at least one of two limbs, the skin of each limb moves back by
-/// at most half of the missing clearance. Skin moves farther only to follow its neighbours, and
-/// never by more than half of its line. Skin that is closer to another limb at rest, as at a common
-/// joint, keeps its clearance at rest. Skin that is inside another limb at rest moves only to
-/// follow its neighbours. Skin near cloth is also lifted out of the ground, except that of feet.
+/// Moves skin back along lines from the bones to the skin, to make clearance for cloth. Limbs are upper arms, lower
+/// arms with hands, upper legs, lower legs with feet, and the trunk with head and shoulders.
+/// - If cloth is near at least one of two limbs, the skin of each limb moves back by at most half of the missing
+///   clearance. Skin moves farther only to follow its neighbours, and never by more than half of its line.
+/// - Skin that is closer to another limb in the rest pose, as at a common joint, needs only its clearance in the rest
+///   pose. Skin that is inside another limb in the rest pose moves only to follow its neighbours.
+/// - Skin near cloth is lifted out of the ground, except that of feet.
 class LimbClearance {
  public:
   /// Weight of each limb at a vertex.
@@ -45,7 +45,7 @@ class LimbClearance {
   LimbClearance(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double clearance,
                 std::vector<Ground> grounds);
 
-  /// Moves the skin `x`, which must be the result of skin() for the pose.
+  /// Moves the skin `x`, which must be the result of skin() for the pose. Returns the largest displacement.
   Moved move_skin(const Pose& pose, std::span<Vec3> x) const;
 
  private:
@@ -53,7 +53,7 @@ class LimbClearance {
   struct MissingClearance {
     double distance = 0;  // missing clearance [m]
     float near = 0;       // nearness of cloth, 0 to 1: the larger value of the vertex and of the other limb
-    Index triangle = -1;  // of the other limb; -1: none
+    Index triangle = -1;  // triangle of the other limb at which the line enters it; -1: none
   };
 
   void find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
@@ -65,13 +65,13 @@ class LimbClearance {
 
   double clearance_;
   std::vector<Ground> grounds_;
-  std::vector<mesh::Triangle> triangles_;  // of the skin that cloth can touch
+  std::vector<mesh::Triangle> triangles_;  // triangles of the skin that cloth can touch
   std::vector<LimbWeights> limb_weights_, limb_weights_of_triangle_;
   std::vector<float> near_, near_of_triangle_;  // nearness of cloth, 0 to 1
   VertexMask touched_, foot_;
-  std::vector<double> missing_at_rest_;      // [m]
+  std::vector<double> missing_at_rest_;      // missing clearance in the rest pose [m]
   std::vector<std::array<Index, 2>> edges_;  // of `triangles_`
-  Character bones_;                          // its mesh has, per vertex, the point on the bones where the line starts
+  Character bones_;                          // the body; vertices of its mesh are the points where the lines start
 };
 
 }  // namespace weft::character

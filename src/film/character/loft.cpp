@@ -7,15 +7,14 @@
 namespace weft::character {
 namespace {
 
-/// |x|^n. Avoids the slow std::pow for ellipses.
+/// |x|^n. For ellipses (n = 2), avoids std::pow, which is slow.
 double power(double x, double n) {
   return n == 2 ? x * x : std::pow(std::abs(x), n);
 }
 
-/// Slopes at the knots of the cubic spline with zero slope at both ends. For inner knots i, with h and d the lengths
-/// and slopes of the chords and s the slopes at the knots:
+/// Slopes at the knots of a cubic spline whose slope is zero at both ends. The slopes s at the inner knots i solve this
+/// tridiagonal system, where h and d are the lengths and slopes of the chords:
 /// h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3 (h[i] d[i-1] + h[i-1] d[i]).
-/// Solved by elimination, as the matrix is tridiagonal.
 std::vector<double> spline_slopes(const std::vector<double>& at, const std::vector<double>& value) {
   const std::size_t n = at.size();
   std::vector<double> slope(n, 0.0), upper(n, 0.0);
@@ -32,7 +31,7 @@ std::vector<double> spline_slopes(const std::vector<double>& at, const std::vect
 
 }  // namespace
 
-// Twice continuously differentiable (cubic smooth minimum, after Quilez, "Smooth minimum", 2013).
+// The cubic smooth minimum of Quilez ("Smooth minimum", 2013), which is twice continuously differentiable.
 double smooth_min(double a, double b, double width) {
   const double h = std::max(width - std::abs(a - b), 0.0) / width;
   return std::min(a, b) - h * h * h * width / 6;
@@ -51,7 +50,7 @@ Loft::Loft(const LoftFrame& frame, const std::vector<Section>& sections, double 
     const std::vector<double> slope = at_.size() > 1 ? spline_slopes(at_, value) : std::vector<double>{0.0};
     for (std::size_t i = 0; i < slope.size(); ++i) slopes_[i][k] = slope[i];
   }
-  // Splines may overshoot between knots, so the bounds enclose fine samples, with a margin of 1 %.
+  // Splines may exceed the values at their knots. The bounds therefore enclose fine samples, with a margin of 1 %.
   constexpr int samples = 64;
   for (int i = 0; i <= samples; ++i) {
     const Sizes s = sizes_at(at_.front() + (at_.back() - at_.front()) * i / samples);
@@ -93,8 +92,7 @@ double Loft::value(const Vec3& p) const {
   const double n = s[5];
   const double across = power(u / s[2], n) + power(v / (v > 0 ? s[3] : s[4]), n);
   const double rho_sq = (n == 2 ? across : std::pow(across, 2 / n)) + cap * cap;
-  // At the centre the ray has no direction; the value there is minus the smallest half width or
-  // depth.
+  // At the centre, the ray has no direction. The value there is minus the smallest half width or depth.
   const double rho = std::sqrt(rho_sq), length = std::sqrt(u * u + v * v + beyond * beyond);
   return rho < 1e-9 ? -std::min({s[2], s[3], s[4]}) : length * (1 - 1 / rho);
 }
@@ -109,8 +107,7 @@ double BlendedBody::operator()(const Vec3& p) const {
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
   for (const Part& part : parts_) {
-    // A part has no effect if its distance exceeds the blend width plus f (for a carved part: minus
-    // f).
+    // A part has no effect if its distance exceeds the blend width plus f (for a carved part, minus f).
     const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
     const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
     double value = nothing;

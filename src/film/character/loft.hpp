@@ -11,13 +11,13 @@
 namespace weft::character {
 
 /// A cross-section of a loft: the superellipse |u / side|^n + |v / depth|^n = 1 about its centre. n is `exponent`; the
-/// depth is `front` for v > 0, else `back`. Lengths in metres.
+/// depth is `front` for v > 0, else `back`. All lengths are in metres.
 struct Section {
   double at = 0;        ///< position along the axis
   double u = 0, v = 0;  ///< centre
   double side = 0;      ///< half width
-  double front = 0;     ///< depth, measured from the centre
-  double back = 0;
+  double front = 0;     ///< depth for v > 0, measured from the centre
+  double back = 0;      ///< depth for v < 0, measured from the centre
   double exponent = 2;  ///< 2: an ellipse; larger: closer to a rectangle
 };
 
@@ -36,16 +36,15 @@ class Loft {
   /// and the last section, > 0 [m].
   Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap);
 
-  /// Distance from p to the surface [m], measured along the ray through p from the centre of the
-  /// cross-section at p; beyond an end, from the centre of the section at this end. Negative
-  /// inside.
+  /// Distance from p to the surface [m], negative inside. It is measured along the ray through p from the centre of the
+  /// cross-section at p or, beyond an end, from the centre of the section at this end.
   double value(const Vec3& p) const;
 
   const Box3& bounds() const { return bounds_; }
 
  private:
   static constexpr std::size_t kSizes = 6;
-  using Sizes = std::array<double, kSizes>;  ///< of a section: u, v, side, front, back, exponent
+  using Sizes = std::array<double, kSizes>;  ///< members of a Section: u, v, side, front, back, exponent
 
   Sizes sizes_at(double t) const;
 
@@ -57,7 +56,7 @@ class Loft {
   Box3 bounds_;
 };
 
-/// Minimum of two fields, smoothed where these differ by less than `width` [m].
+/// Minimum of two values of fields, smoothed if these differ by less than `width` [m].
 double smooth_min(double a, double b, double width);
 
 /// Smooth union of lofts. Each loft is blended into the preceding ones over its own width [m], so that no crease
@@ -76,6 +75,7 @@ class BlendedBody {
   /// Subtracts a shape from all preceding parts, with an edge that is rounded over the width `blend` [m].
   void carve(Loft part, double blend, bool paired) { parts_.push_back({std::move(part), blend, paired, true, {}}); }
 
+  /// Value of the field at p [m], negative inside.
   double operator()(const Vec3& p) const;
   Box3 bounds() const;
 

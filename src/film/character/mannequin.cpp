@@ -13,7 +13,7 @@
 namespace weft::character {
 namespace {
 
-constexpr int kRemeshRounds = 8;  ///< more rounds change the smallest angle of the mesh by less than 1°
+constexpr int kRemeshRounds = 8;  ///< further rounds change the smallest angle of the mesh by less than 1°
 
 constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
 
@@ -21,7 +21,7 @@ constexpr double kMaxHandEdge = 0.02;  ///< maximum edge length on head and hand
 
 constexpr double kSoleRounding = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
 
-/// The body with flat soles: the part below the floor is cut off.
+/// The body with flat soles: cuts off the part below the floor.
 mesh::Field standing_on_floor(const BlendedBody& body, double height) {
   const double rim = kSoleRounding * height / 1.75;
   return [&body, rim](const Vec3& p) {
@@ -31,9 +31,9 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
   };
 }
 
-/// Wanted edge length: shorter where the body is thin or strongly curved (arms, hands, shins, feet,
-/// neck, head, between the legs and under the arms). In coarse bodies, kMaxHandEdge limits the edge
-/// length of head and hands, so that face and fingers keep their shape.
+/// Target edge length [m]: shorter where the body is thin or strongly curved (arms, hands, shins, feet, neck, head,
+/// between the legs and under the arms). In coarse bodies, kMaxHandEdge limits the edge length of head and hands, so
+/// that face and fingers keep their shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
   const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kMaxHandEdge * unit);
   const double wrist = joints[joint_index(Joint::left_hand)].x(),
@@ -71,7 +71,7 @@ mesh::MirroredMesh make_skin(const MannequinBuild& build, const std::array<Vec3,
   return mesh::join_mirror_image(half);
 }
 
-/// The number of the same joint on the other side; of a joint of the trunk, its own number.
+/// The number of the same joint on the other side; for a joint of the trunk, its own number.
 std::size_t mirrored(std::size_t joint) {
   if (joint < kFirstLeft) return joint;
   return joint < kFirstRight ? joint + kSideJointCount : joint - kSideJointCount;

@@ -16,12 +16,11 @@ struct MannequinBuild {
   double edge_length = 0.02;  ///< edge length of the triangles [m]; shorter where the body is thin or strongly curved
 };
 
-/// Positions of the joints at rest [m]: arms 45° from the vertical, legs slightly apart.
+/// Positions of the joints in the rest pose [m]: arms 45° from the vertical, legs slightly apart.
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build);
 
-/// Makes the body: closed, exactly symmetric (bit for bit), with at most four influences per
-/// vertex. Nodes and bones have the order of Joint; at rest, the axes of all nodes are those of the
-/// world.
+/// Makes the body. Its mesh is closed and exactly symmetric (bit for bit), with at most four influences per vertex.
+/// Nodes and bones have the order of Joint. In the rest pose, the axes of all nodes are those of the world.
 Character make_mannequin(const MannequinBuild& build);
 
 }  // namespace weft::character

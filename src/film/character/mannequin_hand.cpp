@@ -1,4 +1,5 @@
-// A relaxed hand of the mannequin in centimetres: palm, four fingers that bend toward the thigh, and thumb.
+// A relaxed hand of the mannequin: palm, four fingers that bend toward the thigh, and thumb. Lengths are in
+// centimetres.
 #include <cmath>
 
 #include "film/character/mannequin_parts.hpp"
@@ -18,7 +19,7 @@ constexpr Finger kRelaxedFingers[] = {
     {66.3, -2.35, 3.8, 3.5, 0.82, 19, 28},
 };
 constexpr double kPlateRoot = 16,
-                 kPlateTip = 41;  ///< bends of the plates [degrees]: means over the fingers
+                 kPlateTip = 41;  ///< bend of both plates [degrees]: mean bend of the fingers
 constexpr double kClosing =
     0.040;  ///< slope of a finger toward the middle of the hand per distance from the middle [1/cm]
 
@@ -34,7 +35,7 @@ void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& al
   body.add(Loft(frame, scaled(rows, s, false), radius * s.length, end_radius * s.length), blend, true);
 }
 
-/// A flat piece that fills the gaps between fingers: length, half widths at both ends, half thickness [cm].
+/// A flat body that fills the gaps between fingers: length, half widths at both ends, half thickness [cm].
 struct Plate {
   double length, width, end_width, thickness;
 };
@@ -69,7 +70,7 @@ void add_hand(BlendedBody& body, const Scale& s, const LoftFrame& arm) {
     return arm.origin + s.length * (at * arm.along + out * arm.u + forward * arm.v);
   };
   const Vec3 inward = -arm.u;
-  // The plates keep the grooves between fingers shallow: triangles between surfaces that barely touch would fold.
+  // Without the plates, the surfaces of neighbouring fingers would nearly touch, and triangles between them would fold.
   const Vec3 first_plate = bent(arm.along, inward, kPlateRoot), second_plate = bent(arm.along, inward, kPlateTip);
   const Vec3 knuckles = place(66.5, -0.1, 0.1);
   add_plate(body, s, knuckles, first_plate, arm.v, {4.9, 3.1, 2.7, 0.55});

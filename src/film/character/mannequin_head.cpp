@@ -1,4 +1,5 @@
-// Head and hair of the mannequin in centimetres, drawn by eye. The eyes are halfway up the head.
+// Head and hair of the mannequin. Lengths are in centimetres and estimated. The eyes are at half the height of the
+// head.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -51,7 +52,7 @@ void add_nose(BlendedBody& body, const Scale& s) {
 }
 
 void add_mouth(BlendedBody& body, const Scale& s) {
-  // Mound of the teeth, both lips with a groove between them, and chin.
+  // Convex region over the teeth, both lips with a groove between them, and chin.
   body.add(ellipsoid(s, {0, 7.0, 157.6}, {3.1, 2.1, 2.5}), 2.4 * s.length, false);
   body.add(ellipsoid(s, {0.8, 8.7, 157.78}, {1.75, 0.65, 0.5}, -10, 20), 0.4 * s.length, true);
   body.add(ellipsoid(s, {0, 8.65, 156.62}, {1.95, 0.7, 0.6}), 0.5 * s.length, false);

@@ -1,8 +1,8 @@
 // Cross-sections of the mannequin in centimetres, for a height of 175 cm; all sizes scale with the height. Heights of
 // the joints and lengths of the segments are those of Drillis & Contini, "Body Segment Parameters" (1966), as fractions
-// of the height in Winter, "Biomechanics and Motor Control of Human Movement", Fig. 4.1; see mannequin_joints. Girths
-// are close to those of women in ANSUR II (Gordon et al., "2012 Anthropometric Survey of U.S. Army Personnel", 2014),
-// but about one size more slender, as shop-window mannequins are. All else is drawn by eye.
+// of the height in Winter, "Biomechanics and Motor Control of Human Movement", Fig. 4.1; see mannequin_joints(). Girths
+// are about one clothing size smaller than the mean of women in ANSUR II (Gordon et al., "2012 Anthropometric Survey of
+// U.S. Army Personnel", 2014), as those of shop-window mannequins are. All other sizes are estimates.
 #include "film/character/mannequin_shape.hpp"
 
 #include <algorithm>
@@ -36,8 +36,8 @@ void add_torso(BlendedBody& body, const Scale& s) {
   body.add(Loft({}, scaled(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
 }
 
-/// An ellipsoid. `middle`: its centre, as components to the left, forward and up. Unlike those of ellipsoid(), its half
-/// axes scale with the girth.
+/// An ellipsoid whose half axes scale with the girth (those of ellipsoid() scale with the height). `middle`: its
+/// centre, as components to the left, forward and up.
 Loft ball(const Scale& s, const Vec3& middle, double side, double depth, double half_height) {
   const LoftFrame frame{s.length * Vec3(middle.x(), -middle.y(), middle.z())};
   const double cap = half_height * s.girth;
@@ -67,7 +67,7 @@ void add_shoulders(BlendedBody& body, const Scale& s) {
 }
 
 void add_neck(BlendedBody& body, const Scale& s) {
-  // The neck leans forward by `lean` [rad]; its base between the shoulders is at position 0 of the axis.
+  // The neck is inclined forward by `lean` [rad]. Its base between the shoulders is at position 0 of the axis.
   LoftFrame neck;
   neck.origin = s.length * Vec3(0, 2.9, 143);
   const double lean = 0.27;
@@ -132,7 +132,7 @@ void add_foot(BlendedBody& body, const Scale& s, const Vec3& ankle) {
   frame.along = Vec3(std::sin(out), -std::cos(out), 0);
   frame.u = Vec3(std::cos(out), std::sin(out), 0);
   frame.v = Vec3::UnitZ();
-  // In these rows, the fifth value is the height above the centre, the sixth the height below it.
+  // In these rows, the fifth value is the extent above the centre, the sixth the extent below it.
   const Rows rows{{-3.0, 0, 2.6, 2.7, 4.0, 3.4, 2.3},   {0, 0, 2.6, 3.0, 5.4, 3.4, 2.2},
                   {4, 0.1, 2.4, 3.2, 4.9, 3.2, 2.2},    {8, 0.2, 2.1, 3.7, 3.8, 2.9, 2.2},
                   {12, 0.1, 1.7, 4.3, 2.7, 2.5, 2.3},   {15, 0, 1.5, 4.4, 1.9, 2.2, 2.4},

@@ -6,10 +6,10 @@
 
 namespace weft::character {
 
-/// Body height that the tables refer to [cm].
+/// Height of the body in the tables [cm].
 inline constexpr double kTableHeight = 175;
 
-/// The body as a field [m], negative inside. Its feet reach below the floor, z = 0.
+/// The body as a field [m], negative inside. Its feet extend below the floor, z = 0.
 BlendedBody mannequin_body(const MannequinBuild& build);
 
 }  // namespace weft::character

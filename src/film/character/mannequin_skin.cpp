@@ -14,8 +14,9 @@ double positive_part(double x, double round) {
   return x < round ? x * x / (2 * round) : x - round / 2;
 }
 
-/// Computes the skinning weights at one point of the left half. Lengths are in centimetres of a body of 175 cm, as in
-/// the tables of mannequin_shape.cpp. Starts with all weight on the hips and moves it outward, joint by joint.
+/// Computes the skinning weights at one point of the left half. Starts with all weight on the hips and moves it
+/// outward, joint by joint. Lengths are in centimetres for a body height of 175 cm, as in the tables of
+/// mannequin_shape.cpp.
 class WeightBlender {
  public:
   WeightBlender(const std::array<Vec3, kJointCount>& joints, double height, const Vec3& p)
@@ -45,7 +46,7 @@ class WeightBlender {
   void torso_and_head() {
     transfer(Joint::hips, Joint::spine, smooth_ramp(up_, 97, 114));
     transfer(Joint::spine, Joint::chest, smooth_ramp(up_, 111, 128));
-    // The shoulders stay with the chest.
+    // The shoulders keep their weight on the chest.
     transfer(Joint::chest, Joint::neck, smooth_ramp(up_, 141.5, 151.5) * (1 - smooth_ramp(x_, 4.5, 9)));
     // The chin follows the head; the nape at the same height follows the neck.
     transfer(Joint::neck, Joint::head, smooth_ramp(up_ + 0.5 * (forward_ - 1), 151, 158.5));
@@ -56,8 +57,8 @@ class WeightBlender {
     const Vec3 out(-along.z(), 0, along.x());  // away from the body
     const Vec3 from_shoulder = (p_ - at(Joint::left_upper_arm)) / cm_;
     const double s = from_shoulder.dot(along);
-    // Skin of the flank is as far along the arm's axis as skin of the arm, but closer to the middle of the body; there,
-    // `depth` is smaller.
+    // Skin of the flank can be as far along the arm's axis as skin of the arm, but it is closer to the middle of the
+    // body. `depth` is smaller there, to distinguish both.
     const double depth = s - 1.6 * positive_part(-from_shoulder.dot(out) - 2, 2);
     const double clavicle = smooth_ramp(x_, 2, 13) * smooth_ramp(up_, 126, 141);
     const double arm = smooth_ramp(depth, -7.5, 7.5);
@@ -72,7 +73,7 @@ class WeightBlender {
   }
 
   void legs() {
-    // The fold of the groin rises toward the side; at the back, the seat follows the thigh over a longer distance.
+    // The fold of the groin is higher toward the side. At the back, the transition from hips to thigh is longer.
     const double behind = smooth_ramp(-forward_, -4, 6);
     const double fold = 86.5 + 0.3 * (x_ - 9) - 2 * behind, half = 7.5 + 2 * behind;
     const double leg = smooth_ramp(fold - up_, -half, half);
@@ -91,7 +92,7 @@ class WeightBlender {
     transfer(Joint::left_lower_leg, Joint::left_foot, smooth_ramp(-foot, -12.5, -4.5));
     const Vec3 axis = (at(Joint::left_toes) - at(Joint::left_foot)).cwiseProduct(Vec3(1, 1, 0));
     const double t = (p_ - at(Joint::left_foot)).dot(axis.normalized()) / cm_, ball = axis.norm() / cm_;
-    // The bend of the toes is spread wider on top, where the skin is farther from the joint and would fold.
+    // The transition to the toes is wider on top, because skin there is farther from the joint and would fold.
     const double half_bend = 1.8 + 0.9 * up_;
     transfer(Joint::left_foot, Joint::left_toes, smooth_ramp(t, ball - half_bend, ball + half_bend));
   }

@@ -11,29 +11,30 @@
 namespace weft::character {
 namespace {
 
-/// Maximum difference between left and right chain, in each of their first bones and as a whole, relative to the longer
-/// chain. Left and right legs of recordings differ by 2 %; the longest chains of two arms may end at different fingers.
+/// Maximum difference between the lengths of left and right chain, relative to the longer chain. Applies to each of
+/// their first bones and to the whole chains. Left and right legs of recordings differ by 2 %; the longest chains of
+/// two arms may end at different fingers.
 constexpr double kMaxChainDifference = 0.1;
-/// Number of bones of two chains that are compared one by one: an auxiliary bone, the upper and the lower bone.
+/// Number of bones of two chains that are compared one by one: upper and lower bone, and possibly an auxiliary bone.
 constexpr int kComparedBones = 3;
 /// Minimum number of chains that branch at a hand.
 constexpr int kMinFingers = 3;
-/// If there are two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than
-/// this fraction of the shorter bone at the inner candidate. Some recordings have collarbones of 13 cm and forearms of
-/// 9 cm; a hand up to the fingers is shorter than half a forearm.
+/// Of two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than this
+/// fraction of the shorter bone at the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm;
+/// the part of a hand up to the fingers is shorter than half a forearm.
 constexpr double kMinOuterElbowRatio = 0.6;
-/// Maximum relative difference of the two halves of a split bone; maximum ratio between the upper and the lower bone of
-/// a limb (1.0 to 1.3 in adults).
+/// kMaxHalfDifference: maximum relative difference of the two halves of a split bone. kMaxLimbBoneRatio: maximum ratio
+/// between the lengths of upper and lower bone of a limb (1.0 to 1.3 in adults).
 constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
 /// A node above the arms that neither influences skin nor moves belongs to the neck if its bone is shorter than this
-/// fraction of a leg. A longer bone is the head itself.
+/// fraction of the leg length. A longer bone is that of the head.
 constexpr double kMaxNeckBone = 0.17;
 /// Number of samples of a clip that determine the posture.
 constexpr int kPostureSamples = 32;
-/// A node whose rotations in a clip are smaller does not move [rad].
+/// A node moves if it rotates by more than this in a clip [rad].
 constexpr double kMinRotation = 1e-4;
-/// Minimum magnitude of the triple product (trunk, forward, across) that determines the left side [cubed leg lengths].
-/// It is 0.03 for a body with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
+/// Minimum magnitude of the triple product (trunk, forward, across) from which the left side is determined [cubed leg
+/// lengths]. The product is 0.03 for a body with known feet, 2e-4 for knees that are 1 mm in front of a straight leg.
 constexpr double kMinLeftSignal = 1e-4;
 
 /// Nodes of a limb, from the trunk outward (`end`: hand or foot, `tip`: toes); -1 if missing.
@@ -54,6 +55,7 @@ bool moves(const Channel& channel) {
   });
 }
 
+/// Implements find_joints_by_structure().
 class NamelessFinder {
  public:
   explicit NamelessFinder(const Character& character)
@@ -64,7 +66,7 @@ class NamelessFinder {
     for (std::size_t n = 0; n < count_; ++n) {
       const Index parent = character.nodes[n].parent;
       if (parent < 0) continue;
-      // Any pose gives the same lengths.
+      // The lengths are the same in any pose.
       length_[n] = (at_rest[n].translation() - at_rest[parent].translation()).norm();
       children_[parent].push_back(static_cast<Index>(n));
     }
@@ -103,7 +105,7 @@ class NamelessFinder {
  private:
   void set_joint(Joint left, bool right, Index node) { joints_[joint_index(on_side(left, right))] = node; }
 
-  /// Computes the length of the longest chain below each node, and the child through which it runs.
+  /// Computes the length of the longest chain below each node, and the child to which this chain leads.
   void compute_reach() {
     reach_.assign(count_, 0);
     next_.assign(count_, -1);
@@ -156,7 +158,7 @@ class NamelessFinder {
             pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
         }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
-    // The spine may be as long as a leg, but a pair that contains the spine overlaps all other pairs.
+    // The spine may be as long as a leg. But a pair that contains the spine is not disjoint from any other pair.
     for (std::size_t first = 0; first < pairs.size(); ++first)
       for (std::size_t second = first + 1; second < pairs.size(); ++second)
         if (are_disjoint(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
@@ -175,9 +177,8 @@ class NamelessFinder {
     return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
-  /// Finds the upper and the lower bone on the longest chain through a node. `outer`: a pair of bones farther out
-  /// replaces the best pair so far if its shorter bone is longer than this fraction of the shorter bone of the best
-  /// pair.
+  /// Finds the upper and the lower bone on the longest chain through the node `from`. A pair of bones farther out
+  /// replaces the best pair so far if its shorter bone is longer than `outer` times the shorter bone of the best pair.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
     std::size_t last = 0, hand = 0;  // last possible end of the lower bone; node where fingers branch
@@ -203,15 +204,15 @@ class NamelessFinder {
     return chain;
   }
 
-  /// Total length of the bones from a node to one below it.
+  /// Total length of the bones from a node to a descendant [m].
   double length_between(Index above, Index below) const {
     double sum = 0;
     for (; below != above; below = character_.nodes[below].parent) sum += length_[below];
     return sum;
   }
 
-  /// Merges the halves of upper and lower bones that are split, as in rigs with twist bones: four consecutive bones
-  /// that form two pairs of equal bones, of similar length in both pairs.
+  /// Merges the halves of split upper and lower bones, as in rigs with twist bones. Split bones are four consecutive
+  /// bones that form two pairs of equal bones, with similar lengths in both pairs.
   void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
     for (std::size_t i = 0; i + 4 <= last; ++i) {
       const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };
@@ -227,7 +228,8 @@ class NamelessFinder {
     }
   }
 
-  /// Mean of `figure(positions of all nodes)` over the first clip; its value at rest if there is no clip.
+  /// Mean over the first clip of `figure`, a function of the positions of all nodes; its value in the rest pose if
+  /// there is no clip.
   template <class Figure>
   double mean_over_clip(const Figure& figure) const {
     const bool clip = !character_.clips.empty();
@@ -261,8 +263,8 @@ class NamelessFinder {
     return trunk(at, leg, arm).cross(forward);
   }
 
-  /// Finds neck and head: the first and the last node of the highest chain that leaves the common node of the arms. The
-  /// chain ends where it branches.
+  /// Finds neck and head: the first and the last node of the highest chain that leaves the common ancestor of the arms.
+  /// The chain ends where it branches.
   void find_head(const Pair& arms, const std::array<Chain, 2>& leg, const std::array<Chain, 2>& arm) {
     Index neck = -1;
     double highest = 0;
@@ -301,8 +303,8 @@ class NamelessFinder {
   std::vector<std::vector<Index>> children_;  // of each node
   std::vector<double> reach_;                 // length of the longest chain below a node [m]
   std::vector<Index> next_;                   // child of the node on this chain, or -1
-  std::vector<bool> is_active_;               // influences skin, or moves in a clip
-  std::vector<bool> is_joint_;                // is active, or has nodes below it
+  std::vector<bool> is_active_;               // per node: whether it influences skin, or moves in a clip
+  std::vector<bool> is_joint_;                // per node: whether it is active, or has children
 };
 
 }  // namespace

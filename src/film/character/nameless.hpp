@@ -8,23 +8,23 @@
 
 namespace weft::character {
 
-/// For each of joint_names(), the node with that role; -1 if there is none. Hips, spine and chest are always -1. A
+/// For each of joint_names(), the node that is this joint; -1 if there is none. Hips, spine and chest are always -1. A
 /// chain is the longest path of nodes from a node outward.
 /// - Legs and arms are the two longest pairs of chains that leave a common node and have nearly equal lengths. The legs
-/// are the pair whose common node is an ancestor of the common node of the arms; if neither is an ancestor of the
-/// other, the longer pair.
-/// - In a limb, the upper and the lower bone are the two consecutive bones whose shorter one is longest, before the
-/// fingers branch off. In arms, a pair of bones farther out is preferred if its bones are not much shorter.
-/// - The left side follows from toes, knees and the vector from hips to shoulders, as a mean over the first clip, or at
-/// rest if there is no clip.
+///   are the pair whose common node is an ancestor of the common node of the other pair. If there is no such pair, the
+///   legs are the longer pair.
+/// - The upper and the lower bone of a limb are the two consecutive bones whose shorter one is longest, before the
+///   fingers branch off. In arms, a pair of bones farther out is preferred if its bones are not much shorter.
+/// - Toes, knees and the vector from hips to shoulders determine the left side, as a mean over the first clip; without
+///   a clip, in the rest pose.
 /// - Neck and head: the chain that reaches highest among the other children of the common node of the arms.
-/// Leaf nodes that neither influence skin nor move in a clip are end markers of bones and do not count.
-/// All -1 if there are not two arms and two legs, or if the left side cannot be determined.
+/// Leaf nodes that neither influence skin nor move in a clip are end markers of bones and do not count. The result is
+/// all -1 if there are not two arms and two legs, or if the left side cannot be determined.
 std::vector<Index> find_joints_by_structure(const Character& character);
 
-/// First nodes of the index and the little finger; -1 if fewer than four chains of at least two
-/// nodes leave the hand. The thumb is the shortest chain. Of the other chains, index and little
-/// finger are the two whose first nodes are farthest apart; the index is on the side of the thumb.
+/// First nodes of the index and the little finger; -1 if fewer than four chains of at least two nodes leave the hand.
+/// The thumb is the shortest chain. Index and little finger are the two other chains whose first nodes are farthest
+/// apart; the index is on the side of the thumb.
 std::array<Index, 2> find_knuckles(const Character& character, Index hand);
 
 }  // namespace weft::character

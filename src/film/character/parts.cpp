@@ -59,7 +59,7 @@ std::vector<Index> joints_of_part(const std::string& name) {
     for (const std::string& joint : group.middle) joints.push_back(joint_number(joint));
     for (const char* side : {"Left", "Right"})
       for (const std::string& joint : group.sides) joints.push_back(joint_number(side + joint));
-    return joints;  // "head" is also the name of a joint; the group counts
+    return joints;  // for "head", which is also the name of a joint, the group counts
   }
   if (const Index joint = joint_number(name); joint >= 0) joints.push_back(joint);
   return joints;
@@ -115,9 +115,9 @@ VertexMask vertices_of_material(const Character& character, Index material) {
 }
 
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places) {
-  // Radius of the mean: a multiple of the distance from the skin plus a multiple of the diagonal of the bounding box (3
-  // cm for a person). With a smaller radius, neighbouring points follow different faces of the skin and move apart;
-  // with a larger one, a shoulder moves points at the neck.
+  // Factors of the radius of the mean: on the distance from the skin, and on the diagonal of the bounding box of the
+  // body (3 cm for a person); the radius is the sum. With a smaller radius, neighbouring points follow different faces
+  // of the skin and move apart; with a larger one, a shoulder moves points at the neck.
   constexpr double kRadiusPerDistance = 2, kRadiusPerSize = 0.015;
   std::vector<Vec3> skinned(character.mesh.positions.size());
   skin(character, pose, skinned);

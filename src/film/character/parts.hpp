@@ -1,5 +1,5 @@
-// Finds the vertices of body parts, given by a common name (hands, torso), the name of a joint, a node of the skeleton,
-// or a material of the character's file.
+// Finds the vertices of body parts. A part is given by a common name (hands, torso), the name of a joint, a node of the
+// skeleton, or a material of the character's file.
 #pragma once
 
 #include <cstdint>
@@ -22,29 +22,29 @@ const std::vector<std::string>& part_names();
 /// ignored.
 std::vector<Index> joints_of_part(const std::string& name);
 
-/// The vertices with at least half of their weight on the nodes of these joints. A joint owns its own node and all
-/// nodes below it, except the nodes that another joint below it owns. `nodes`: the node of each of joint_names(), −1 if
-/// there is none.
+/// The vertices with at least half of their weight on the nodes of these joints. A joint has its own node and all
+/// descendants of it, except those that belong to another joint farther down. `nodes`: the node of each of
+/// joint_names(), −1 if there is none.
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
 
-/// Arms and legs; the trunk is all the rest, with head and shoulders.
+/// Arms and legs; the trunk is all other parts, with head and shoulders.
 enum class Limb : Index { trunk, left_arm, right_arm, left_leg, right_leg };
 /// Per vertex, the limb that has at least half of its weight, else the trunk. `nodes`: as for vertices_of().
 std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes);
 
-/// The vertices with at least half of their weight on this node and the nodes below it.
+/// The vertices with at least half of their weight on this node and its descendants.
 VertexMask vertices_below(const Character& character, Index node);
 
 VertexMask vertices_of_material(const Character& character, Index material);
 
-/// Appends vertices, which belong to no face, at the positions `places` [m] in the pose `pose`.
-/// Their bone weights are weighted means over the nearby skin of `part`, within a radius that grows
-/// with the distance from this skin and the size of the body. `part` must contain a vertex; it has
-/// no entries for vertices that earlier calls have appended.
+/// Appends vertices without faces, which follow the skin of `part`. In the pose `pose`, they have the positions
+/// `places` [m]. Their bone weights are weighted means over the nearby skin of `part`, within a radius that grows with
+/// the distance from this skin and the size of the body. `part` must contain a vertex; it has no entries for vertices
+/// that earlier calls have appended.
 void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
-/// Whether at least three chains of nodes below one of the hands influence skin, so that its thumb and fingers move
-/// separately.
+/// Whether thumb and fingers of a hand move separately: at least three chains of nodes below one of the hands influence
+/// skin. `nodes`: as for vertices_of().
 bool has_fingers(const Character& character, std::span<const Index> nodes);
 
 }  // namespace weft::character

@@ -45,7 +45,7 @@ Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
 void Performance::translate(Pose& pose, const Vec3& by) const {
   for (const Index node : roots_) {
     const Vec3 local = parent_of(node, pose).linear().inverse() * by;
-    if (local.allFinite()) pose.nodes[node].position += local;  // else a node above has scale 0
+    if (local.allFinite()) pose.nodes[node].position += local;  // it is infinite if an ancestor has the scale 0
   }
 }
 

@@ -11,24 +11,25 @@ namespace weft::character {
 
 /// Timing of a clip in the scene.
 struct Timing {
-  double motion_start = 0;  ///< scene time at which the clip begins to move [s]: end of scene::Character::dressing
+  double motion_start = 0;  ///< scene time at which the clip begins [s]: end of scene::Character::dressing
   double blend = 0;         ///< time after `motion_start` in which the clip accelerates to `speed` [s]
   double start = 0;         ///< time of the clip at which it begins to play [s]
   double speed = 1;         ///< seconds of clip time per second of scene time
 };
 
-/// Time of the clip [s] at time t of the scene [s]; twice continuously differentiable if `blend` is positive.
+/// Time of the clip [s] at the time t of the scene [s]. The function is twice continuously differentiable if `blend` is
+/// positive.
 double clip_time(const Timing& timing, double t);
 
+/// How a body plays a clip.
 struct Playing {
   Timing timing;
-  /// Repeats the clip. Each repetition (round) continues the horizontal travel of the one before.
+  /// Whether the clip is repeated. Each repetition ("round") continues the horizontal travel of the round before.
   bool loop = false;
-  /// Overlap in which a round blends into the next [s of clip time]; at most half of the clip is
-  /// used.
+  /// Overlap in which a round blends into the next [s of clip time]. At most half of the clip's duration is used.
   double crossfade = 0;
-  /// Pose until `motion_start`, then blended into the clip within Timing::blend; absent: the pose
-  /// of the clip at Timing::start.
+  /// Pose until Timing::motion_start; it then blends into the clip within Timing::blend. Absent: the pose of the clip
+  /// at Timing::start.
   std::optional<Pose> stance = {};
 };
 
@@ -51,8 +52,7 @@ class Performance {
   Affine parent_of(Index node, const Pose& pose) const;
   /// Translates a pose by the vector `by` in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
-  /// Horizontal displacement of the first of `roots_` from pose a to pose b, in the world [m]; zero
-  /// if there is none.
+  /// Horizontal displacement of the first of `roots_` from pose a to pose b, in the world [m]; zero without roots.
   Vec3 displacement_between(const Pose& a, const Pose& b) const;
 
   const Character& character_;
@@ -62,11 +62,10 @@ class Performance {
   std::vector<Index> roots_;  // traveling_nodes() of the clip
   double period_ = 0;         // clip time from the start of a round to the start of the next [s]
   Vec3 travel_{0, 0, 0};      // horizontal displacement of the body in a round [m]
-  Vec3 shift_{0, 0, 0};  // horizontal displacement that moves the start of the clip to the position of `stance` [m]
+  Vec3 shift_{0, 0, 0};  // horizontal displacement from the start of the clip to the position of Playing::stance [m]
 };
 
-/// Mean rate of the keys of the channel with the most keys: (keys - 1) / duration [1/s]; 0 if the
-/// duration is 0.
+/// Mean rate of the keys of the channel with the most keys: (keys - 1) / duration [1/s]; 0 if the duration is 0.
 double key_rate(const Clip& clip);
 
 }  // namespace weft::character

@@ -23,7 +23,7 @@ Quat between(const Quat& a, const Quat& b, double weight) {
   return a.slerp(weight, b);
 }
 
-/// The curve must have at least one key.
+/// Value of a curve at the time t [s]. The curve must have at least one key.
 template <class Value>
 Value value_at(const Curve<Value>& curve, double t) {
   const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), t);
@@ -47,7 +47,7 @@ Mat3 rotation_of(const Mat3& linear) {
   return rotation;
 }
 
-/// Keys of different joints whose times differ by less than this count as one [s].
+/// Two key times of different joints count as one if they differ by at most this [s].
 constexpr double kSameTime = 1e-6;
 
 }  // namespace

@@ -25,6 +25,7 @@ struct Placement {
   Affine to_affine() const;
 };
 
+/// Transforms of all nodes and weights of all morph targets.
 struct Pose {
   std::vector<Placement> nodes;
   std::vector<double> morphs;  ///< weight of each morph target
@@ -33,7 +34,7 @@ struct Pose {
 /// Decomposes an affine map, exactly except for rounding errors. Shear is part of the stretch.
 Placement to_placement(const Affine& map);
 
-/// The pose in which all nodes and morph targets have their values at rest.
+/// The pose with Node::local for all nodes, and MorphTarget::weight for all morph targets.
 Pose rest_pose(const Character& character);
 
 /// The pose of a clip at time t [s] after its start; for times outside the clip, the pose at its nearer end.
@@ -42,17 +43,17 @@ Pose pose_at(const Character& character, const Clip& clip, double t);
 /// Distinct times >= 0 of all rotation and position keys of a clip, ascending; always includes 0.
 std::vector<double> key_times(const Clip& clip);
 
-/// The nodes whose position changes in a clip, without those below another such node, in the order of nodes (parents
-/// first). Rigs may have several: the hips, and feet that are not below them. `also`: a node that counts even if its
-/// position does not change; -1: none.
+/// The nodes whose position changes in a clip, except descendants of other such nodes; in the order of nodes (parents
+/// first). Rigs may have several: the hips, and feet that are not descendants of the hips. `also`: a node that counts
+/// even if its position does not change; -1: none.
 std::vector<Index> traveling_nodes(const Character& character, const Clip& clip, Index also = -1);
 
 /// Interpolates from `a` (weight 0) to `b` (weight 1): positions and stretches linearly, rotations along the shortest
 /// arc.
 Pose blend(const Pose& a, const Pose& b, double weight);
 
-/// The smallest rotation that takes the direction of `from` to that of `to`; if they are opposite, the axis is any
-/// perpendicular one. Replaces the function of Eigen, whose singular value decomposition takes long to compile.
+/// The smallest rotation from the direction of `from` to that of `to`; if they are opposite, about any perpendicular
+/// axis. Replaces Quat::FromTwoVectors(), because the singular value decomposition in it takes long to compile.
 Quat shortest_rotation(const Vec3& from, const Vec3& to);
 
 /// Transforms from node to world, for every node.

@@ -18,36 +18,34 @@
 namespace weft::character {
 namespace {
 
-/// Skeletons are the same if no joint position differs by more than kSameLength times the sum of
-/// all bone lengths (3 mm in an adult). They face the same way if the rotations above the hips
-/// differ by at most kSameAngle [rad].
+/// Skeletons are the same if no joint position differs by more than kSameLength times the sum of all bone lengths (3 mm
+/// in an adult). They have the same heading if the rotations above the hips differ by at most kSameAngle [rad].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
-/// Largest joint angles without a warning [degrees], with a margin for noise and for limbs that are pushed. People bend
-/// knees and elbows by 150, overextend them by 10, raise thighs by 130, turn the head by 90, lean it by 45, turn the
-/// spine by 45, bend it by 80 (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
+/// Maximum joint angles without a warning [degrees], with a margin for noise and for external forces on limbs. People
+/// bend knees and elbows by 150, overextend them by 10, raise thighs by 130, turn the head by 90, tilt it by 45, turn
+/// the spine by 45, bend it by 80 (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
 constexpr double kMaxBend = 165, kMaxBackward = 25, kMaxThigh = 160, kMaxHead = 120, kMaxSpine = 120;
 
-/// Knee bend above which a rest pose does not count as upright [degrees].
+/// Maximum knee bend of a rest pose that counts as upright [degrees].
 constexpr double kMaxRestBend = 30;
 
 /// Maximum upward rotation of toes on the floor, relative to their direction in the motion [rad].
 constexpr double kMaxToeTurn = 150 * kDegree;
 
-/// A sole that is farther from the floor during a contact causes a warning [m].
+/// Maximum distance without a warning between sole and floor during a contact [m].
 constexpr double kMaxFloorError = 0.05;
 
-/// Maximum number of rounds that move hands to the parts that they touch. One is not enough: a hand may touch the other
-/// hand or elbow, which move too.
+/// Maximum number of rounds that move hands to the parts that they touch. One is not enough: these parts may move, too.
 constexpr int kTouchingRounds = 3;
-/// If the displacements of both hands are smaller, the hands do not move [m].
+/// Hands do not move if the displacements of both are smaller than this [m].
 constexpr double kMinPull = 1e-4;
 
 template <class Value>
 using PerJoint = std::array<Value, kJointCount>;
 
-/// Rotation about `up` that gives one posture the heading of another. `from`, `to`: the vectors to the left of the
-/// first and the second posture.
+/// Rotation about `up` from the heading of one posture to that of another. `from`, `to`: the vectors to the left of the
+/// body in both postures.
 Quat heading_rotation(Vec3 from, Vec3 to, const Vec3& up) {
   from -= from.dot(up) * up;
   to -= to.dot(up) * up;
@@ -87,7 +85,7 @@ bool same_skeleton(const Rig& a, const Rig& b) {
   return size_b > 0;
 }
 
-/// World rotation of the parent of the hips at rest.
+/// World rotation of the parent of the hips in the rest pose.
 Quat rotation_above_hips(const Rig& rig) {
   const Index above = rig.character.nodes[rig.joints[joint_index(Joint::hips)]].parent;
   const Pose rest = rest_pose(rig.character);
@@ -96,7 +94,7 @@ Quat rotation_above_hips(const Rig& rig) {
 
 /// Pose of the body at one key of the clip.
 struct Frame {
-  PerJoint<Quat> axes;    ///< of the body parts, in the world; see find_anatomy
+  PerJoint<Quat> axes;    ///< axes of the body parts, in the world; see find_anatomy()
   PerJoint<Quat> turned;  ///< rotations of the joints, in the world
   Vec3 hips{0, 0, 0};
 };
@@ -166,7 +164,8 @@ class Retargeter {
     }
   }
 
-  /// Whether a joint that the motion lacks follows other joints: a trunk joint its neighbours, toes the foot.
+  /// Whether a joint that the motion lacks gets its rotation from others: spine and neck from neighbours, toes from
+  /// feet.
   bool is_interpolated(Joint joint) const {
     for (const bool right : {false, true})
       if (joint == on_side(Joint::left_toes, right)) return theirs_.has(on_side(Joint::left_foot, right));
@@ -192,7 +191,7 @@ class Retargeter {
   }
 
   Vec3 hips_at(std::size_t k, const Frame& frame) const {
-    // The height of the hip midpoint above the ankles scales with the legs; the hips follow from this midpoint.
+    // Scales the height of the hip midpoint above the ankles with the legs, then computes the hips from this midpoint.
     const Vec3 place = theirs_.middle_of_hips(postures_[k]);
     const Vec3 moved = face_ * (place - theirs_.middle_of_hips(postures_.front()));
     const Vec3 middle = ours_.middle_of_hips(rest_), hips = rest_.places[0];
@@ -202,7 +201,7 @@ class Retargeter {
     return to + frame.turned[0] * (rest_.rotations[0].conjugate() * (hips - middle));
   }
 
-  /// Height to add to the scaled hip midpoint [m], so that feet stand as high as at rest.
+  /// Height to add to the scaled hip midpoint [m], so that feet stand at the height that they have in the rest pose.
   double height_offset(const Vec3& place, const Vec3& middle, const Vec3& moved) const {
     const double travelled = up_.dot(middle) + ratio_ * up_.dot(moved);
     if (same_) {
@@ -253,7 +252,7 @@ class Retargeter {
     }
   }
 
-  /// Height of the soles at rest: the lowest of all vertices and foot joints [m].
+  /// Height of the soles in the rest pose [m]: that of the lowest vertex or foot joint.
   double floor() const {
     double floor = lowest_foot(ours_, rest_, up_);
     std::vector<Vec3> skin_at_rest(body_.character.mesh.positions.size());
@@ -280,7 +279,7 @@ class Retargeter {
       leg.knee = place(Joint::left_lower_leg);
       leg.ankle = place(Joint::left_foot);
       leg.heel = leg.ankle - above_sole(Joint::left_foot) * normal;
-      // Toes stay flat while the heel rises; the toe joint stays above the ball.
+      // Toes are flat while the heel rises. The ball is therefore vertically below the toe joint.
       leg.ball = place(toes) - above_sole(toes) * (toes == Joint::left_toes ? up_ : normal);
       leg.hinge = frame.axes[joint_index(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
     }
@@ -370,12 +369,13 @@ class Retargeter {
     }
   }
 
-  /// Bends toes up so that they stay above the floor.
+  /// Bends toes up so that they do not enter the floor.
   void bend_toes(Frame& frame, const Vec3& ball, double floor, bool right) const {
     const std::size_t toes = joint_index(on_side(Joint::left_toes, right));
     if (!moves_[toes] || toe_length_[right] <= 0) return;
     const Vec3 forward = frame.axes[toes] * Vec3::UnitX(), normal = frame.axes[toes] * Vec3::UnitZ();
-    // Toes that are rotated up by an angle reach below their joint by length · (cos(angle) · down + sin(angle) · back).
+    // If toes are rotated up by an angle, their tip is length · (cos(angle) · down + sin(angle) · back) below their
+    // joint.
     const double down = -up_.dot(forward), back = -up_.dot(normal);
     const double limit = std::max(0.0, (up_.dot(ball) - floor) / toe_length_[right]), size = std::hypot(down, back);
     if (down <= limit || size <= limit) return;
@@ -384,7 +384,7 @@ class Retargeter {
     frame.turned[toes] = (turn * frame.turned[toes]).normalized();
   }
 
-  /// Distance from the toe joint to the tip of the toes at rest [m].
+  /// Distance from the toe joint to the tip of the toes in the rest pose [m].
   double toe_length(bool right) const {
     const std::size_t toes = joint_index(on_side(Joint::left_toes, right));
     if (body_.joints[toes] < 0) return 0;
@@ -447,7 +447,7 @@ class Retargeter {
     }
   }
 
-  /// Warns if a knee is bent in the rest pose of the body: all rotations are relative to this pose.
+  /// Warns if a knee is bent in the rest pose of the body, because all rotations are relative to this pose.
   void check_rest(std::vector<std::string>& warnings) const {
     double largest = 0;
     for (const bool right : {false, true}) {
@@ -468,17 +468,17 @@ class Retargeter {
   const Skeleton ours_, theirs_;
   const Clip& clip_;
   const Vec3 up_;
-  const Pose at_rest_;  // of the body
+  const Pose at_rest_;  // rest pose of the body
   const Posture rest_;
   const std::vector<double> times_;
-  std::vector<Posture> postures_;  // of the motion, at `times_`
+  std::vector<Posture> postures_;  // postures of the motion at `times_`
   double ratio_ = 1;               // ratio of leg lengths, body / motion; 1: unknown
   bool same_ = false;              // whether both skeletons are the same
   Footsteps steps_;
   std::array<double, 2> toe_length_{};    // [m]
   Quat face_ = Quat::Identity();          // rotates the motion to the heading of the body
   PerJoint<Quat> their_axes_, our_axes_;  // axes of body parts in the axes of the joints
-  PerJoint<bool> moves_{};                // per joint, whether it moves
+  PerJoint<bool> moves_{};                // whether the clip moves the joint of the body
   std::vector<int> joint_of_;             // joint of each node of the body, or -1
 };
 

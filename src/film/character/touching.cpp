@@ -7,19 +7,20 @@
 namespace weft::character {
 namespace {
 
-// Distances of the wrist from its targets [arm lengths; 0.55 m in an adult]. Up to these distances contact applies
-// fully; up to twice the distances it fades. Measured on adults: 2.5 to 6 cm from the midpoint of the wrists if the
-// hands are joined, 8 to 13 cm from an elbow that the hand holds, 17 to 22 cm from the midpoint of the hip joints if
-// the hand is on a hip.
+// Distances of the wrist from its targets [arm lengths; 0.55 m in an adult]. Up to these distances, a contact has full
+// weight; up to twice these distances, its weight fades to 0. Measured on adults: 2.5 to 6 cm from the midpoint of the
+// wrists if the hands are joined, 8 to 13 cm from an elbow that the hand holds, 17 to 22 cm from the midpoint of the
+// hip joints if the hand is on a hip.
 constexpr double kHandsDistance = 0.12, kElbowDistance = 0.2, kHipsDistance = 0.4;
-// An arm that is bent by less than the first angle hangs; by more than the second, it reaches for something [rad].
+// An arm hangs if it is bent by less than kHangingBend; it reaches for something if bent by more than kReachingBend
+// [rad].
 constexpr double kHangingBend = 40 * std::numbers::pi / 180, kReachingBend = 70 * std::numbers::pi / 180;
 
-// A hand rests on the hips if it moves relative to them by less than kMaxRestMotion [arm lengths]
-// within kRestTime [s] before and after: 5 cm within 0.1 s to either side. In walking and running,
-// hands move by 20 to 60 cm in 0.2 s.
+// A hand rests on the hips if it moves relative to them by less than kMaxRestMotion [arm lengths] within kRestTime [s]
+// before and after: 5 cm within 0.1 s before and after. In walking and running, hands move by 20 to 60 cm in 0.2 s.
 constexpr double kMaxRestMotion = 0.09, kRestTime = 0.1;
 
+/// Computes the displacement of a hand; see displace_hands().
 class HandDisplacement {
  public:
   HandDisplacement(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
@@ -45,10 +46,9 @@ class HandDisplacement {
   }
 
  private:
-  /// Adds the displacement that restores the position of the hand relative to a target: the point
-  /// at `fraction` of the way from joint `a` to joint `b`. `distance`: see kHandsDistance. `ratio`:
-  /// factor on the offset of the hand from the target, body / motion. `max_weight`: weight within
-  /// `distance`.
+  /// Adds the displacement that restores the position of the hand relative to a target: the point at `fraction` of the
+  /// way from joint `a` to joint `b`. `distance`: see kHandsDistance. `ratio`: factor on the offset of the hand from
+  /// the target, body / motion. `max_weight`: weight within `distance`.
   void add_target(std::size_t a, std::size_t b, double fraction, double distance, double ratio, double max_weight = 1) {
     if (!both_[a] || !both_[b] || !(distance > 0)) return;
     const auto place = [&](const Places& of) -> Vec3 { return (1 - fraction) * of[a] + fraction * of[b]; };
@@ -79,7 +79,7 @@ std::vector<std::array<double, 2>> find_resting_hands(std::span<const Posture> p
                                                       double arm) {
   std::vector<std::array<double, 2>> rests(postures.size());
   for (const bool right : {false, true}) {
-    // Offsets are in the axes of the hips, with which resting hands move.
+    // Offsets are in the axes of the hips, because resting hands move with the hips.
     std::vector<Vec3> offsets;
     for (const Posture& p : postures)
       offsets.push_back(p.rotations[0].conjugate() *

@@ -10,12 +10,12 @@
 namespace weft::character {
 namespace {
 
-/// Paths are smoothed over this time to either side [s]; people take a step in 0.4 to 0.7 s.
+/// Paths are smoothed over this time before and after each key [s]. A step of a person takes 0.4 to 0.7 s.
 constexpr double kPathWindow = 0.6;
-/// The velocities of the body that feet imply are smoothed over this time to either side [s], since they jump where
-/// contacts begin and end.
+/// The velocities of the body that feet imply are smoothed over this time before and after each key [s], because they
+/// jump when contacts begin and end.
 constexpr double kFootWindow = 0.05;
-/// Maximum height of the ball of a foot in stance above the lowest position of any ball [leg lengths].
+/// Maximum height of the ball of a foot in stance above the lowest height of any ball in the clip [leg lengths].
 constexpr double kMaxFootHeight = 0.05;
 /// Minimum mean speed of feet in stance, relative to the body, that counts as a walk [leg lengths/s].
 constexpr double kMinFeetSpeed = 0.1;
@@ -36,7 +36,7 @@ class Path {
     }
   }
 
-  /// The nodes that translate a body: the hips or a node above them, and others that travel.
+  /// The nodes that translate a body: the hips or an ancestor of them, and other nodes that travel.
   static std::vector<Index> moved_nodes(const Rig& rig, const Clip& clip) {
     return traveling_nodes(rig.character, clip, rig.joints[joint_index(Joint::hips)]);
   }
@@ -174,7 +174,7 @@ class Path {
   const Vec3 up_;
   const std::vector<double> times_;
   std::vector<Posture> postures_;
-  std::vector<Vec3> middles_;  // horizontal positions of the hips, else of the first of moved_nodes()
+  std::vector<Vec3> middles_;  // horizontal positions of the hips; without hips, of the first of moved_nodes()
 };
 
 }  // namespace
@@ -189,7 +189,7 @@ TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3
   const Path path(rig, still, up);
   TravelResult result;
   const std::vector<Vec3> by = path.displacements_at_speed(speed, result.feet);
-  result.clip = path.translate(Path::moved_nodes(rig, clip), by);  // `still` may have fewer
+  result.clip = path.translate(Path::moved_nodes(rig, clip), by);  // `still` may have fewer such nodes
   return result;
 }
 

@@ -7,12 +7,13 @@
 namespace weft::character {
 
 /// Removes the travel of a clip: subtracts the horizontal path of the hips, smoothed over about two steps. The clip
-/// then begins and ends in the same place; sway about the path remains.
+/// then begins and ends at the same position. Sway about the path remains. `up`: unit vector.
 Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up);
 
+/// The result of at_speed().
 struct TravelResult {
   Clip clip;
-  double feet = 0;  ///< mean speed of feet in stance, relative to a body in place [m/s]; 0: too slow for a walk
+  double feet = 0;  ///< mean speed of feet in stance, relative to the body [m/s]; 0 if it is too slow for a walk
 };
 
 /// Replaces the travel of a clip by travel with the mean speed `speed` [m per second of clip time], along the path that
