@@ -11,6 +11,7 @@
 namespace weft::image {
 namespace {
 
+// Colours of the background, of text, and of SheetPicture::right.
 constexpr Color kPaper{244, 244, 242}, kInk{38, 38, 42}, kFaintInk{112, 112, 118};
 
 /// Sizes derived from the width of a picture [pixels].
@@ -18,7 +19,7 @@ struct Layout {
   explicit Layout(int width)
       : text(std::clamp(width / 24, 9, 28)), heading(text * 4 / 3), gap(text), caption(text * 2) {}
   int text, heading;
-  int gap;      // around pictures
+  int gap;      // space around pictures
   int caption;  // height of the first line below each picture
   int line() const { return text * 5 / 4; }
 };
@@ -33,14 +34,14 @@ std::size_t fitting(const Font& font, std::string_view text, int max_width) {
   std::size_t length =
       // A character is at least one pixel wide and at most 4 bytes long.
       std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));
-  // Whether the byte `at` continues a character of UTF-8.
+  // Whether byte `at` is a continuation byte of UTF-8.
   const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };
   while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > max_width)) --length;
   while (is_continued(length)) ++length;
   return length;
 }
 
-// If SheetPicture::left needs more lines, the last one is "…". This limits the height of a sheet.
+// Maximum number of lines of SheetPicture::left; if it needs more, "…" replaces the rest. Limits the height of a sheet.
 constexpr std::size_t kMaxCaptionLines = 60;
 
 // Wraps a text at blanks to lines no wider than `max_width` [pixels]; splits a word that is longer than a line.
@@ -62,7 +63,7 @@ std::vector<std::string> wrap_text(const Font& font, std::string_view text, int 
   return lines;
 }
 
-// The lines below a picture; `right` is on the last line if it fits, else on an additional line.
+// The lines of `picture.left`. Appends an empty line if `picture.right` does not fit into the last line.
 std::vector<std::string> caption_lines(const Font& font, const SheetPicture& picture, int width, int gap) {
   std::vector<std::string> lines = wrap_text(font, picture.left, width);
   if (lines.empty() || font.width(lines.back()) + gap + font.width(picture.right) > width) lines.emplace_back();

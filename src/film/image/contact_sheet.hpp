@@ -8,9 +8,10 @@
 
 namespace weft::image {
 
+/// A picture of a contact sheet, and its caption.
 struct SheetPicture {
   Image image;
-  std::string left, right;  ///< caption: `left`, wrapped to lines; `right` at the end of the last line
+  std::string left, right;  ///< parts of the caption: `left` is wrapped to lines, `right` ends the last line
 };
 
 /// Size of a contact sheet [pixels].
@@ -22,8 +23,8 @@ struct SheetSize {
   bool is_writable() const;
 };
 
-/// Size of the sheet that contact_sheet() makes of `pictures` (at least one) with `columns` (at
-/// least 1). Does not read the pixels of the pictures.
+/// Size of the sheet that contact_sheet() makes of `pictures` (at least one) in `columns` columns (at least 1). Does
+/// not read the pixels of the pictures.
 SheetSize contact_sheet_size(std::span<const SheetPicture> pictures, int columns);
 
 /// Lays out pictures of one size in rows under a heading. The size of the text is proportional to the width of the

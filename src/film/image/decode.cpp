@@ -62,8 +62,8 @@ Picture decode_png(std::string_view bytes) {
   return picture;
 }
 
-/// The format for swscale. JPEG uses the full range of values. libav has separate formats for this range; swscale takes
-/// the range as a parameter.
+/// The pixel format to pass to swscale. libav gives JPEG files, which use the full range of values, separate formats
+/// (YUVJ…). swscale takes the same formats without J, and the range as a parameter.
 AVPixelFormat plain_format(int format) {
   switch (format) {
     case AV_PIX_FMT_YUVJ420P:
@@ -86,7 +86,7 @@ Owned<AVFrame> decode_frame(std::string_view bytes, AVCodecID kind) {
   Owned<AVFrame> frame(av_frame_alloc());
   const Owned<AVPacket> packet(av_packet_alloc());
   if (!context || !frame || !packet) fail(fmt::format("libavcodec has no decoder of {}", avcodec_get_name(kind)));
-  context->log_level_offset = AV_LOG_TRACE;  // libav prints nothing; the exception contains its message
+  context->log_level_offset = AV_LOG_TRACE;  // libav prints nothing; the exception has its message
   context->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK | AV_EF_BITSTREAM;
   context->thread_count = 1;
   if (av_new_packet(packet.get(), static_cast<int>(bytes.size())) < 0) fail("there is no memory for it");
@@ -114,7 +114,7 @@ Picture to_picture(const AVFrame& frame) {
   sws_setColorspaceDetails(scaler.get(), coefficients, kFullRange, coefficients, kFullRange, 0, kUnchanged, kUnchanged);
   Picture picture{frame.width, frame.height, {}};
   picture.rgba.resize(4 * static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
-  std::uint8_t* const planes[4] = {picture.rgba.data()};  // swscale reads four
+  std::uint8_t* const planes[4] = {picture.rgba.data()};  // swscale reads four pointers
   const int strides[4] = {4 * picture.width};
   if (sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, planes, strides) != frame.height)
     fail("its colors could not be converted");

@@ -21,7 +21,7 @@ namespace {
 Imf::Header header_of(const Layers& layers, const Metadata& metadata) {
   Imf::Header header(layers.width, layers.height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
+  Imf::addChromaticities(header, Imf::Chromaticities());  // by default those of Rec. 709
   for (const auto& [key, text] : metadata) header.insert(key, Imf::StringAttribute(text));
   for (const Layers::Channel& channel : layers.channels)
     header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));

@@ -7,7 +7,7 @@
 
 namespace weft::image {
 
-/// Row-major, top row first, three bytes (R, G, B) per pixel, sRGB encoded.
+/// A picture. Row-major, top row first, three bytes (R, G, B) per pixel, sRGB encoded.
 struct Image {
   int width = 0;   ///< [pixels]
   int height = 0;  ///< [pixels]
@@ -20,7 +20,7 @@ struct Image {
   const std::uint8_t* pixel(int x, int y) const { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
 };
 
-/// Same as Image, with 16 bits per channel.
+/// The same as Image, but with 16 bits per channel.
 struct Image16 {
   int width = 0, height = 0;
   std::vector<std::uint16_t> rgb;

@@ -8,7 +8,8 @@
 
 namespace weft::image {
 
-/// Row-major, top row first, R G B A bytes per pixel, sRGB colours, alpha not premultiplied.
+/// A picture with alpha. Row-major, top row first, four bytes (R, G, B, A) per pixel, sRGB encoded, alpha not
+/// premultiplied.
 struct Picture {
   int width = 0, height = 0;  ///< [pixels]
   std::vector<std::uint8_t> rgba;
@@ -24,7 +25,8 @@ inline constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;
 /// values are checked.
 bool is_targa(std::string_view bytes);
 
-/// Decodes a PNG (any depth, palette, with or without alpha), JPEG or TGA file. Throws std::runtime_error.
+/// Decodes a PNG (any depth, palette, with or without alpha), JPEG or TGA file. Throws std::runtime_error with
+/// the reason.
 Picture decode_picture(std::string_view bytes);
 
 /// Reads and decodes a file as decode_picture() does. Throws Error(asset_unreadable) with the name of the file.

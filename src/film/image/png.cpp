@@ -94,7 +94,7 @@ struct Reader {
   Reader& operator=(const Reader&) = delete;
 };
 
-/// Rows of pixels, top row first; 16-bit values have the byte order of this machine.
+/// `width` x `height` pixels with `bits` per channel, top row first; 16-bit values have the byte order of this machine.
 struct Rows {
   int width, height, bits;
   const png_byte* first;
@@ -218,7 +218,7 @@ void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax
   std::rewind(in);
 }
 
-// `bytes`: size of the data in `rows`.
+// Throws if a side is out of range, or if `bytes`, the size of the data, does not fit `rows`.
 void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t bytes) {
   const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxPngSide && rows.height <= kMaxPngSide;
   if (!in_range || bytes != rows.row_bytes() * static_cast<std::size_t>(rows.height)) {
@@ -262,7 +262,7 @@ void write_png(const std::filesystem::path& file, const Image16& image, const Me
 
 namespace {
 
-// `bytes`: size of the data in `rows`.
+// Encodes a picture in memory. `bytes`: size of the data in `rows`.
 std::string bytes_of(const Rows& rows, std::size_t bytes) {
   const std::filesystem::path name = "a picture in memory";
   check_size(name, rows, bytes);
@@ -289,7 +289,7 @@ std::string png_bytes(const Picture& picture) {
 
 namespace {
 
-/// An open file, read up to its pixels.
+/// An open PNG file, which is read up to its pixels.
 struct Opened {
   File in{nullptr, std::fclose};
   std::uintmax_t size = 0;  // [bytes]

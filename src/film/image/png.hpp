@@ -29,7 +29,7 @@ std::string png_bytes(const Image& image);
 std::string png_bytes(const Picture& picture);
 
 /// Reads a PNG as 8-bit RGB: converts pictures with 16 bits, grey levels or palettes, and blends transparent pixels
-/// over white. Throws Error(asset_unreadable).
+/// over white. `metadata`: receives the texts of the file; may be null. Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 
 /// Reads the metadata that precede the pixels in the file, without decoding the pixels. Throws Error(asset_unreadable).

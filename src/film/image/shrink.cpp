@@ -10,7 +10,7 @@ Image shrink(const Image& image, int width) {
   if (width >= image.width) return image;
   const double scale = static_cast<double>(image.width) / width;
   Image small(width, std::max(1, static_cast<int>(std::lround(image.height / scale))));
-  // First of `size` source pixels that pixel i of `count` covers.
+  // Along one axis, index of the first of `size` old pixels that new pixel i of `count` covers.
   const auto edge = [](int i, int count, int size) {
     return static_cast<int>(static_cast<long long>(i) * size / count);
   };

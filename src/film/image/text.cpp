@@ -7,7 +7,7 @@
 
 #include "core/error.hpp"
 
-// The bytes of the font file. The build defines its name.
+// The bytes of the font file. The build defines WEFT_FONT_FILE, its path.
 asm(".pushsection .rodata\n"
     "weft_font_begin:\n"
     ".incbin \"" WEFT_FONT_FILE
@@ -41,6 +41,7 @@ char32_t next_character(std::string_view& text) {
   return whole ? character : kNoCharacter;
 }
 
+/// Blends `color` over a pixel. `coverage`: from 0 (none) to 255 (full).
 void blend(std::uint8_t* pixel, const Color& color, int coverage) {
   for (std::size_t c = 0; c < 3; ++c)
     pixel[c] = static_cast<std::uint8_t>((pixel[c] * (255 - coverage) + color[c] * coverage + 127) / 255);
