@@ -27,8 +27,8 @@ int check_read(int code, const std::filesystem::path& file) {
   fail_to_read(file, reason.data());
 }
 
-// Converts frames to RGB. Uses the colour matrix that the file names, or BT.709 if it names none; a wrong matrix
-// changes colours by tens of levels (of 255).
+// Makes the converter of frames to RGB. It uses the colour matrix that the file names, or BT.709 if it names none; a
+// wrong matrix changes colours by tens of levels (of 255).
 ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   ScalerPtr scaler(sws_getContext(
       frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width, frame.height, AV_PIX_FMT_RGB24,
@@ -43,7 +43,7 @@ ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   return scaler;
 }
 
-/// Matroska stores metadata keys in capitals; Weft's keys are lower case.
+/// Converts a metadata key: Matroska stores keys in capitals, but Weft's keys are in lower case.
 std::string lower_case(std::string key) {
   std::ranges::transform(key, key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return key;
@@ -73,7 +73,7 @@ struct Decoder::Impl {
     // Excludes playlists: libav detects them by their content, and a playlist could make it open other files.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
-    // The path is absolute, since libav reads the text before a colon as a protocol.
+    // The path is absolute, because libav takes the text before a colon of a relative path for a protocol.
     const int code = avformat_open_input(&opened, std::filesystem::absolute(file).c_str(), nullptr, &options);
     av_dict_free(&options);
     check_read(code, file);
@@ -113,7 +113,7 @@ struct Decoder::Impl {
     if (frame->width != codec->width || frame->height != codec->height) fail_to_read(file, "its pictures change size");
     if (!scaler) scaler = make_scaler(*frame, file);
     image::Image image(frame->width, frame->height);
-    std::uint8_t* const planes[4] = {image.rgb.data()};  // swscale reads four
+    std::uint8_t* const planes[4] = {image.rgb.data()};  // swscale reads four pointers
     const int strides[4] = {3 * image.width};
     check_read(sws_scale(scaler.get(), frame->data, frame->linesize, 0, frame->height, planes, strides), file);
     return image;
@@ -142,7 +142,7 @@ bool Decoder::lossy() const {
 
 double Decoder::fps() const {
   const AVRational rate = impl_->input->streams[impl_->stream]->avg_frame_rate;
-  return rate.den == 0 ? 0 : av_q2d(rate);  // unknown: 0/0
+  return rate.den == 0 ? 0 : av_q2d(rate);  // libav gives 0/0 if the rate is unknown
 }
 
 const std::map<std::string, std::string>& Decoder::metadata() const {

@@ -22,10 +22,11 @@ class Decoder {
 
   int width() const;   ///< [pixels]
   int height() const;  ///< [pixels]
-  /// Whether the pictures may differ from those given to the encoder. H.264 can be lossless: here,
-  /// RGB in H.264 counts as lossless, YUV as lossy.
+  /// Whether the pictures may differ from those that the encoder received. H.264 can be lossy or lossless; RGB in H.264
+  /// counts as lossless, YUV as lossy.
   bool lossy() const;
   double fps() const;  ///< frames per second; 0 if libav finds no rate
+  /// The metadata of the file, with keys in lower case.
   const std::map<std::string, std::string>& metadata() const;
 
   /// Returns the next picture, or nullopt after the last one.

@@ -32,7 +32,7 @@ struct CodecKind {
   std::vector<std::string> endings;
 };
 const std::vector<CodecKind>& codec_kinds() {
-  // H.264 must be first: is_written() takes its extensions for all.
+  // H.264 must be the first row, because is_written() uses its extensions, which include those of all other codecs.
   static const std::vector<CodecKind> kKinds{
       {Codec::h264, "h264", kCodecName, AV_PIX_FMT_YUV420P, {".mp4", ".mov", ".mkv"}},
       {Codec::h264_lossless, "h264_lossless", "libx264rgb", AV_PIX_FMT_RGB24, {".mkv", ".mp4", ".mov"}},
@@ -48,8 +48,8 @@ constexpr int kMaxSide = 16384;  // [pixels]; limit of x264
 constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
                                                        "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
-// Number of frames between key frames: those of two seconds, because players seek only to key frames. The number is
-// limited for very low and very high rates; 250 is the default of x264.
+// Number of frames from one key frame to the next: those of two seconds, because players seek only to key frames; at
+// least 12, at most 250 (the default of x264).
 int key_frame_distance(double fps) {
   return std::clamp(static_cast<int>(std::lround(2 * fps)), 12, 250);
 }
@@ -63,7 +63,7 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
   require(settings.height >= 1 && settings.height <= kMaxSide, "height", sides, settings.height);
   // A crf of 0 is lossless, in a profile that browsers do not play.
   require(settings.crf >= 1 && settings.crf <= 51, "crf", "1 to 51", settings.crf);
-  // 0 threads would mean all cores, and the output would depend on the machine.
+  // The number 0 would mean one thread per core, so that the output would depend on the machine.
   require(settings.threads >= 1 && settings.threads <= 128, "encoder threads", "1 to 128", settings.threads);
   if (std::find(kPresets.begin(), kPresets.end(), settings.preset) == kPresets.end()) {
     throw Error(ExitCode::output_failed, "{}: preset: expected one of {}, got {}", file.string(),
@@ -130,8 +130,8 @@ struct Encoder::Impl {
   PacketPtr packet;
   CodecPtr codec;
   std::unique_ptr<VideoFileWriter> writer;
-  int frames = 0;   // sent to the encoder
-  int packets = 0;  // received from the encoder
+  int frames = 0;   // number of frames sent to the encoder
+  int packets = 0;  // number of packets received from the encoder
   bool finished = false;
 
   Impl(const std::filesystem::path& f, const Settings& s);

@@ -8,11 +8,11 @@
 
 namespace weft::video {
 
-/// Converts RGB to BT.709 in limited range, with the chroma siting (left) that H.264 assumes by default. If the format
-/// of the video is RGB, keeps RGB.
+/// Converts RGB to BT.709 in limited range, with the chroma siting (left) that H.264 assumes by default. If the pixel
+/// format of the video is RGB, colours stay RGB.
 class FrameConverter {
  public:
-  /// `file`: name of the video in errors. Sizes are in pixels; odd sizes are increased by one unless the format is RGB.
+  /// `width`, `height` [pixels]: odd values are increased by one unless `format` is RGB. `file`: the video, for errors.
   FrameConverter(int width, int height, std::filesystem::path file, AVPixelFormat format = AV_PIX_FMT_YUV420P);
 
   int padded_width() const { return rgb_ ? width_ : width_ + width_ % 2; }
@@ -33,7 +33,7 @@ class FrameConverter {
   bool rgb_;
   std::filesystem::path file_;
   ScalerPtr scaler_;
-  FramePtr source_;  // the padded picture; memory of libav, since swscale reads beyond the last pixel of its source
+  FramePtr source_;  // the padded picture; libav allocates it, because swscale reads beyond the last pixel
 };
 
 }  // namespace weft::video

@@ -7,8 +7,8 @@
 namespace weft::video {
 namespace {
 
-// Relative tolerance for broadcast rates n * 1000/1001. Their usual decimals, such as 23.976, differ from them by at
-// most 1.1e-6; other numbers with three decimals differ by at least 7e-6 (119.881).
+// Relative tolerance for broadcast rates n * 1000/1001. The decimal numbers that people write for them, such as 23.976,
+// differ by at most 1.1e-6 from these rates. All other numbers with three decimals differ by at least 7e-6 (119.881).
 constexpr double kBroadcastTolerance = 5e-6;
 
 // Maximum numerator and denominator. The time unit of MP4, a power of two times the numerator, then fits into 32 bits.

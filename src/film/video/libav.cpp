@@ -17,10 +17,11 @@ constexpr std::size_t kRememberedLines = 4;
 std::mutex g_log_mutex;  // encoder threads log too
 std::deque<std::string> g_log_lines;
 
+// Callback of libav: stores a warning or error in the log buffer, unless the buffer already contains its text.
 void remember(void* source, int level, const char* format, va_list arguments) {
   if (level > AV_LOG_WARNING) return;
   std::array<char, 512> text{};
-  int print_prefix = 0;  // the prefix would contain a memory address
+  int print_prefix = 0;  // without prefix, which would contain a memory address
   av_log_format_line2(source, level, format, arguments, text.data(), static_cast<int>(text.size()), &print_prefix);
   std::string line(text.data());
   while (!line.empty() && line.back() == '\n') line.pop_back();

@@ -39,12 +39,12 @@ using ScalerPtr = std::unique_ptr<SwsContext, LibavDeleter>;
 using OutputPtr = std::unique_ptr<AVFormatContext, OutputDeleter>;
 using InputPtr = std::unique_ptr<AVFormatContext, InputDeleter>;
 
-/// Redirects the log of libav and x264 from standard error to the log buffer, which holds the latest warnings and
-/// errors, and empties this buffer. The whole process has one log buffer. Thread-safe.
+/// Redirects the log of libav and x264 from standard error to the log buffer, and empties this buffer. The whole
+/// process has one log buffer, which holds the last four different warnings and errors. Thread-safe.
 void collect_log();
 
-/// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by the content of the log buffer, which is
-/// then empty.
+/// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by the content of the log buffer. Empties
+/// this buffer.
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view step, std::string_view reason);
 
 /// Returns `code` if it is not an error (at least 0). Otherwise calls fail() with the text of av_strerror().

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kFragmentedFlags = "+frag_every_frame+empty_moov+default_base_moof+use_metadata_tags";
 constexpr const char* kFastStartFlags = "+faststart+use_metadata_tags";
 
-/// The container for the extension of the user's file name.
+/// Name of the container in libav. `file`: the name that the user gave, whose extension selects the container.
 const char* container_of(const std::filesystem::path& file) {
   const std::filesystem::path ending = file.extension();
   return ending == ".mkv" ? "matroska" : ending == ".mov" ? "mov" : "mp4";
@@ -24,7 +24,7 @@ bool is_matroska(const std::filesystem::path& file) {
   return file.extension() == ".mkv";
 }
 
-// An owned dictionary; libav may replace it while reading it.
+// Owns a dictionary of options for libav, which replaces `entries` when it reads them.
 struct Dictionary {
   AVDictionary* entries = nullptr;
   Dictionary() = default;
@@ -35,7 +35,7 @@ struct Dictionary {
 
 InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
   AVFormatContext* opened = nullptr;
-  // The path is absolute, since libav reads the text before a colon as a protocol.
+  // The path is absolute, because libav takes the text before a colon of a relative path for a protocol.
   check(avformat_open_input(&opened, std::filesystem::absolute(file).c_str(),
                             av_find_input_format(is_matroska(reported_file) ? "matroska" : "mp4"), nullptr),
         reported_file, "read the frames back");
@@ -52,7 +52,7 @@ bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem
   return true;
 }
 
-// The header of an MP4 file describes all packets, so they must share one codec configuration.
+// Whether packets of both codecs can be in one file: an MP4 file has one codec configuration for all its packets.
 bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   const auto bytes = [](const AVCodecParameters& codec) {
     return std::basic_string_view<std::uint8_t>(codec.extradata, static_cast<std::size_t>(codec.extradata_size));
@@ -60,9 +60,9 @@ bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
   return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
 }
 
-// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times;
-// the delay is then the smallest one with which no frame is decoded after it is shown. 0 if there
-// is no frame or a time is missing.
+// Delay between decoding and showing the first frame [frames]. Matroska stores no decoding times; for it, the result is
+// the smallest delay with which no frame is decoded after the time at which it is shown. 0 if the file has no frame or
+// a time is missing.
 std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
   const InputPtr input = open_video(file, reported_file);
   const AVRational unit = input->streams[0]->time_base;
@@ -146,8 +146,8 @@ void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::
     const AVStream& stream = *input->streams[0];
     if (!same_codec(codec, *stream.codecpar))
       fail(reported_file, fmt::format("join {}", file.string()), "it is not encoded as the first one is");
-    // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. Subtracts the time
-    // of the first packet, which is frame 0 of its file, because each stream starts with a key frame.
+    // A fragmented file cannot contain negative times, so libav has shifted all times by the delay. This loop subtracts
+    // the time of the first packet. This packet is frame 0 of its file, because each stream starts with a key frame.
     const std::int64_t before = written;
     std::optional<std::int64_t> first_time;
     for (; read_packet(*input, *packet, reported_file); ++written) {
