@@ -10,12 +10,11 @@ namespace {
 
 using Kind = frame::Camera::Kind;
 
-// A camera of kind `whole` keeps cloth in view up to this distance from the bounding box of the subjects in the first
-// frame [diagonals of this box]. Without this limit, the camera would have to be very far away if cloth falls
-// endlessly.
+// A camera of kind `whole` shows cloth up to this distance from the bounding box of the subjects in the first frame
+// [diagonals of this box]. Without this limit, falling cloth would move the camera very far away.
 constexpr double kClothRange = 1.5;
 
-// The smoothing kernel, a Gaussian, ends at this number of standard deviations; 0.3 % of its weight is beyond.
+// Number of standard deviations at which the smoothing kernel, a Gaussian, ends; 0.3 % of its weight is beyond.
 constexpr double kKernelSigmas = 3;
 
 constexpr double kMaxFieldOfView = 100;  // limit on computed fields of view [degrees]
@@ -44,8 +43,8 @@ std::vector<bool> subjects_of(const frame::FrameSnapshot& snapshot, const frame:
   return chosen(is_subject);
 }
 
-/// Weights of a Gaussian, from its centre to one side. `width`: standard deviation [entries]. The
-/// sum of the centre and of both sides is 1.
+/// Weights of a Gaussian, from its centre to one side. `width`: standard deviation [frames]. The sum of the centre and
+/// of both sides is 1.
 std::vector<double> gaussian(double width) {
   std::vector<double> weights{1};
   double sum = 1;
@@ -156,6 +155,7 @@ void CameraPath::compute_orbit() {
   }
 }
 
+/// Converts a duration [s] to frames; 0 if the run has only one frame.
 double CameraPath::frames_in(double seconds) const {
   const double length = frames_.back().time - frames_.front().time;
   return length > 0 ? seconds * static_cast<double>(frames_.size() - 1) / length : 0;

@@ -10,9 +10,10 @@
 
 namespace weft::render {
 
+/// The camera of each frame of a run. If it is computed, the path reads all frames before it gives the first camera.
 class CameraPath {
  public:
-  /// `camera`: name of the camera. Empty: the scene's first camera; if the scene has none, automatic_camera().
+  /// `camera`: name of the camera. If it is empty: the scene's first camera or, without cameras, automatic_camera().
   /// `aspect`: width / height of the pictures.
   CameraPath(std::string camera, double aspect) : name_(std::move(camera)), aspect_(aspect) {}
 
@@ -24,10 +25,9 @@ class CameraPath {
   void add_frame(const frame::FrameSnapshot& snapshot);
   void compute_cameras();
 
-  /// The camera of a frame. Throws as find_camera() does. If the camera is computed, call
-  /// compute_cameras() before, with at least one added frame. The result is then the camera of the
-  /// last added frame that is not later than `snapshot` or, if all are later, of the first added
-  /// frame.
+  /// The camera of a frame. Throws as find_camera() does. A computed camera needs an earlier call of compute_cameras()
+  /// with at least one added frame. The result is then the camera of the last added frame that is not later than
+  /// `snapshot` or, if all added frames are later, of the first one.
   frame::Camera at(const frame::FrameSnapshot& snapshot) const;
 
  private:
@@ -52,7 +52,7 @@ class CameraPath {
   double aspect_;
   std::vector<Frame> frames_;
   Vec3 up_ = Vec3::UnitZ();        // upward axis of the scene
-  std::optional<Box3> cloth_box_;  // kind `whole` need not show cloth beyond it (kClothRange)
+  std::optional<Box3> cloth_box_;  // kind `whole` ignores cloth beyond this box (kClothRange)
   Box3 subject_bounds_;            // bounds of the subjects of all frames
   bool azimuth_changes_ = false;   // the azimuth differs between frames
 };

@@ -33,6 +33,7 @@ struct PlaneIntersection {
   }
 };
 
+/// Values of the channels at one pixel; units as in DataPasses::draw().
 struct PixelValues {
   double depth = std::numeric_limits<double>::infinity();
   Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
@@ -52,6 +53,7 @@ const std::vector<Vec3>* Before::positions(const frame::Surface& surface, std::s
 
 void DataPasses::find_hits(std::span<const SurfaceBuffers> surfaces, const View& view) {
   hits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), {});
+  // Position in the picture [pixels], and 1 / distance [1/m].
   const auto place = [&](const Eigen::Vector4d& clip) {
     return Vec3((0.5 + 0.5 * clip.x() / clip.w()) * width_, (0.5 + 0.5 * clip.y() / clip.w()) * height_, 1 / clip.w())
         .cast<float>()
@@ -96,7 +98,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
     add(name);
   if (heated) add("heat.V");
 
-  // The drawn triangles of painted surfaces are sorted by part.
+  // The part of each drawn triangle. make_painted_mesh() has sorted the triangles of painted surfaces by part.
   std::vector<std::vector<std::int32_t>> parts;
   for (const SurfaceBuffers& drawn : surfaces) {
     parts.push_back(drawn.surface().part_of_triangle);
@@ -109,7 +111,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
-      // Ray through the centre of the pixel. It advances one metre along the view axis.
+      // Ray through the centre of the pixel; its component along the view axis is 1 m.
       const Vec3 along = view.axes.forward + (2 * here.x() / width_ - 1) * view.tan_half_width * view.axes.right +
                          (2 * here.y() / height_ - 1) * view.tan_half_height * view.axes.up;
       const Hit& hit = hits_[static_cast<std::size_t>(y) * width_ + x];
@@ -148,7 +150,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
       }
       if (shown.object != kNothing && before)
         if (const auto there = to_picture(before->view, position_before)) shown.motion = here - *there;
-      if (shown.motion.norm() < kRounding) shown.motion.setZero();  // exact zeros compress better
+      if (shown.motion.norm() < kRounding) shown.motion.setZero();  // rounding errors, which compress badly
       const double values[] = {shown.depth,      shown.position.x(), shown.position.y(), shown.position.z(),
                                shown.normal.x(), shown.normal.y(),   shown.normal.z(),   shown.object,
                                shown.part,       shown.uv.x(),       shown.uv.y(),       shown.motion.x(),

@@ -11,7 +11,7 @@
 
 namespace weft::render {
 
-/// An earlier frame and the view that it was drawn from.
+/// An earlier frame, and the view from which it was drawn.
 struct Before {
   const frame::FrameSnapshot& snapshot;
   View view;
@@ -29,14 +29,13 @@ class DataPasses {
   DataPasses(int width, int height) : width_(width), height_(height) {}
 
   /// Appends these channels to `layers`, as 32-bit floats:
-  /// - depth.Z: distance along the view axis [m]; infinite where nothing is visible
-  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, of the visible side; 0 where
-  ///   nothing is visible
+  /// - depth.Z: distance along the view axis [m]; infinite if the pixel shows nothing
+  /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, of the visible side; 0 if the pixel shows nothing
   /// - id.object: 0 for nothing, 1 for the floor, 2 + i for surface i of the picture; id.part: 1 + k for part k of that
   ///   surface, 0 if it has no parts
   /// - uv.U, .V: Surface::uv (weft, warp) [m]; 0 if the surface has none
   /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the
-  ///   motion of the camera; a surface for which `before`->positions() is null counts as still; 0
+  ///   motion of the camera; a surface for which `before`->positions() is null counts as unmoved; 0
   ///   if `before` is absent, for the backdrop, and for points that were behind the camera
   /// - heat.V: strain or speed (Stage::heat), only if a surface has heat values
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,

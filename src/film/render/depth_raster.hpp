@@ -20,7 +20,7 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
   const float b_x = b.x() - a.x(), b_y = b.y() - a.y(), c_x = c.x() - a.x(), c_y = c.y() - a.y();
   const float area = b_x * c_y - c_x * b_y;
   if (!(std::abs(area) > 1e-12f)) return;  // edge-on
-  // First and last texel whose centre may be inside.
+  // First and last texel along one axis whose centre may be inside the triangle.
   const auto first = [](float low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5f))); };
   const auto last = [](float high, int size) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5f))); };
   const auto [x_min, x_max] = std::minmax({a.x(), b.x(), c.x()});
@@ -46,6 +46,7 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
 /// remain (Sutherland and Hodgman 1974).
 template <class Visit>
 void clip_near(const std::array<Eigen::Vector4d, 3>& corners, const Visit& visit) {
+  // At least 0 if the corner is on the visible side of the near plane.
   const auto before = [](const Eigen::Vector4d& corner) { return corner.w() - corner.z(); };
   std::array<Eigen::Vector4d, 4> left;
   std::size_t count = 0;

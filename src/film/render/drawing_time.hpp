@@ -1,5 +1,5 @@
-// CPU time of drawing: the sum over the drawing thread, the rasteriser threads, and the threads
-// that help in loops of the drawing thread. A concurrent simulation or encoder does not count.
+// CPU time of drawing: the sum over the drawing thread, the rasteriser threads, and the threads that execute parts of
+// parallel loops of the drawing thread. The time of a concurrent simulation or encoder is excluded.
 #pragma once
 
 #include <atomic>
@@ -11,10 +11,10 @@
 
 namespace weft::render {
 
-/// CPU seconds that other threads have spent in calls of drawing_for() by this thread.
+/// CPU time that other threads have spent in loops that this thread started by drawing_for() [s].
 inline thread_local double helper_cpu_seconds = 0;
 
-/// parallel_for() for drawing: CPU time of helping threads counts as the caller's.
+/// parallel_for() for drawing. Adds the CPU time of other threads in this loop to helper_cpu_seconds of the caller.
 template <class Body>
 void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
   const std::thread::id caller = std::this_thread::get_id();

@@ -7,7 +7,7 @@
 namespace weft::render {
 namespace {
 
-constexpr double kLineOpacity = 0.62;  // fraction by which a line lowers sRGB values
+constexpr double kLineOpacity = 0.62;  // fraction by which a line reduces sRGB values
 // An edge is hidden if it is farther from the eye than the visible surface by more than this
 // fraction of its own distance.
 constexpr double kDepthTolerance = 4e-3;
@@ -29,11 +29,13 @@ struct Place {
   double x, y, nearness;
 };
 
+/// Draws antialiased lines into a picture (Wu, "An Efficient Antialiasing Technique", 1991).
 class Canvas {
  public:
   Canvas(int width, int height, std::span<const Seen> seen, std::span<std::uint64_t> picture)
       : width_(width), height_(height), seen_(seen), picture_(picture) {}
 
+  /// Darkens the pixels along the line from a to b at which `surface`, a number as in Seen, is visible.
   void line(Place a, Place b, float surface) {
     const bool steep = std::abs(b.y - a.y) > std::abs(b.x - a.x);
     const auto along = [&](const Place& p) { return steep ? p.y : p.x; };

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-constexpr double kFieldOfView = 30;  // vertical [degrees]: that of a portrait lens, with little distortion
+constexpr double kFieldOfView = 30;  // vertical [degrees]; that of a portrait lens, which distorts little
 
 template <class Visit>
 void for_each_subject_vertex(const frame::FrameSnapshot& snapshot, const Visit& visit) {

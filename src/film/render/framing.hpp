@@ -22,7 +22,7 @@ Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 /// subject_bounds().
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
 
-/// The camera of scenes without cameras. It shows the whole run.
+/// The camera of scenes that define none. Its kind is `whole`.
 frame::Camera automatic_camera();
 
 /// Distance of the eye of a computed camera from the centre of its subjects [m]. `fit`: smallest
@@ -33,15 +33,14 @@ inline double eye_distance(double fit) {
   return fit < kMinFit ? kFromPoint : fit;
 }
 
-/// Axes of a computed camera, from its azimuth and elevation.
+/// Axes of a computed camera, from its azimuth and elevation. `up`: up axis of the scene.
 ViewAxes axes_from_angles(const frame::Camera& camera, const Vec3& up);
 
-/// The positions from which an eye with given axes has all points in its picture, at least a margin
-/// away from the edges of the picture. Let t be (1 - margin) tan(half of the field of view),
-/// horizontal or vertical. In the eye's axes (z forward), a point (x, y, z) keeps the margin to the
-/// left and right edges of the picture of an eye at (cx, cz) if |x - cx| <= t (z - cz). All points
-/// keep it if t cz - cx <= low = min(t z - x) and t cz + cx <= high = min(t z + x). The same holds
-/// for y.
+/// The positions from which an eye with given axes has all points in its picture, with at least a margin between the
+/// points and the edges of the picture. Let t be (1 - margin) tan(half of the horizontal field of view), and use the
+/// eye's axes (x right, y up, z forward). For an eye at (cx, cy, cz), a point (x, y, z) keeps the margin to the left
+/// and right edges if |x - cx| <= t (z - cz). All points do so if t cz - cx <= low = min(t z - x) and t cz + cx <= high
+/// = min(t z + x). The same holds for y with the vertical field of view.
 class FrustumFit {
  public:
   FrustumFit() = default;
@@ -56,13 +55,15 @@ class FrustumFit {
   /// Smallest distance from `center` [m] at which an eye that looks at `center` along the view axis
   /// has all points in its picture.
   double distance(const Vec3& center) const;
-  /// Sets position and target of the camera. Depth is the coordinate along the view axis. The eye
-  /// has the largest depth at which all points are in the picture; for a point, see eye_distance().
-  /// Of both directions of the picture (horizontal and vertical), the points are centred in the one
-  /// that needs the larger distance. The target is on the view axis, at the depth of `center`.
+  /// Sets position and target of the camera. Depth is the coordinate along the view axis. The eye gets the largest
+  /// depth at which all points are in the picture; if there is only one point, see eye_distance(). The target is on the
+  /// view axis, at the depth of `center`. The points are centred in that direction of the picture (horizontal or
+  /// vertical) that needs the larger distance.
   void place(frame::Camera& camera, const Vec3& center) const;
 
  private:
+  /// One direction of the picture, with t, low and high as above. across() and forward(): coordinates of the nearest
+  /// eye from which all points are in view.
   struct Span {
     double tangent = 1;
     double low = std::numeric_limits<double>::max(), high = low;

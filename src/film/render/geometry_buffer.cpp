@@ -22,11 +22,10 @@ int laid(const frame::Appearance& look) {
   return 1;
 }
 
-// Maximum depth offset of refined cloth towards the viewer [m]. Parts of the curved triangles lie
-// behind the simulated faces, by up to max_midpoint_offset(). Without the offset, surfaces below the
-// cloth would be visible there. A midpoint is at most a quarter of its edge away from the straight
-// edge (middle()), so the offset is no larger than that: small cloth must not cover what is in front
-// of it.
+// Maximum depth offset of refined cloth towards the viewer [m]. Parts of the curved triangles lie behind the simulated
+// faces, by up to max_midpoint_offset(). Without the offset, surfaces below the cloth would be visible there. A
+// midpoint is at most a quarter of its edge away from the straight edge (middle()). The offset has the same bound, so
+// that small cloth does not cover surfaces in front of it.
 constexpr double kMaxDepthOffset = 1.5e-3;
 float nearer(const SurfaceBuffers& surface) {
   return surface.refined() ? static_cast<float>(std::min(kMaxDepthOffset, 0.25 * surface.longest_edge())) : 0.0f;
@@ -167,7 +166,7 @@ void GeometryBuffer::copy(const Texture& from, const Texture& to) const {
                         1);
 }
 
-/// Colours and trims have framebuffer attachments of their own, which are attached only if some surface has them.
+/// Attaches the textures of colours and of trims to the framebuffer only if a surface has colours or trims.
 void GeometryBuffer::attach(bool painted, bool trimmed) {
   if (painted && !painting_) painting_.emplace(*gl_, width_, height_);
   if (trimmed && !trims_) trims_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
@@ -182,8 +181,8 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
   check_framebuffer(*gl_, target_, "geometry buffer");
 }
 
-/// If any surface of the picture is painted, the shaders of all surfaces write the paint of each
-/// pixel, which is 0 for surfaces that are not painted.
+/// Draws one surface. If any surface of the picture is painted, the shaders of all surfaces write the paint of each
+/// pixel; it is 0 for surfaces that are not painted.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
   const auto use_for = [&](int laid) -> const GeometryProgram& {
     const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});

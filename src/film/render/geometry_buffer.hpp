@@ -1,4 +1,4 @@
-// What each pixel shows before shading: normal, heat, rest coordinates, distance and surface.
+// The geometry buffer for deferred shading: normal, heat, rest coordinates, distance and surface of each pixel.
 #pragma once
 
 #include <map>
@@ -14,8 +14,8 @@
 
 namespace weft::render {
 
-/// Classes of pixels. They are stencil values, by which a shading pass selects its pixels. Shading turns `floor` into
-/// `shaded_floor` in areas with shadow, occlusion or reflected light; the lower two bits stay the same.
+/// Class of a pixel: a stencil value, by which a shading pass selects its pixels. Shading changes `floor` to
+/// `shaded_floor` in areas with shadow, occlusion or reflected light; the lower two bits of both values are equal.
 enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, shaded_floor = 7 };
 
 class GeometryBuffer {
@@ -39,15 +39,14 @@ class GeometryBuffer {
   bool painted() const { return painted_; }
   /// Whether some surface of the last picture is drawn with hems and seams.
   bool trimmed() const { return trimmed_; }
-  /// For class Holes: the opacity of the picture of each range of a painted mesh, or null if the range has no holes.
+  /// For each range of a painted mesh, the opacity of its picture; null if the range has no holes. Argument of Holes.
   std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
 
-  /// Reads back what each pixel shows, lowest row first.
+  /// Reads distance and surface of each pixel, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
-  /// Reads back, for each pixel that shows a surface other than the floor, the world normal on the
-  /// visible side. Its length is 1 + h, where h [m] is the height of the smooth surface above the
-  /// triangle along this normal (rise() in shaders/geometry.frag). w: heat. Other pixels have
-  /// arbitrary values.
+  /// Reads, for each pixel that shows a surface other than the floor, the world normal on the visible side. Its length
+  /// is 1 + h, where h [m] is the height of the smooth surface above the triangle along this normal (rise() in
+  /// shaders/geometry.frag). w: heat. All other pixels have arbitrary values.
   void read_normals(std::vector<Eigen::Vector4f>& normals) const;
 
   /// Distance and surface number of each pixel; see Seen.
@@ -56,8 +55,8 @@ class GeometryBuffer {
   const Texture& depth_stencil() const { return depth_stencil_; }
 
  private:
-  /// Shader variant. If any surface has paint, the shaders of all surfaces write the paint of each pixel; the same
-  /// applies to trims.
+  /// Shader variant. If any surface has paint (`painted`) or trims (`trimmed`), the shaders of all surfaces write them.
+  /// pictured: the surface has a picture; holes: the picture cuts holes; peeled: for draw_layer().
   struct Variant {
     bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
     auto operator<=>(const Variant&) const = default;
@@ -75,7 +74,7 @@ class GeometryBuffer {
   void draw(const SurfaceBuffers& surface, float number, bool peeled);
   void copy(const Texture& from, const Texture& to) const;
 
-  /// Resources created on first use: Painting for painted surfaces, Layers for translucent cloth.
+  /// Resources that are created on first use: Painting for painted surfaces, Layers for translucent cloth.
   struct Painting {
     Texture colors;
     Paints paints;

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-constexpr double kFilmHeight = 0.024;  // film height to which f-numbers refer [m]
+constexpr double kFilmHeight = 0.024;  // height of 35 mm film [m]: relates field of view and focal length
 
 template <class Value>
 Value mix(const Value& now, const Value& before, double back) {
@@ -24,9 +24,8 @@ std::vector<Instant> instants(double shutter, bool lens, int count) {
   for (int k = 0; k < count; ++k) {
     Instant instant;
     instant.back = shutter / 360 * (k + 0.5) / count;
-    // Points spread evenly over the disc (Vogel 1979). The factor 5 changes their order, so that
-    // position on the lens and time do not correlate. Each point occurs once, because `count` is
-    // not a multiple of 5.
+    // Spreads the points evenly over the disc (Vogel 1979). The factor 5 changes their order, so that position on the
+    // lens and time do not correlate. Each point occurs once, because `count` is not a multiple of 5.
     const int place = 5 * k % count;
     if (lens)
       instant.lens = std::sqrt((place + 0.5) / count) * Vec2(std::cos(golden * place), std::sin(golden * place));

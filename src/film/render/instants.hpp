@@ -8,22 +8,22 @@
 
 namespace weft::render {
 
-/// Time and point on the lens of one of the sharp pictures.
+/// Time and point on the lens for one of the sharp pictures.
 struct Instant {
   double back = 0;  ///< time before the drawn frame [frames]
   Vec2 lens{0, 0};  ///< point on the lens [radii of the lens]
 };
 
-/// `count` instants, evenly spread over the time in which the shutter is open. This time is
-/// `shutter` degrees long (360: the time between two frames) and ends at the drawn frame. If `lens`
-/// is true, the instants are also spread over the lens, and `count` must not be a multiple of 5;
-/// else, all are at its centre. The result is empty if `shutter` is 0 and `lens` is false.
+/// `count` instants, evenly spread over the time in which the shutter is open. This time ends at the drawn frame;
+/// `shutter` is its length [degrees], where 360 degrees are the time between two frames. If `lens` is true, the
+/// instants are also spread over the lens, and `count` must not be a multiple of 5; else, all are at its centre. If
+/// `shutter` is 0 and `lens` is false, the result is empty.
 std::vector<Instant> instants(double shutter, bool lens, int count);
 
-/// Interpolates linearly between a frame (back = 0) and the one before (back = 1): time, positions,
-/// and direction, position, target and intensity of lights. Surfaces and lights are matched by
-/// index. A surface stays as in `now` if the surface of `before` has another name or number of
-/// vertices, or does not exist. Lights that `before` lacks stay as in `now`.
+/// Interpolates linearly between a frame (back = 0) and the frame before it (back = 1): time, positions, and direction,
+/// position, target and intensity of lights. Surfaces and lights of both frames correspond by index. If `before` lacks
+/// a surface, or if this surface has another name or number of vertices there, it stays as in `now`. Lights that
+/// `before` lacks also stay as in `now`.
 frame::FrameSnapshot between(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, double back);
 /// Interpolates position, target and field of view of a camera in the same way.
 frame::Camera between(const frame::Camera& now, const frame::Camera& before, double back);

@@ -8,12 +8,13 @@
 namespace weft::render {
 namespace {
 
-constexpr int kFilterReach = 2;      // points to either side
+constexpr int kFilterReach = 2;      // number of neighbours on either side [steps]
 constexpr float kNarrow = 1.5f;      // distance in space that halves a weight in smooth_where() [steps]
-constexpr float kAny = 1e9f;         // value of `wide` in neighbor_weights() if the distance in space does not matter
-constexpr float kNoise = 0.05f;      // difference of values that halves a weight
+constexpr float kAny = 1e9f;         // value of `wide` in neighbor_weights() for weights without distance in space
+constexpr float kNoise = 0.05f;      // difference of the values of two points that halves a weight
 constexpr float kPlaneSlack = 0.5f;  // distance from the tangent plane that halves a weight [points]
 
+/// Pointers to one row of each array of PixelPoints that neighbor_weights() reads.
 struct Rows {
   const float *surface, *x, *y, *z, *nx, *ny, *nz, *density;
   Rows(const PixelPoints& points, int row)
@@ -27,12 +28,12 @@ struct Rows {
         density(points.densities(row)) {}
 };
 
-/// Values of neighbouring points of a row: eight, or one.
+/// Values at kCount (eight or one) consecutive points of a row.
 template <int kCount>
 using Values = Eigen::Array<float, kCount, 1>;
 
-/// The weights that kCount points of row `there`, from k on, have in the means at kCount points of row `here`, from i
-/// on. `wide`: distance in space that halves a weight [points].
+/// Weights of neighbours in means. Entry n: weight of point k + n of row `there` in the mean at point i + n of row
+/// `here`. `wide`: distance in space that halves a weight [points].
 template <int kCount>
 Values<kCount> neighbor_weights(const Rows& here, int i, const Rows& there, int k, float wide) {
   using Real = Values<kCount>;
@@ -47,8 +48,8 @@ Values<kCount> neighbor_weights(const Rows& here, int i, const Rows& there, int 
   return same * agree.square() * agree.square() / ((1 + off) * (1 + along));
 }
 
-// The filters process eight points at a time explicitly, because compilers do not vectorise loops
-// over so many rows.
+// Loads eight consecutive values. The filters process eight points at a time explicitly, because compilers do not
+// vectorise loops that read so many rows.
 Lanes load(const float* from) {
   return Eigen::Map<const Lanes>(from);
 }
@@ -70,8 +71,8 @@ void pass(std::span<const Plane> from, std::span<Plane> to, const PixelPoints& p
           if (y + dy < 0 || y + dy >= height) continue;
           Lanes weights = neighbor_weights<kLanes>(here, x, Rows(points, y + dy), x + dx, kAny);
           if (step > 1 && k != 0) {
-            // The filter with step 1 runs first and leaves little noise. Larger differences are
-            // features, which must be kept.
+            // The filter with step 1 has run before and has left little noise. Larger differences are features, which
+            // the filter must keep.
             Lanes differences = Lanes::Zero();
             for (const Plane& plane : from)
               differences += (load(plane.row(y) + x) - load(plane.row(y + dy) + x + dx)).abs();
@@ -138,11 +139,11 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
   };
   std::vector<Place> columns;
   for (int x = 0; x < many.width(); ++x) columns.push_back(place(x, few.width()));
-  // One flag per column of `few`, for the 2 x 2 points in this and the next column, and in the rows
-  // row.low and row.high. `even`: the four values are equal. `alike`, set only if `even` is 0:
-  // the four points show the same smooth surface.
+  // One flag per column of `few`, for the 2 x 2 points in this and the next column and in the rows row.low and
+  // row.high. `even`: the four values are equal. `alike` (only set if `even` is 0): the four points show the same
+  // smooth surface.
   std::vector<char> even(static_cast<std::size_t>(few.width())), alike(even.size());
-  int known_low = -1, known_high = -1;  // rows to which the flags belong; both are 0 below the first row of `few`
+  int known_low = -1, known_high = -1;  // rows to which the flags refer; both are 0 below the first row of `few`
   for (int y = begin; y < end; ++y) {
     const Place row = place(y, few.height());
     const Rows here(many, y);
@@ -181,14 +182,14 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       Eigen::Vector4f sum = Eigen::Vector4f::Zero(), any = sum;
       float total = 0;
       for (int k = 0; k < 4; ++k) {
-        constexpr float kLeast = 0.01f;  // a point that alone shows the surface counts even if `plain` is 0
+        constexpr float kLeast = 0.01f;  // thus the only point that shows the surface counts even if `plain` is 0
         const float weight =
             (plain[k] + kLeast) *
             neighbor_weights<1>(here, x, there[k >> 1], (k & 1) != 0 ? column.high : column.low, kAny).value();
         sum += weight * *corners[k], total += weight;
         any += 0.25f * *corners[k];
       }
-      // If none of the four points shows the surface of the pixel, takes the mean of the four.
+      // If none of the four points shows the surface of the pixel, the result is the mean of the four.
       result[x] = total > 1e-4f ? Eigen::Vector4f(sum / total) : any;
     }
   }

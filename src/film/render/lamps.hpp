@@ -1,4 +1,4 @@
-// Direct light without shadows, for eight points at a time: the same formulas as toward_light() in shaders/lights.glsl.
+// Direct light without shadows, for eight points at a time, by the formulas of toward_light() in shaders/lights.glsl.
 #pragma once
 
 #include "film/render/lighting.hpp"

@@ -18,7 +18,8 @@ double half_cone(const frame::Light& light) {
   return radians(std::clamp(light.cone_angle, 1.0, 170.0)) / 2;
 }
 
-/// Tangent of half the angular width of the light source. Its lower limit avoids shadows without penumbra.
+/// Tangent of half the angular width of the light source. The lower limit of 0.1 degrees avoids shadows without
+/// penumbra.
 double source_tangent(const frame::Light& light) {
   return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2);
 }
@@ -30,8 +31,8 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   std::vector<frame::Light> lights = snapshot.lights;
   if (lights.size() > kMaxLights) lights.resize(kMaxLights);
   if (!lights.empty()) return lights;
-  // The key light comes from behind the left shoulder of the viewer, 40 degrees above the horizon. Shadows fall to the
-  // right and slightly away, and folds show relief.
+  // The key light comes from behind the left shoulder of the viewer, 40 degrees above the horizon. Thus shadows fall to
+  // the right and slightly away from the viewer, and make the shape of folds visible.
   const Vec3 level_forward = view_axes(camera.right.cross(-up), up).forward;
   frame::Light key;
   key.name = "key";

@@ -14,9 +14,9 @@ namespace weft::render {
 
 using frame::kMaxLights;
 
-/// The first kMaxLights lights of the snapshot. If the snapshot has none: the lights of the look.
-/// All looks have a warm key light from the left, above and behind the camera. The look `stage`
-/// also has a rim light from the right, above and behind the subjects.
+/// The first kMaxLights lights of the snapshot. If the snapshot has none: the lights of the look. All looks have a warm
+/// key light from the left, from above and from behind the camera. The look `stage` also has a rim light from the
+/// right, from above and from behind the subjects.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
                                            const ViewAxes& camera, const Vec3& up);
 
@@ -28,7 +28,7 @@ struct LightSet {
 };
 LightSet light_set(std::span<const frame::Light> lights);
 
-/// One light in the light block of shaders/lights.glsl, std140.
+/// One light of the light block of shaders/lights.glsl, in the layout std140.
 struct LightUniform {
   Eigen::Vector4f toward_light;  ///< unit; w: squared distance of a spot from its target [m²]; sun: 0
   Eigen::Vector4f position;      ///< [m]; w: cosine of half the cone angle
@@ -50,7 +50,7 @@ struct Lamp {
   float reach() const { return std::sqrt(packed.toward_light.w()); }
 };
 
-/// `scale`: factor on the intensity for each channel.
+/// Converts a light. `scale`: factor on the intensity for each channel.
 Lamp make_lamp(const frame::Light& light, const Vec3& scale);
 
 }  // namespace weft::render

@@ -5,9 +5,10 @@
 namespace weft::render {
 namespace {
 
-constexpr int kDivisor = 2;
+constexpr int kDivisor = 2;  // side of a pixel of the reflection [pixels of the picture]
 
-/// Traces shadows and surroundings at points twice as far apart, because reflections are blurred.
+/// Settings for reflections: because they are blurred, shadows and surroundings are traced at points twice as far
+/// apart.
 QualitySettings plainer(QualitySettings quality) {
   quality.shadow_divisor *= kDivisor;
   quality.ambient_divisor *= kDivisor;
@@ -21,7 +22,7 @@ View mirrored(const View& view, const Floor& floor) {
   const auto turned = [&](const Vec3& v) -> Vec3 { return v - 2 * n.dot(v) * n; };
   View mirror = view;
   mirror.eye = floor.point + turned(view.eye - floor.point);
-  // A reflection makes the axes left-handed. Negating `up` makes them right-handed, but turns the picture upside down.
+  // A reflection makes the axes left-handed. Negating `up` makes them right-handed again, and the picture upside down.
   mirror.axes = {turned(view.axes.right), -turned(view.axes.up), turned(view.axes.forward)};
   mirror.view_from_world = look_along(mirror.eye, mirror.axes);
   mirror.clip_from_world = perspective(view.tan_half_width, view.tan_half_height, view.near) * mirror.view_from_world;
@@ -48,7 +49,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
 void Mirror::draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights) {
   gl_->NamedBufferData(frame_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl_->BindBufferBase(GL_UNIFORM_BUFFER, 0, frame_block_.name());
-  // Clips everything below the floor, since the floor does not reflect it.
+  // Clips surfaces below the floor, because the floor does not reflect them.
   gl_->Enable(GL_CLIP_DISTANCE0);
   geometry_.draw(subjects.surfaces, {}, nullptr, view.eye, view.far);
   gl_->Disable(GL_CLIP_DISTANCE0);

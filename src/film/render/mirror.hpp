@@ -1,5 +1,5 @@
-// Reflections in a glossy floor: the subjects as seen by the eye mirrored at the floor, drawn with
-// half the width and height of the picture.
+// Reflections in a glossy floor: a picture of the subjects from the eye mirrored at the floor, with half the width and
+// height of the main picture.
 #pragma once
 
 #include <span>
@@ -15,7 +15,7 @@ View mirrored(const View& view, const Floor& floor);
 
 class Mirror {
  public:
-  /// For pictures of width x height pixels; reflections have half that size.
+  /// `width`, `height`: of the main picture [pixels].
   Mirror(const Gl& gl, const QualitySettings& quality, int width, int height);
 
   /// The subjects, as prepared for the main passes.
@@ -27,9 +27,9 @@ class Mirror {
     double heat_scale;
     bool painted;  ///< whether pictures and colours of parts are shown
   };
-  /// Draws the subjects from `view`, a mirrored() view, whose frame block is `block`. The light
-  /// block must be bound. Binds the picture to texture unit 13 and its distances to unit 14.
-  /// Afterwards, the frame block and the other texture units are bound to data of this pass.
+  /// Draws the subjects from `view`, a mirrored() view. `block`: the frame block of this view. The light block must be
+  /// bound. Binds the picture to texture unit 13 and its distances to unit 14. Afterwards, the frame block and the
+  /// other texture units are bound to data of this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }

@@ -11,7 +11,7 @@ namespace {
 
 using Wrap = frame::Paint::Wrap;
 
-/// One texel of a scaled row or column: weights of the old texels that it covers, from texel `first` on.
+/// One texel of a row or column of the smaller level: weights of the texels that it covers, from `first` on.
 struct TexelWeights {
   int first = 0;
   std::vector<float> weights;

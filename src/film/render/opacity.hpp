@@ -1,4 +1,4 @@
-// Opacity of a picture (alpha of a texture), for passes on the CPU.
+// Mip levels of a picture, and its opacity (the alpha channel), for passes on the CPU.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,8 +21,10 @@ MipLevel next_mip_level(const MipLevel& level);
 /// Mip level 0 of a texture. `opaque`: all texels have alpha 1.
 MipLevel base_mip_level(const frame::Texture& texture, bool opaque);
 
+/// The alpha channel of a picture with all mip levels.
 class Opacity {
  public:
+  /// `levels`: all mip levels, from level 0.
   Opacity(std::vector<MipLevel> levels, frame::Paint::Wrap wrap_u, frame::Paint::Wrap wrap_v);
 
   /// Interpolated opacity at a point of the picture (coordinates as in Paint::texture_from_uv). `footprint`: width of

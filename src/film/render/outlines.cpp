@@ -22,18 +22,17 @@ constexpr float kOffsetX[] = {19 / 32.f, 15 / 32.f, 11 / 32.f, 25 / 32.f, 7 / 32
 constexpr float kOffsetY[] = {19 / 32.f, 11 / 32.f, 21 / 32.f, 15 / 32.f, 13 / 32.f, 27 / 32.f, 23 / 32.f, 7 / 32.f,
                               29 / 32.f, 3 / 32.f,  5 / 32.f,  25 / 32.f, 17 / 32.f, 9 / 32.f,  31 / 32.f, 1 / 32.f};
 
-// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance
-// is linear. Where a surface ends, 1 / distance has a step; where a surface folds, the slope of 1 /
-// distance changes. Beside a face seen head-on, this change [per pixel], relative to 1 / distance,
-// is the tangent of the crease angle times the angle of a pixel.
+// Tangent of the smallest crease angle that is antialiased. In the picture of a plane, 1 / distance is linear. At the
+// border of a surface, 1 / distance has a step; at a fold, its slope changes. Beside a face seen head-on, this change
+// [per pixel], relative to 1 / distance, is the tangent of the crease angle times the angle of a pixel.
 constexpr double kMinCreaseTangent = 0.4;
-// A sample takes the colour of its pixel if the point that the pixel shows is in the plane of the sample's triangle, up
-// to this tolerance [multiples of `kink_`].
+// Tolerance [multiples of `kink_`] within which the point that a pixel shows counts as being in the plane of a sample's
+// triangle. The sample then takes the colour of this pixel.
 constexpr float kSamePlane = 0.25f;
 
 /// Edge function: twice the signed area of the triangle of a, b and a point; positive if the point is left of the edge
 /// from a to b. The function of the edge from b to a has exactly the negative value, because both are computed from the
-/// same end. Thus no sample falls between the two triangles of an edge.
+/// same end. Thus at least one of the two triangles of an edge covers each sample near it.
 struct Edge {
   float along, across, from_x, from_y;
 
@@ -50,8 +49,8 @@ struct Edge {
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
 
-// Order of the opacity thresholds: that of sample s is (kThresholdOrder[s] + 1/2) / 16. The
-// thresholds of consecutive samples differ much.
+// The opacity threshold of sample s is (kThresholdOrder[s] + 1/2) / 16. Consecutive samples have very different
+// thresholds.
 constexpr int kThresholdOrder[] = {0, 8, 12, 4, 10, 2, 6, 14, 9, 1, 5, 13, 3, 11, 15, 7};
 
 /// The opacity of a triangle at points of the rendered picture. If an attribute is linear over the triangle, then
@@ -131,7 +130,7 @@ void Outlines::find_outlines(std::span<const Seen> seen, const PixelArea& area) 
   }
 }
 
-/// Allocates samples for each pixel with a set bit.
+/// Numbers the pixels with a set bit, and allocates their samples.
 void Outlines::number_samples() {
   for (std::size_t word = 0; word < bits_.size(); ++word) {
     first_[word] = static_cast<int>(pixels_.size());
@@ -147,8 +146,8 @@ Outlines::Vertex Outlines::to_picture(const Eigen::Vector4d& clip) const {
           static_cast<float>((0.5 + 0.5 * clip.y() * nearness) * height_), static_cast<float>(nearness)};
 }
 
-/// Writes the triangle to each sample that it covers, if it is nearer than what the sample has shown so far, and if
-/// `shows(x, y, nearness, sample)` is true.
+/// Writes the triangle to each sample that it covers if it is nearer than the surface that the sample has shown so far,
+/// and if `shows(x, y, nearness, sample)` is true.
 template <class Shows>
 void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows) {
   const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
@@ -258,7 +257,7 @@ void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const Vie
   }
 }
 
-/// Writes the floor to all samples that show nothing nearer, if the eye is above the floor.
+/// If the eye is above the floor, writes the floor to all samples that show nothing nearer.
 void Outlines::sample_floor(const Floor& floor, const View& view) {
   const double height = floor.normal.dot(view.eye - floor.point);
   if (height <= 0) return;
@@ -311,7 +310,7 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
   std::size_t chosen = 0;
   for (int s = 0; s < kSamples; ++s) {
     const float surface = samples.surface[s], slope_x = samples.slope_x[s], slope_y = samples.slope_y[s];
-    // Most samples belong to the same triangle as the sample before, and then have the same source.
+    // Most samples show the same triangle as the sample before, and thus have the same source.
     if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
         slope_y != samples.slope_y[s - 1]) {
       // Distance of the point that pixel (i, j) shows from the sample's plane along the view axis,
@@ -356,7 +355,7 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   number_samples();
   for (std::size_t i = 0; i < meshes.size(); ++i) sample(meshes[i], static_cast<float>(kFirstSurface + i), view);
   if (floor) sample_floor(*floor, view);
-  // Computes all pixels before it writes the first one, because each pixel reads its neighbours.
+  // This loop computes all pixels before the next one writes them, because each pixel reads its neighbours.
   resolved_.clear();
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
     std::uint64_t sums[3] = {}, mean = 0;

@@ -1,6 +1,6 @@
 // Antialiasing: pixels in which a surface ends or folds get 16 samples. Each sample takes its colour from its own pixel
-// or, if this pixel shows another surface or the other side of the fold, from a neighbouring pixel that shows what the
-// sample shows.
+// or, if this pixel shows another surface or the other side of the fold, from a neighbouring pixel that shows the same
+// surface as the sample.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@
 
 namespace weft::render {
 
-/// Works on the CPU, because only a few thousand pixels have outlines, whereas OpenGL would multisample all pixels.
+/// Antialiasing on the CPU, because only a few thousand pixels need it; OpenGL would multisample all pixels.
 class Outlines {
  public:
   Outlines(int width, int height);
 
-  /// Antialiases `picture` (RGBA with 16 bits per channel, lowest row first) inside `area`. `seen`: what each pixel of
-  /// the picture shows. `meshes`: all surfaces except the floor; mesh i has the number kFirstSurface + i.
+  /// Antialiases `picture` (RGBA with 16 bits per channel, lowest row first) inside `area`. `seen`: distance and
+  /// surface of each pixel. `meshes`: all surfaces except the floor; mesh i has the number kFirstSurface + i.
   void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
               const View& view, const PixelArea& area, std::span<std::uint64_t> picture);
 
@@ -64,7 +64,7 @@ class Outlines {
   int width_, height_, words_;  // words_: number of words of `bits_` in a row
   float kink_ = 0;              // minimum second difference of 1 / distance at a fold, relative to 1 / distance
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
-  std::vector<int> first_;      // by word of `bits_`: index in `pixels_` of the first pixel of the word
+  std::vector<int> first_;      // for each word of `bits_`: index in `pixels_` of the first pixel of the word
   std::vector<Pixel> pixels_;
   std::vector<Samples> samples_;
   std::vector<std::uint64_t> resolved_;

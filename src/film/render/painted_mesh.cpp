@@ -7,13 +7,13 @@
 namespace weft::render {
 namespace {
 
-/// Paint coordinates of each drawn vertex. If the corners at a vertex have different coordinates, splits the vertex
-/// into one for each coordinate pair.
+/// Computes the paint coordinates of each drawn vertex. If the triangle corners at a vertex have different coordinates,
+/// splits the vertex into one vertex for each pair of coordinates.
 std::vector<Eigen::Vector2f> split_by_place(std::span<const std::array<Vec2, 3>> corners, ShadedMesh& mesh) {
   constexpr Index kNone = -1;
   std::vector<Eigen::Vector2f> places(mesh.source.size(), Eigen::Vector2f::Zero());
   std::vector<char> placed(mesh.source.size(), 0);
-  std::vector<Index> next(mesh.source.size(), kNone);  // per drawn vertex: next copy of it, with other coordinates
+  std::vector<Index> next(mesh.source.size(), kNone);  // per drawn vertex: its next copy, which has other coordinates
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector2f place = corners[t][k].cast<float>();

@@ -22,7 +22,8 @@ struct PaintedMesh {
   std::vector<PaintedRange> ranges;
 };
 
-/// Splits drawn vertices whose corners have different paint coordinates, as at seams, and sorts the triangles by part.
+/// Makes the data of a painted surface. In `mesh`, splits vertices whose corners have different paint coordinates, as
+/// at seams, and sorts the triangles by part.
 PaintedMesh make_painted_mesh(const frame::Surface& surface, ShadedMesh& mesh);
 
 /// The holes of a painted mesh, for passes on the CPU.
@@ -31,6 +32,7 @@ class Holes {
   /// `opacity`: per range, the opacity of its picture; null if the range has no holes.
   Holes(const PaintedMesh& mesh, std::vector<const Opacity*> opacity);
 
+  /// Whether any range has holes.
   bool any() const;
   /// Opacity of the triangles of a range; null if they have no holes.
   const Opacity* opacity(std::size_t range) const { return opacity_[range]; }

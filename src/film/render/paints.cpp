@@ -14,8 +14,8 @@ namespace {
 using Wrap = frame::Paint::Wrap;
 using Alpha = frame::Paint::Alpha;
 
-// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, which llvmpipe has as an extension. The value 8 keeps prints sharp down to
-// an angle of 7 degrees between cloth and line of sight.
+// GL_TEXTURE_MAX_ANISOTROPY of OpenGL 4.6, which llvmpipe supports as an extension. With the value 8, pictures on cloth
+// are sharp down to an angle of 7 degrees between cloth and line of sight.
 constexpr GLenum kMaxAnisotropy = 0x84FE;
 constexpr float kAnisotropy = 8;
 

@@ -12,14 +12,15 @@
 
 namespace weft::render {
 
-/// One picture with all mip levels, and its opacity if it cuts holes. The mip levels are computed on the CPU from
-/// premultiplied linear colour, so that they average light, and transparent texels contribute no colour.
+/// One picture with all mip levels, and its opacity if it cuts holes. The CPU computes the mip levels from
+/// premultiplied linear colour, so that they are averages of light, to which transparent texels contribute nothing.
 struct PaintTexture {
   Texture texture;
   std::optional<Opacity> opacity;
   std::shared_ptr<const frame::Texture> source;
 };
 
+/// The textures of all paints of a context.
 class Paints {
  public:
   explicit Paints(const Gl& gl) : gl_(&gl) {}

@@ -33,6 +33,7 @@ class Plane {
   std::vector<float> values_;
 };
 
+/// Position, normal and surface of the point at every `divisor`-th pixel.
 class PixelPoints {
  public:
   enum class Kind : std::uint8_t { nothing, floor, solid, cloth };
@@ -48,8 +49,8 @@ class PixelPoints {
   int height() const { return height_; }
   int divisor() const { return divisor_; }
 
-  /// What point x of row y shows. x may lie up to Plane::kBorder beyond either end of the row; the
-  /// result is then Kind::nothing.
+  /// Kind of point x of row y. x may be up to Plane::kBorder beyond either end of the row; the result is then
+  /// Kind::nothing.
   Kind kind(int x, int y) const { return static_cast<Kind>(static_cast<int>(kinds_.row(y)[x])); }
   /// The next four functions return values of eight points of row y, from x on. kinds(): values of Kind as numbers.
   Lanes kinds(int x, int y) const { return Eigen::Map<const Lanes>(kinds_.row(y) + x); }
@@ -62,7 +63,7 @@ class PixelPoints {
   const float* surfaces(int y) const { return surface_.row(y); }
   const float* position(int axis, int y) const { return position_[axis].row(y); }
   const float* normal(int axis, int y) const { return normal_[axis].row(y); }
-  /// Points per metre at the distance of each point, perpendicular to the view axis.
+  /// Points per metre [1/m] at the distance of each point, measured perpendicular to the view axis.
   const float* densities(int y) const { return density_.row(y); }
 
  private:

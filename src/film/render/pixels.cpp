@@ -21,7 +21,7 @@ const std::vector<float>& linear_table() {
 }
 
 float channel(std::uint64_t rgba, int which) {
-  // Converts from 32 bits, because the compiler does not vectorise a conversion from 64 bits.
+  // Converts from 32 bits to float, because the compiler does not vectorise the conversion from 64 bits.
   return static_cast<float>(static_cast<int>(static_cast<std::uint32_t>(rgba >> (16 * which)) & 0xFFFF));
 }
 

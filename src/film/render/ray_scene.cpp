@@ -37,8 +37,8 @@ float opacity_at(const DrawnMesh& mesh, std::size_t triangle, float u, float v) 
   return mesh.opacity;
 }
 
-/// Filter that Embree calls for hits on surfaces that do not stop all light. It rejects the hits of a random fraction
-/// of the rays, which then pass the surface.
+/// Filter that Embree calls for hits on surfaces that do not stop all light. It rejects the hits of random rays, which
+/// then pass through the surface.
 void reject_random_hits(const RTCFilterFunctionNArguments* args) {
   const auto& mesh = *static_cast<const DrawnMesh*>(args->geometryUserPtr);
   for (unsigned i = 0; i < args->N; ++i) {
@@ -65,8 +65,7 @@ void put(const Rays& rays, RTCRay8& to) {
 
 }  // namespace
 
-// A build of this program uses the same Embree kernels on every processor, so that the hits do not
-// depend on the processor.
+// Selects the Embree kernels when the program is compiled, so that hits do not depend on the processor that runs it.
 #ifdef __AVX2__
 constexpr const char* kKernels = "isa=avx2";
 #else

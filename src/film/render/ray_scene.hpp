@@ -32,13 +32,15 @@ inline Lanes dot(const Lanes3& a, const Lanes3& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/// A packet of eight rays.
 struct Rays {
   Lanes3 origin, direction;            ///< [m]
   Lanes end = Lanes::Constant(1e30f);  ///< largest distance, in lengths of `direction`
-  Mask wanted = Mask::Zero();          ///< rays to trace; the others hit nothing
+  Mask wanted = Mask::Zero();          ///< rays to trace; all others hit nothing
   unsigned seed = 0;                   ///< seed of the random choice of rays that pass through translucent cloth
 };
 
+/// The nearest hit of each ray of a packet.
 struct Hits {
   static constexpr int kNone = -1;
   std::array<int, kLanes> mesh;  ///< index of the mesh; kNone: the ray hits nothing
@@ -54,8 +56,9 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// Replaces the surfaces. Positions and triangles are copied; but the triangles and Holes of a mesh with holes must
-  /// stay valid while rays are traced. Throws std::bad_alloc, or Error(internal) with the number of Embree's error.
+  /// Replaces the surfaces. Copies positions and triangles. But the triangles and Holes of a mesh with holes must stay
+  /// valid while rays are traced, because they give the opacity at hits. Throws std::bad_alloc, or Error(internal) with
+  /// the number of Embree's error.
   void build(std::span<const DrawnMesh> meshes);
 
   /// 1 for each wanted ray that a surface stops, else 0. A surface with holes or an opacity below 1

@@ -29,20 +29,18 @@ class Refinement {
   std::vector<Edge> edges_;
 };
 
-/// Midpoint of the cubic curve from a to b that is perpendicular to the normals at both ends
-/// (Vlachos et al., "Curved PN Triangles", 2001). The normal of the midpoint is the normalised mean
-/// of both normals, because the paper's quadratic normals oscillate along sharp folds; if both
-/// normals are opposite, it is `normal_a`. The midpoint is at most `max_offset` [m] from the middle
-/// of the straight edge, so that layers in contact do not intersect and inaccurate normals cause no
-/// spikes.
+/// Midpoint of the cubic curve from a to b that is perpendicular to the normals at both ends (Vlachos et al., "Curved
+/// PN Triangles", 2001). The normal at the midpoint is the normalised mean of both normals, because the paper's
+/// quadratic normals oscillate along sharp folds; if both normals are opposite, it is `normal_a`. The midpoint is at
+/// most `max_offset` [m] away from the middle of the straight edge, so that layers in contact do not intersect and
+/// inaccurate normals cause no spikes.
 struct Middle {
   Vec3 position, normal;
 };
 Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b, double max_offset);
 
-/// The `max_offset` [m] for cloth of a thickness [m]: the thickness, at least 0.2 mm. For all
-/// built-in fabrics, this is below half of the contact thickness, the gap that contacts keep
-/// between layers.
+/// Value of `max_offset` [m] for cloth with this `thickness` [m]: the thickness, but at least 0.2 mm. For all built-in
+/// fabrics, this is below half of the contact thickness, the gap that contacts keep between layers.
 inline double max_midpoint_offset(double thickness) {
   return std::max(thickness, 2e-4);
 }

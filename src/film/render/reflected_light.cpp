@@ -10,22 +10,23 @@ namespace {
 
 using Eigen::Vector3f;
 
-// Fraction of the surroundings that is assumed to be unoccluded at the point that a ray hits,
-// because only rays to lamps are traced from there.
+// Assumed unoccluded fraction of the surroundings at the point that a ray hits. It is not computed: from this point,
+// only rays to lamps are traced.
 constexpr float kOpenAtHits = 0.6f;
 constexpr float kMinSlope = 0.02f;  // the floor is ignored for rays that descend less steeply [m/m]
 // ReflectedLight::ray_start() in usual scenes [m], its largest ratio to the size of the scene, and its smallest ratio
 // to the distance from the origin (8 rounding errors of single precision).
 constexpr float kRayStart = 3e-4f, kMaxRayStartRatio = 1e-3f, kMinRayStartRatio = 1e-6f;
 
+/// Light of channel k for normals n, from the coefficients of an Irradiance.
 Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
   return (c[0][k] + n.x * c[1][k] + n.y * c[2][k] + n.z * c[3][k] + n.x * n.y * c[4][k] + n.y * n.z * c[5][k] +
           n.z * n.x * c[6][k] + n.z * n.z * c[7][k] + (n.x * n.x - n.y * n.y) * c[8][k])
       .max(0.0f);
 }
 
-/// Whether the picture lies over the colour where it is, with the colour alone around it (laid() in
-/// geometry_buffer.cpp).
+/// Whether an opaque picture covers only a part of the surface, because it does not repeat. The rest of the surface
+/// then shows its colour (case 3 of laid() in geometry_buffer.cpp).
 bool lies_once(const frame::Paint& paint) {
   using Wrap = frame::Paint::Wrap;
   return paint.alpha == frame::Paint::Alpha::ignored && (paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once);
@@ -40,7 +41,7 @@ double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, s
   const auto is_inside = [](double place, frame::Paint::Wrap wrap) {
     return wrap != frame::Paint::Wrap::once || (place >= 0 && place <= 1);
   };
-  double all = 0, inside = 0;  // [m²], doubled
+  double all = 0, inside = 0;  // twice the areas [m²]
   for (const auto& [a, b, c] : triangles.subspan(range.first, range.count)) {
     const double area = (positions[b] - positions[a]).cross(positions[c] - positions[a]).norm();
     const Vec2 middle = ((painted.places[a] + painted.places[b] + painted.places[c]) / 3.0f).cast<double>();
@@ -59,7 +60,7 @@ Vector3f MeanColors::of(const frame::Appearance& look, bool back, double fractio
   const bool cuts = paint.alpha == frame::Paint::Alpha::cutout;
   const auto [known, added] = means_.try_emplace({paint.texture, cuts}, Vector3f::Zero());
   if (added) {
-    // A sample of some 500 to 1,000 pixels is accurate enough.
+    // Averages a sample of about 500 to 1,000 pixels, which is accurate enough.
     const std::size_t pixels = paint.texture->rgba.size() / 4, step = std::max<std::size_t>(1, pixels / 499);
     Vec3 sum = Vec3::Zero();
     double covered = 0;
@@ -155,7 +156,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
   if (!any) return result;
   point = point + ray_start(point) * normal;
 
-  Lanes on_surface, on_floor;  // 1 or 0
+  Lanes on_surface, on_floor;  // 1 if the ray ends there, else 0
   for (int lane = 0; lane < kLanes; ++lane) {
     on_surface[lane] = ends[lane] == End::surface ? 1.0f : 0.0f;
     on_floor[lane] = ends[lane] == End::floor ? 1.0f : 0.0f;
@@ -168,7 +169,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     shadow.wanted = mask(on_surface + on_floor > 0 && strength > 0);
     if ((shadow.wanted == 0).all()) continue;
     const Lanes dark = rays_->blocked(shadow);
-    // The surroundings already contain the fully lit floor, so that a shadow on the floor subtracts light.
+    // The surroundings already contain the fully lit floor. Therefore, a shadow on the floor subtracts light.
     const Lanes added =
         (shadow.wanted != 0).select(strength * (on_surface - dark * (on_surface + on_floor)), Lanes::Zero());
     result.light.x += added * lamp.packed.color.x();

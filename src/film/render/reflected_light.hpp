@@ -17,16 +17,15 @@
 
 namespace weft::render {
 
-/// Fraction of the area of a painted range on which the picture of its appearance lies. A triangle counts if its middle
-/// is inside the picture along each axis with Wrap::once. `triangles`, `positions`: of the drawn mesh. 1 without a
-/// picture.
+/// Fraction of the area of a painted range that the picture of its appearance covers; 1 if there is no picture. A
+/// triangle is covered if its middle is inside the picture along each axis with Wrap::once. `triangles`, `positions`:
+/// of the drawn mesh.
 double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, std::span<const Triangle> triangles,
                         std::span<const Vec3> positions);
 
-/// Mean linear colours of appearances, of the front or of the `back`. A picture with
-/// Alpha::over_color is ignored. In a picture with Alpha::cutout, each pixel counts by its opacity.
-/// Each picture is averaged only once. `fraction`: covered_fraction() of a picture with Alpha::ignored
-/// and Wrap::once, which lies over the colour.
+/// Computes mean linear colours of appearances, of the front or of the `back`. Pictures with Alpha::over_color are
+/// ignored. In pictures with Alpha::cutout, each pixel counts in proportion to its opacity. Each picture is averaged
+/// only once. `fraction`: covered_fraction(), for pictures with Alpha::ignored and Wrap::once; these cover the colour.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back, double fraction = 1);
@@ -44,11 +43,12 @@ struct ReflectingSurface {
   std::vector<Range> ranges;  ///< the last range also covers all further triangles
 };
 
-/// `look`: appearance of the whole surface. `plain`: all parts have the appearance `look`. `dark`: all colours are
-/// black.
+/// Albedo of a surface. `look`: appearance of the whole surface. `plain`: all parts have the appearance `look`. `dark`:
+/// all colours are black.
 ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
                                      bool dark, MeanColors& colors);
 
+/// Lamps, surroundings and albedo of a picture, from which the light along rays follows.
 class ReflectedLight {
  public:
   /// `surfaces`: one per mesh of `rays`, in the same order. `floor_color`: linear. `scene_size`: see ray_start() [m].
@@ -65,9 +65,9 @@ class ReflectedLight {
 
   struct Arriving {
     Lanes open = Lanes::Zero();  ///< 1 if the ray hits no surface; the floor counts as part of the surroundings
-    /// The radiance along the ray is `open` times that of the surroundings, plus `light`. If the
-    /// ray hits a surface, `light` is all of the radiance. If the ray hits shaded floor, `light` is
-    /// negative, because the surroundings contain the floor fully lit.
+    /// The radiance along the ray is `open` times that of the surroundings, plus `light`. If the ray hits a surface,
+    /// `light` is all of the radiance. If the ray hits shaded floor, `light` is negative, because the surroundings
+    /// contain the fully lit floor.
     Lanes3 light;
   };
   Arriving arriving(const Rays& rays) const;

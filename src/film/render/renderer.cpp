@@ -26,10 +26,10 @@
 namespace weft::render {
 namespace {
 
-// Cloth is refined up to this number of triangles of all cloths; finer meshes are smooth enough.
+// Cloth is refined if all cloths together have at most this number of triangles; finer meshes are smooth enough.
 constexpr std::size_t kMaxRefinedTriangles = 20000;
 constexpr std::size_t kMaxPeeledLayers = 4;  // maximum number of drawn layers of translucent cloth
-// Motion blur averages so many sharp pictures (at most `instants`) that each covers at most this motion [pixels].
+// Motion that one sharp picture of motion blur may cover [pixels]; determines how many such pictures are averaged.
 constexpr double kMaxMotionPerPicture = 5;
 constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor / (subjects' radius + distance of the eye)
 
@@ -98,8 +98,8 @@ struct Renderer::Impl {
   std::optional<DataPasses> data;
   image::Layers layers;
 
-  // The picture and what it shows, lowest row first. If layers are requested, also the picture before antialiasing
-  // (`unsmoothed`) and the picture with unshadowed floor (`open_floor`). They are members to reuse their memory.
+  // The picture, and distance and surface of each pixel (`seen`), lowest row first. For layers, also the picture before
+  // antialiasing (`unsmoothed`) and with unshadowed floor (`open_floor`). They are members to reuse their memory.
   std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
   std::vector<Seen> seen;
 
@@ -240,7 +240,7 @@ ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
   const std::vector<Shading::Material> looks = materials(plan);
   for (std::size_t i = 0; i < looks.size(); ++i)
     surfaces.push_back(reflecting_surface(passes->surfaces[i], looks[i].appearance, plan.lighting.style.plain,
-                                          heat > 0 && looks[i].cloth, colors));  // heat colours reflect nothing
+                                          heat > 0 && looks[i].cloth, colors));  // heat colours reflect no light
   Eigen::Vector3f floor_color = Eigen::Vector3f::Zero();
   if (plan.floor)
     floor_color = (plan.lighting.style.floor_tint * image::linear_from_srgb(plan.floor->look.color)).cast<float>();
@@ -353,7 +353,7 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
   }
 }
 
-/// `upright`: direction that is upright in the picture.
+/// Prepares a snapshot for the passes. `upright`: direction that is upright in the picture.
 Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera,
                              const Vec3& upright) const {
   Plan plan;
@@ -374,7 +374,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const frame::Camera camera = choose_camera(snapshot);
   const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
-  // If layers are requested, the picture stays sharp: compositors blur it, using the layers of motion and depth.
+  // If layers are requested, the picture stays sharp: compositing programs blur it by the layers of motion and depth.
   if (data || (shutter <= 0 && camera.aperture <= 0)) {
     const Plan plan = plan_of(snapshot, camera, up_of(snapshot));
     draw_sharp(snapshot, plan);

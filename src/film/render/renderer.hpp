@@ -15,11 +15,12 @@ namespace weft::render {
 enum class Quality { draft, preview, final };
 enum class Backend { automatic, osmesa, egl };
 
+/// Settings of a Renderer.
 struct Settings {
-  int width = 1280, height = 720;  ///< pixels
+  int width = 1280, height = 720;  ///< [pixels]
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;          ///< name; empty: the scene's first camera; if it has none, automatic_camera()
+  std::string camera;          ///< name; empty: the scene's first camera or, without cameras, automatic_camera()
   int threads = 0;             ///< number of threads of the software rasteriser; 0: its default
   bool layers = false;         ///< whether layers() will be called; pictures are then sharp, without blur
   bool needs_image16 = false;  ///< whether the caller will call image16(); unused by Renderer
@@ -34,7 +35,7 @@ struct DrawTimes {
   double wall_seconds = 0, cpu_seconds = 0;
 };
 
-/// Owns an OpenGL context, which keeps the data that do not change during a run. Use from a single thread.
+/// Owns an OpenGL context, and the OpenGL data that do not change during a run. Only one thread may use a renderer.
 class Renderer {
  public:
   /// Throws as make_context() does, and Error(usage) if a side is below 1 or above the limit of OpenGL.
@@ -49,14 +50,13 @@ class Renderer {
   /// null: no motion. Throws as find_camera() and heat_shown() do, and Error(internal) if OpenGL
   /// reports an error or `snapshot` is inconsistent.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
-  /// Moves out the last picture as linear layers for compositors. The result has no channels
-  /// without Settings::layers, and in a second call for the same picture. Channels R, G, B and A
-  /// hold the surfaces alone, premultiplied.
-  /// Channels picture.R, picture.G and picture.B hold the picture with floor and backdrop. If there is a floor and no
-  /// translucent cloth, channel caught.A holds the alpha of the surfaces over the floor's shadow (black, with the
-  /// fraction of blocked light as alpha). All layers of DataPasses follow.
+  /// Moves out the last picture as linear layers for compositing programs. The result has no channels without
+  /// Settings::layers, and in a second call for the same picture. Channels R, G, B and A: the surfaces alone,
+  /// premultiplied. Channels picture.R, picture.G and picture.B: the picture with floor and backdrop. Channel caught.A,
+  /// only if there is a floor and no translucent cloth: alpha of the surfaces over the floor's shadow, which is black
+  /// with the fraction of blocked light as alpha. The channels of DataPasses follow.
   image::Layers layers();
-  /// The last picture with 16 bits per channel, not dithered.
+  /// The last picture with 16 bits per channel, without dithering.
   image::Image16 image16();
   DrawTimes last_times() const;
 

@@ -11,14 +11,15 @@
 namespace weft::render {
 namespace {
 
-// Number of rows of the grid on which occlusion is computed.
+// Number of rows of CoverageGrid.
 constexpr int kRows = 72;
-// Limit on the number of its columns, which bounds its memory (42 MB); reached by pictures 910 times as wide as high.
+// Maximum number of columns of CoverageGrid, which limits its memory to 42 MB. A picture needs more columns if it is
+// more than 910 times as wide as high.
 constexpr int kMaxColumns = 65536;
 // Value of v in Saliency::motion at which the result is 1/2 [√(area of the cloth) per second].
 constexpr double kHalfScoreRate = 0.5;
 
-/// A coarse depth buffer: the nearest surface in each cell.
+/// A coarse depth buffer: for each cell, the nearest surface.
 class CoverageGrid {
  public:
   CoverageGrid(const View& view, double aspect)
@@ -88,7 +89,8 @@ double coverage(const frame::FrameSnapshot& snapshot, const std::string& camera_
   return cells.cloth_fraction();
 }
 
-/// Total area of a surface, and the sum of its area vectors, whose length equals the area only if the surface is flat.
+/// Total area of a surface [m²], and the sum of its area vectors [m²], whose length equals the area only if the surface
+/// is flat.
 struct Facing {
   double area = 0;
   Vec3 sum = Vec3::Zero();

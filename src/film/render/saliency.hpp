@@ -1,4 +1,4 @@
-// Rates how much a frame shows, to choose the most informative frame of a run.
+// Measures how much of its cloth a frame shows, to choose the most informative frame of a run.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ struct Saliency {
   double score() const { return coverage * (1 + folding + motion); }
 };
 
-/// `previous`: the frame that is `seconds` earlier, with the same surfaces; null for the first frame. `camera`: as in
-/// render::Settings. A computed camera is derived from `snapshot` alone.
+/// Computes the saliency of `snapshot`. `previous`: the frame that is `seconds` earlier, with the same surfaces; null
+/// for the first frame. `camera`: as in render::Settings. A computed camera is derived from `snapshot` alone.
 Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
                      const std::string& camera, double aspect);
 

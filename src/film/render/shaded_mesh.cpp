@@ -10,8 +10,9 @@
 namespace weft::render {
 namespace {
 
-// Margin added to the crease angle [degrees]. The normals of a regular prism can differ by exactly the crease angle (12
-// faces: 30 degrees). Without the margin, rounding would decide in each frame whether such an edge is sharp.
+// Margin that is added to the crease angle [degrees]. Neighbouring faces of a regular prism can differ by exactly the
+// crease angle (12 faces: 30 degrees). Without the margin, rounding would decide in each frame whether such an edge is
+// sharp.
 constexpr double kCreaseMargin = 0.37;
 
 Vec3 unit_or_up(const Vec3& sum) {

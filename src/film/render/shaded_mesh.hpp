@@ -27,7 +27,8 @@ class CornerMap {
   std::vector<std::int32_t> first_{0}, corners_;
 };
 
-/// True if every edge belongs to two triangles with opposite orientation, so that the surface has an inside.
+/// Whether every edge belongs to two triangles with opposite directions of the edge, so that the surface encloses a
+/// volume.
 bool is_closed(std::span<const Triangle> triangles);
 
 /// Twice the area times the unit normal of each triangle [m²]; the normal is on the side from which the corners run

@@ -18,7 +18,7 @@ std::vector<std::string> shading_defines(const LightSet& lights, const std::vect
 // Cloth thicker than kTopstitchedThickness [m] has topstitching on both sides of a seam, at kTopstitchDistance [m].
 constexpr double kTopstitchedThickness = 0.7e-3, kTopstitchDistance = 4e-3;
 
-// Gloss of cotton. Up to this Finish::gloss, highlights of threads are below half a level of 255 and not computed.
+// Gloss of cotton. Up to this Finish::gloss, highlights of threads are below half a level of 255; shaders skip them.
 constexpr double kMaxMatteGloss = 0.1;
 
 Texture make_heat_colors(const Gl& gl) {
@@ -41,7 +41,7 @@ float clip_of(int pixel, int size) {
   return 2 * static_cast<float>(pixel) / static_cast<float>(size) - 1;
 }
 
-/// Attribute 0: two coordinates in clip space.
+/// Describes attribute 0 of a vertex array: two coordinates in clip space.
 void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corners) {
   gl.VertexArrayVertexBuffer(array.name(), 0, corners.name(), 0, sizeof(Eigen::Vector2f));
   gl.EnableVertexArrayAttrib(array.name(), 0);
@@ -49,8 +49,8 @@ void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corn
   gl.VertexArrayAttribBinding(array.name(), 0, 0);
 }
 
-/// The grid for slowly varying colours: cells with two triangles each. If fades_steeply(), the grid
-/// is too coarse for the floor.
+/// The grid on which slowly varying colours are interpolated: cells of two triangles each. It is too coarse for the
+/// floor if fades_steeply() is true.
 struct Grid {
   std::vector<Eigen::Vector2f> corners;
   std::vector<GLuint> triangles;
@@ -78,7 +78,7 @@ frame::Appearance clay(const frame::Appearance& look) {
   frame::Appearance plain = look;
   plain.color = Vec3(0.74, 0.72, 0.69);
   plain.back_color = Vec3(0.60, 0.58, 0.56);
-  plain.paint = {};  // also in reflected light
+  plain.paint = {};  // reflected light has no pictures either
   plain.roughness = 0.7;
   plain.thread_spacing = 0;
   plain.finish = {0, 0.5, 0.2, 0};
@@ -132,8 +132,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 }
 
 // The light of a sun on open floor, and the fading of the floor into the backdrop, vary so slowly over the picture that
-// they can be interpolated on a grid. Checkers, pictures, reflections and steep fading cannot. The light of spots is
-// interpolated only in qualities with spots_on_grid, because the edges of their cones become inaccurate.
+// they can be interpolated on a grid. Checkers, pictures, reflections and steep fading vary too fast. The light of
+// spots is interpolated only in qualities with spots_on_grid, because the edges of the cones become inaccurate.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting && !features.steep) {
@@ -231,7 +231,7 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
     corners.insert(corners.end(), {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
   }
   upload<Eigen::Vector2f>(*gl_, area_vertices_, corners);
-  // Marks only floor: no other class has both lower bits set.
+  // Marks only pixels of the floor, because no other class has both lower bits set.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::shaded_floor), static_cast<GLuint>(PixelClass::floor));
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   gl_->BindVertexArray(area_array_.name());
@@ -289,7 +289,7 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   bind();
   mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  // The stencil test makes the rasteriser skip blocks without pixels of the class.
+  // With the stencil test, the rasteriser skips blocks without pixels of the class.
   const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
     use_floor(program, features);
@@ -340,7 +340,7 @@ double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stag
       for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
     }
   }
-  // If the largest value is 0, all cloth has the coldest colour with any scale.
+  // If the largest value is 0, all cloth has the coldest colour; the scale then has no effect.
   return hottest > 0 ? 1 / hottest : 1;
 }
 

@@ -22,6 +22,7 @@ class Shading {
 
   Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry);
 
+  /// Optical properties of one surface.
   struct Material {
     frame::Appearance appearance;
     bool cloth = false;
@@ -40,19 +41,18 @@ class Shading {
     bool steep = false;       ///< the floor fades too steeply for the grid: fades_steeply() over kGridCell
     bool sheer = false;       ///< cloth writes its opacity
     bool glossy = false;      ///< some cloth has shiny threads; set by draw(), as are the next three
-    bool metal = false;       ///< something other than cloth is metal or has a clear coat
-    bool skin = false;        ///< something is skin
-    bool heat = false;        ///< heat replaces the colours of cloth
+    bool metal = false;       ///< some surface other than cloth is metal or has a clear coat
+    bool skin = false;        ///< some surface has skin
+    bool heat = false;        ///< the colour scale of heat replaces the colours of cloth
     auto operator<=>(const Features&) const = default;
   };
   /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture.
   /// Does nothing if the floor has no picture. Call before draw().
   void set_floor(const std::optional<Floor>& floor, double tint);
-  /// Computes the colours of the picture. `materials`: in the order of the surfaces. `heat_scale`:
-  /// 1 / value at the hot end of the scale, or 0 if cloth has its own colours. `subjects`: area
-  /// that contains all surfaces. Outside `shaded_floor`, the floor is drawn without shadow,
-  /// occlusion and reflected light. The frame and light blocks, the textures of TracedLight and
-  /// those of the geometry buffer must be bound.
+  /// Computes the colours of the picture. `materials`: in the order of the surfaces. `heat_scale`: result of
+  /// heat_scale(). `subjects`: area that contains all surfaces. Outside `shaded_floor`, the floor is drawn without
+  /// shadow, occlusion and reflected light. The frame and light blocks, the textures of TracedLight and those of the
+  /// geometry buffer must be bound.
   void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
             std::span<const PixelArea> shaded_floor);
   /// Draws the whole floor again, without shadow, occlusion and light from other surfaces. Call
@@ -101,22 +101,22 @@ class Shading {
 /// visible through them.
 double opacity_of(const frame::Surface& surface);
 
-/// Whether a body shows skin where no picture covers its colour: a character, such as the mannequin, whose first part
-/// has Alpha::over_color.
+/// Whether a body shows skin where no picture covers its colour. True for characters whose first part has
+/// Alpha::over_color, such as the mannequin.
 bool is_skin(const frame::Surface& surface);
 
 /// Replaces colours, roughness and finish of an appearance with those of clay, without picture,
 /// threads, hem, metal and coat.
 frame::Appearance clay(const frame::Appearance& look);
 
-/// `plain`: clay in place of the colours of the surface.
+/// The material of a surface. `plain`: clay in place of its own colours.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
 /// The heat to show in a frame: none for the looks `clay` and `wire`, strain for the look `strain`, else Stage::heat.
 /// Throws Error(usage) if the look is `strain` and the frame has no strain.
 frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
-/// 1 / value at the hot end of the scale; 0 if no heat is drawn.
+/// 1 / the value of heat that has the hottest colour; 0 if no heat is drawn.
 double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
 
 }  // namespace weft::render

@@ -11,10 +11,10 @@ namespace weft::render {
 namespace {
 
 constexpr int kTile = 8;  // side of the tiles of dilate_motions() [pixels]
-// Longer motions are shortened to this length [pixels]. A smear extends by half of the motion to each side, thus by at
-// most one tile.
+// Maximum length of a motion [pixels]; longer motions are shortened. A smear extends by half of the motion to each
+// side, thus by at most one tile.
 constexpr float kMaxMotion = 2 * kTile;
-// Shorter motions [pixels] are not smeared, because the smear would be no wider than an antialiased edge.
+// Minimum length of a motion that is smeared [pixels]; a shorter smear would be no wider than an antialiased edge.
 constexpr float kMinMotion = 1.2f;
 
 /// Position in the picture [pixels], from the lower left corner; z: 1 / distance [1/m]. All are 0 if `position` is
@@ -112,11 +112,11 @@ void Smear::dilate_motions() {
                tiles[static_cast<std::size_t>(other) * columns + beside]);
 }
 
-/// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction
-/// Filter for Plausible Motion Blur", 2012. Compares the surface at the sample with the surface at
-/// the pixel. If the nearer of the two moves as far as from the sample to the pixel, the sample
-/// takes the colour at its own position, because this surface crosses the pixel or uncovers the
-/// sample. Else, the sample takes the pixel's colour.
+/// Averages samples along a motion through pixel (x, y), after McGuire et al., "A Reconstruction Filter for Plausible
+/// Motion Blur", 2012. Each sample compares the surface at its own position with the surface at the pixel. If the
+/// nearer of the two moves at least as far as the distance between sample and pixel, the sample has the colour at its
+/// own position: either the surface at the sample crosses the pixel, or that at the pixel uncovers the sample.
+/// Otherwise, the sample has the colour of the pixel.
 Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
                                    std::span<const Eigen::Vector3f> sharp) const {
   const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
@@ -129,9 +129,8 @@ Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
     const int to_x = std::clamp(static_cast<int>(std::lround(static_cast<float>(x) + t * motion.x())), 0, width_ - 1),
               to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
     const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
-    // `extent`: distance that the nearer surface moves to either side [pixels]; at equal distances from the eye, that
-    // of the faster one. The weight `share` of the sample's own colour falls from 1 to 0 over one pixel around
-    // `extent`.
+    // `extent`: distance that the nearer surface moves to either side [pixels]; of the faster surface if both are
+    // equally near. `share`: weight of the colour at the sample; it falls from 1 to 0 over one pixel around `extent`.
     constexpr float kSame = 1.01f;
     const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
     const bool before = motions_[there].nearness > kSame * motions_[here].nearness,

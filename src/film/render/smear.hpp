@@ -1,5 +1,5 @@
-// Motion blur: the mean of several sharp pictures. Each sharp picture is first smeared: each pixel
-// is averaged along the longest motion of the surfaces near it. Thus few pictures suffice.
+// Motion blur: the mean of several sharp pictures. Before averaging, each sharp picture is smeared: each pixel becomes
+// a mean along the longest motion of the surfaces near it. Thus few pictures are enough.
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 
 namespace weft::render {
 
-/// Motion of what a pixel shows [pixels], and 1 / its distance [1/m]; both are 0 for floor and backdrop.
+/// Motion of the point that a pixel shows [pixels], and 1 / its distance [1/m]; both are 0 for floor and backdrop.
 struct PixelMotion {
   Eigen::Vector2f motion = Eigen::Vector2f::Zero();
   float nearness = 0;

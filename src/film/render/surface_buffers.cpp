@@ -9,7 +9,7 @@
 namespace weft::render {
 namespace {
 
-/// Whether pictures cut holes into the surface. Back faces are visible through holes.
+/// Whether pictures cut holes into the surface, through which back faces are visible.
 bool has_holes(const frame::Surface& surface) {
   const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
   return cuts(surface.appearance) ||
@@ -68,7 +68,7 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
-  // Unchanged surfaces are not uploaded again, because most obstacles do not move.
+  // Skips unchanged surfaces, because most obstacles do not move.
   if (!detail_.rims) rim = 0;
   if (has_corner_map_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_width_) return;
   rim_width_ = rim;
@@ -131,7 +131,7 @@ void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
   }
 }
 
-/// Appends the strips along borders after all other vertices and triangles.
+/// Appends the strips along borders (RimStrip) after all other vertices and triangles.
 void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   // `points`: the positions of the surface vertices and, if the surface is refined, the midpoints
   // of the rims.
@@ -200,7 +200,7 @@ void SurfaceBuffers::upload_trims() {
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
   // The strips along borders must show neither the fold of the hem nor its stitches. Therefore the strips get a
-  // distance from the border at which there is neither: farther than the fold, nearer than the stitches.
+  // distance from the border beyond the fold and before the stitches: kPlain times the width of the hem.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);

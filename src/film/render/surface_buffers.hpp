@@ -20,8 +20,8 @@ struct Detail {
   bool trims = false;    ///< hems and seams
 };
 
-/// Vertex attributes, numbered as in geometry.vert: 0: position, 1: normal, 2: rest (u, v), 3: heat; if the surface is
-/// painted, 4: paint coordinates; if it has trims, 5 and 6: Trim::distance and Trim::along.
+/// One surface in GL buffers. Vertex attributes, numbered as in geometry.vert: 0: position, 1: normal, 2: rest (u, v),
+/// 3: heat; if the surface is painted, 4: paint coordinates; if it has trims, 5 and 6: Trim::distance and Trim::along.
 class SurfaceBuffers {
  public:
   SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail);
@@ -40,8 +40,8 @@ class SurfaceBuffers {
   void draw(const PaintedRange& range) const;
   /// The painted mesh; null if nothing is painted.
   const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }
-  /// Whether only front faces are visible from `eye`: the surface is closed (and neither cloth nor perforated by
-  /// pictures), its normals point outwards, and the eye is outside its bounding box.
+  /// Whether only front faces are visible from `eye`. True if the surface is closed, is not cloth, has no holes, its
+  /// normals point outwards, and the eye is outside its bounding box.
   bool shows_only_fronts(const Vec3& eye) const { return faces_outward_ && !bounds_.contains(eye); }
   /// World positions of the drawn vertices [m], and the drawn triangles.
   std::span<const Vec3> positions() const { return positions_; }

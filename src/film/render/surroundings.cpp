@@ -144,7 +144,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
 }
 
 Irradiance irradiance_of(const Surroundings& surroundings) {
-  // Integrates over 24 x 48 cells of the sphere, uniform in height. They suffice, because the integrand is smooth.
+  // Sums over 24 x 48 cells of the sphere with equal areas; these are enough, because the integrand is smooth.
   constexpr int kRows = 24, kColumns = 48;
   constexpr double kPi = std::numbers::pi;
   // Squared normalisation factors of the harmonics, times the factors of the clamped cosine (pi, 2 pi / 3 and pi / 4),

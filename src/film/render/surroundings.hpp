@@ -14,14 +14,14 @@ namespace weft::render {
 struct Style {
   Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface
   double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
-  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon; if this is a grey: a factor on the colour of open floor
-  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above; if `horizon` is a grey: a factor as well
-  double glow = 0;                ///< fraction by which the backdrop darkens from behind the subjects to far from them
+  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon; if it is grey: a factor on the colour of open floor
+  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above; if `horizon` is grey: also a factor
+  double glow = 0;                ///< fraction by which the backdrop is darker far from the subjects than behind them
   double floor_tint = 1;          ///< factor on the colour of the floor
   double floor_roughness = 1;     ///< upper limit on the roughness of a floor, unless the floor is fully matte (1)
-  double toe = 0;                 ///< linear light below which tones are darkened, as film does; 0: unchanged
-  bool exposes = true;            ///< increases direct light until floor shows its own colour, within limits (expose())
-  bool plain = false;             ///< all surfaces are clay, without own colours
+  double toe = 0;                 ///< linear light below which tones are darkened, as on film; 0: none
+  bool exposes = true;            ///< increases direct light, within limits, until floor has its own colour (expose())
+  bool plain = false;             ///< draws all surfaces as clay, without their own colours
   bool edges = false;             ///< draws the edges of faces
 };
 /// The style of the look, with the sky colour and intensity of `stage` if these are set.

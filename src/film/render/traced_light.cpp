@@ -13,18 +13,19 @@ namespace {
 using Eigen::Vector2f, Eigen::Vector3f;
 using Kind = PixelPoints::Kind;
 
-constexpr float kGoldenAngle = 2.39996323f;
-constexpr std::size_t kRowsAtOnce = 8;
-constexpr int kTurns = 64;        // number of rotations of the points on a lamp to which rays are traced
-constexpr int kFirstRays = 1;     // rays per point of the first pass, which finds penumbrae
-constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
-constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
-constexpr int kMirrorRays = 4;
-// Shadow rays are traced only if the cosine between normal and light is above this value (on the floor: above 0). It is
-// negative, because skin shows light slightly beyond the terminator (surface.frag). From cloth, rays are always traced,
-// because light passes through it.
+constexpr float kGoldenAngle = 2.39996323f;  // [rad]
+constexpr std::size_t kRowsAtOnce = 8;       // chunk of parallel loops [rows]
+constexpr int kTurns = 64;                   // number of rotations of the points on a lamp to which rays are traced
+constexpr int kFirstRays = 1;                // rays per point of the first pass, which finds penumbrae
+constexpr int kFloorTile = 16;               // side of a tile of shaded floor [pixels]
+constexpr int kPenumbraTile = 8;             // side of a tile in which penumbrae are searched [points]
+constexpr int kMirrorRays = 4;               // rays per point for reflections of surfaces
+// Shadow rays are traced only if the cosine between normal and light is above this value (on the floor: above 0). The
+// value is negative, because skin is lit slightly beyond the terminator (surface.frag). For cloth, shadow rays are
+// always traced, because light passes through it.
 constexpr float kMinShadowCosine = -0.2f;
-// Changes of the floor's light below this value are ignored: they are below half a level of 255.
+// Changes of the floor's light up to this value are ignored, because they change colours by less than half a level of
+// 255.
 constexpr float kMinFloorChange = 0.002f;
 
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
@@ -73,9 +74,9 @@ void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
 }
 
 /// spread(spread_number(x, y)) is a pair of numbers in [0, 1) for point (x, y). The 25 pairs of a block of 5 x 5 points
-/// are evenly spread. Each of 64 kinds of blocks shifts these pairs differently, by the R2 sequence (Roberts, "The
-/// Unreasonable Effectiveness of Quasirandom Sequences", 2018). Without shifts, the same few directions would cause the
-/// same error in all blocks.
+/// are evenly spread. Each block shifts its pairs by one of 64 terms of the R2 sequence (Roberts, "The Unreasonable
+/// Effectiveness of Quasirandom Sequences", 2018). Without shifts, the same 25 directions would cause the same error in
+/// all blocks.
 constexpr int kSpreads = 25 * 64;
 int spread_number(int x, int y) {
   const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence: a large change of both numbers
@@ -102,10 +103,9 @@ std::vector<Vector3f> cosine_directions(int rays) {
   return all;
 }
 
-/// Sets `wanted` to `known` in the tiles that may contain penumbrae, and to 0 elsewhere. These are
-/// the tiles in which two known values differ or a value is between 0 and 1, and their neighbours.
-/// Whole tiles are marked, because near the rim of a penumbra the results of single rays are the
-/// same at most points.
+/// Sets `wanted` to `known` in the tiles that may contain penumbrae, and to 0 elsewhere. A tile may contain a penumbra
+/// if, in it or in a neighbour, two known values differ or a value is between 0 and 1. The unit is a tile and not a
+/// point, because near the rim of a penumbra the single rays of most points have the same result.
 void find_penumbrae(const Plane& lit, const Plane& known, const PixelPoints& points, Plane& wanted) {
   const int width = points.width(), height = points.height();
   const int columns = (width + kPenumbraTile - 1) / kPenumbraTile, rows = (height + kPenumbraTile - 1) / kPenumbraTile;
@@ -228,7 +228,7 @@ void TracedLight::trace_shadows(const ReflectedLight& light) {
 void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plane& lit) {
   const PixelPoints& points = lit_points();
   const int width = points.width(), height = points.height(), rays = quality_.shadow_rays;
-  // `places`: target of each ray, for each rotation: a direction to a sun, or a position on a spot.
+  // `places`: target of each ray for each rotation: a direction toward the sun, or a position on the spot lamp.
   const Vector3f axis = lamp.packed.toward_light.head<3>();
   const Vector3f center = lamp.is_spot() ? Vector3f(lamp.packed.position.head<3>()) : axis;
   const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.reach() : 1);
@@ -337,7 +337,7 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
   upload(open_, points, open_texture_, 1, {0, 0, 0, 1});
 }
 
-/// Traces rays around the mirrored direction of view. The rays spread more widely from rougher surfaces.
+/// Traces rays around the mirrored direction of view. The rougher the surface, the wider the rays are spread.
 void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Surface> surfaces, const Vector3f& eye) {
   const PixelPoints& points = open_points_;
   mirrored_.resize(4, Plane(points.width(), points.height(), 0));

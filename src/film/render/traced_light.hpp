@@ -14,6 +14,7 @@
 
 namespace weft::render {
 
+/// Traces the rays of a picture, and makes textures of the results for Shading.
 class TracedLight {
  public:
   /// For pictures of width x height pixels.

@@ -6,7 +6,7 @@ ViewAxes view_axes(const Vec3& forward, const Vec3& up) {
   ViewAxes axes;
   axes.forward = forward.squaredNorm() > 0 ? forward.normalized() : Vec3(-up.unitOrthogonal());
   Vec3 right = axes.forward.cross(up);
-  // Tolerance for directions from camera files, which have single precision.
+  // Tolerance for parallel directions, because camera files have single precision.
   constexpr double kMaxSineOfVertical = 1e-6;
   if (right.norm() < kMaxSineOfVertical * up.norm()) right = Vec3::UnitX();
   axes.right = right.normalized();

@@ -14,7 +14,7 @@ inline double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }
 
-/// Orthonormal axes of a viewer; forward points into the picture.
+/// Orthonormal axes of a viewer; `forward` points into the picture.
 struct ViewAxes {
   Vec3 right, up, forward;
 };

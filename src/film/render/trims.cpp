@@ -14,14 +14,14 @@ std::uint64_t key(Index a, Index b) {
 
 constexpr double kMaxSmoothCosine = 0.87;  // cosine of 30 degrees; a border that turns by more has a corner
 
-/// Assigns the two kinds of borders alternately to the sides between corners. On a closed border
-/// with corners, the first side begins at a corner. If the number of sides is odd, the first and
-/// last side have the same kind.
+/// Assigns the two kinds of borders alternately to the sides of a border; a side ends at corners. If the border is
+/// closed and has corners, its first side begins at a corner; if its number of sides is odd, the first and the last
+/// side have the same kind.
 template <class Segment>
 void assign_border_kinds(std::vector<Segment>& segments, std::span<const std::size_t> chain, std::span<const Vec2> uv) {
   const auto direction = [&](std::size_t k) { return Vec2(uv[segments[chain[k]].b] - uv[segments[chain[k]].a]); };
   const auto corner_before = [&](std::size_t k) {
-    // Edges on different sides of a seam do not form a corner.
+    // Edges that do not meet at one place are on different sides of a seam, and form no corner.
     if (segments[chain[(k + chain.size() - 1) % chain.size()]].b != segments[chain[k]].a) return false;
     const Vec2 before = direction((k + chain.size() - 1) % chain.size()), after = direction(k);
     return before.dot(after) < kMaxSmoothCosine * before.norm() * after.norm();
@@ -93,7 +93,7 @@ std::vector<Triangle> Trims::find_places(const frame::Surface& surface) {
   places_of_.resize(surface.uv.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      constexpr double kSame = 1e-7;  // [m]
+      constexpr double kSame = 1e-7;  // tolerance for equal places [m]
       const auto vertex = static_cast<std::size_t>(triangles[t][k]);
       const Vec2 place = by_corner ? surface.paint_uv[t][k] : surface.uv[vertex];
       const std::int32_t part = by_part ? surface.part_of_triangle[t] : 0;
@@ -114,7 +114,7 @@ std::vector<Triangle> Trims::find_places(const frame::Surface& surface) {
 
 Trims::Trims(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
-  std::unordered_map<std::uint64_t, std::array<std::size_t, 2>> owner;  // of each directed edge: triangle and corner
+  std::unordered_map<std::uint64_t, std::array<std::size_t, 2>> owner;  // for each directed edge: triangle and corner
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       owner.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), std::array{t, k});
@@ -227,7 +227,7 @@ Trim Trims::at(Index vertex) const {
 
 Trim Trims::middle(Index a, Index b) const {
   if (places_of_.empty()) return {};
-  // Of all pairs of places of the two vertices, the ends of the edge are the closest pair in the same panel.
+  // Each vertex may have several places. The ends of the edge are the two closest places in the same panel.
   std::array<Index, 2> ends{places_of_[a].front(), places_of_[b].front()};
   double length = kNoTrim;
   for (const Index from : places_of_[a]) {
@@ -270,7 +270,7 @@ RimStrip rim_strip(std::span<const Trims::Rim> rims, std::span<const Vec3> posit
     if (!added) return entry->second;
     const Vec3 sum = outward[v], out = sum.norm() > 0 ? Vec3(sum.normalized()) : normals[v];
     strip.positions.insert(strip.positions.end(), {positions[v], positions[v] - thickness * normals[v]});
-    // Rounded normals, as on a fold.
+    // Normals as on a rounded fold.
     strip.normals.insert(strip.normals.end(), {(out + normals[v]).normalized(), (out - normals[v]).normalized()});
     strip.source.insert(strip.source.end(), {v, v});
     return entry->second;

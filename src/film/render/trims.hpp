@@ -79,10 +79,9 @@ struct RimStrip {
   std::vector<std::int32_t> owner;  ///< by triangle: the triangle of the surface at its border
 };
 
-/// Width of the strips [m]: the thickness of the cloth, doubled if the cloth has a hem. If this is
-/// less than 2.5 pixels at the vertex nearest to the eye, in a picture with `rows` rows, the width
-/// is reduced. If less than a pixel would remain, the result is 0, because thinner strips appear as
-/// separate dots.
+/// Width of the strips [m]: the thickness of the cloth, doubled if the cloth has a hem. The width is reduced if it is
+/// less than 2.5 pixels at the vertex nearest to the eye, in a picture with `rows` rows. If the reduced width is less
+/// than a pixel, the result is 0, because such strips would appear as separate dots.
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows);
 
 /// The strips of a surface in one frame, `thickness` [m] wide; `normals` by vertex.

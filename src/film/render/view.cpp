@@ -15,9 +15,9 @@ const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
 // Ratio of the light from below to the light of open floor. It is below 1, because far floor fades into a darker
 // backdrop.
 constexpr double kGroundLight = 0.8;
-// Factor on the light from below in reflections. It is below 1, because floor near glossy surfaces is often shaded.
+// Factor on the light from below in reflections. It is below 1, because the floor near glossy surfaces is often shaded.
 constexpr double kReflectedGround = 0.5;
-constexpr double kMaxGain = 1.8;           // limit on the increase of direct light; darker scenes are meant to be dark
+constexpr double kMaxGain = 1.8;           // limit on the increase of direct light; darker scenes stay dark
 constexpr double kMaxWhiteBalance = 0.08;  // limit on the relative change of a channel by the white balance
 
 /// Map from the world to picture coordinates, computed from the corners of a triangle in both.
@@ -129,7 +129,7 @@ Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span
   if (!floor) return {Vec3::Constant(share), 0.8 * style.sky_color};
   Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
-    // The light of spots does not count: distant floor does not receive it.
+    // Ignores spots, because distant floor does not receive their light.
     if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
     direct += share * each.intensity * facing * image::linear_from_srgb(each.color);

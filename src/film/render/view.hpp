@@ -32,14 +32,13 @@ struct View {
   Mat4 view_from_world = Mat4::Identity(), clip_from_world = Mat4::Identity();
 };
 
-/// The view of a camera. `aspect`: width / height of the picture. The near plane is at 0.8 of the
-/// smaller of two distances along the view axis: that of the sphere around `subjects`, and a lower
-/// bound on that of visible floor. But its distance is at least 1 cm, or 1/1000 of the distance of
-/// the far side of this sphere if this is smaller.
+/// The view of a camera. `aspect`: width / height of the picture. The distance of the near plane is 0.8 times the
+/// smaller of two distances along the view axis: that of the sphere around `subjects`, and a lower bound on that of
+/// visible floor. But it is at least 1 cm or, if this is smaller, 1/1000 of the distance of the far side of the sphere.
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
                const std::optional<Floor>& floor);
 
-/// A rectangle of pixels; x and y count from the lower left.
+/// A rectangle of pixels; x and y are counted from the lower left corner of the picture.
 struct PixelArea {
   int x = 0, y = 0, width = 0, height = 0;
 };
@@ -55,7 +54,8 @@ bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Bo
 
 /// The frame block of shaders/frame.glsl, in the layout std140.
 struct FrameUniform {
-  // The matrices are first: Eigen aligns them to 16 or 32 bytes, depending on the instruction set; std140 aligns to 16.
+  // The matrices come first, because Eigen aligns them to 16 or 32 bytes, depending on the instruction set. std140
+  // aligns to 16 bytes.
   Eigen::Matrix4f clip_from_world, view_from_world;
   Eigen::Vector4f eye_world, center_world, up_world, right_world;
   Eigen::Vector4f sky, horizon, ground, backdrop, backdrop_top, viewport, frustum, floor_plane_world, floor_look;

@@ -18,7 +18,7 @@ const char* text(const Gl& gl, GLenum name) {
 }
 
 /// If the program runs from its unpacked archive (`ninja bundle`), makes EGL use the Mesa driver in that archive.
-/// Otherwise, libEGL and Mesa would search system folders for each other's files.
+/// Without this setting, libEGL and Mesa would search system folders for each other's files.
 void use_own_mesa() {
   const std::filesystem::path libraries = own_installation().libraries, vendor = libraries / "egl_vendor.json";
   std::error_code none;
@@ -30,10 +30,10 @@ void use_own_mesa() {
 /// Sets environment variables that Mesa reads once, when the process makes its first context.
 void set_rasteriser_environment(int threads) {
   use_own_mesa();
-  // Without this variable, EGL may use a graphics card, whose pictures differ slightly. Then there
-  // are also no llvmpipe threads, whose time rasteriser_cpu_seconds() measures.
+  // Makes EGL use llvmpipe. On a graphics card, pictures would differ slightly, and rasteriser_cpu_seconds() would find
+  // no llvmpipe threads.
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);
-  // llvmpipe of Mesa 22.3 crashes with 512-bit vectors and 4x multisampling. Its default width always works.
+  // llvmpipe of Mesa 22.3 crashes with 512-bit vectors and 4x multisampling, but not with its default width.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");
   if (width && std::string_view(width) == "512") unsetenv("LP_NATIVE_VECTOR_WIDTH");
   if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);

@@ -10,7 +10,8 @@
 
 namespace weft::render {
 
-/// All functions of one context. Each context has its own table, because each backend has its own functions.
+/// Table of the OpenGL functions of one context. Each context has its own table, because the functions of the backends
+/// differ.
 using Gl = GladGLContext;
 
 /// An OpenGL 4.5 core context. It has no usable default framebuffer: draw only into framebuffers made in it.
@@ -45,14 +46,15 @@ class Context {
 /// call fails. If both libraries fail for `automatic`, throws Error(usage) with both errors.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
-/// CPU seconds used so far by all llvmpipe threads of the process that still run; 0 for other
-/// drivers.
+/// CPU time that all llvmpipe threads of the process have used so far [s]. Threads that have ended do not count. 0 for
+/// other drivers.
 double rasteriser_cpu_seconds();
 
+/// Make a context of one backend, and bind it to the calling thread. Throw as make_context() does.
 std::unique_ptr<Context> make_osmesa_context();
 std::unique_ptr<Context> make_egl_context();
 
-/// Binds a context for a scope.
+/// Binds a context to the calling thread during its own lifetime.
 class CurrentContext {
  public:
   explicit CurrentContext(Context& context) : context_(context) { context_.make_current(); }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kEgl = "libEGL.so.1";
 
-// Declares the few EGL 1.5 names that this file uses. The build thus needs no EGL headers. Values: Khronos registry,
+// The EGL 1.5 types and constants that this file uses; thus the build needs no EGL headers. Values: Khronos registry,
 // egl.xml.
 using EglHandle = void*;
 using EglInt = int;

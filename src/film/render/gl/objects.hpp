@@ -1,4 +1,4 @@
-// Owners of OpenGL objects, which delete the objects. The context must be current on destruction.
+// Owners of OpenGL objects. The destructor of an owner deletes its object; the context must then be current.
 #pragma once
 
 #include <span>
@@ -81,7 +81,7 @@ using ProgramName = GlObject<ProgramKind>;
 /// Makes a texture with one mip level, sampled with `filter` (GL_NEAREST or GL_LINEAR) and clamped to its edge.
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
 
-/// Throws Error(internal) that names `what` if the framebuffer is incomplete.
+/// Throws Error(internal) if the framebuffer is incomplete. `what`: its name in the message.
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what);
 
 /// Replaces the content of a buffer that changes from frame to frame.

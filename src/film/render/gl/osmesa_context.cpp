@@ -1,5 +1,4 @@
-// OSMesa (off-screen Mesa): draws into memory without display or device. Mesa 25.1 and later do not
-// include OSMesa.
+// OSMesa (off-screen Mesa) draws into memory, without display or device. Mesa 25.1 and later do not include OSMesa.
 #include <array>
 #include <cstdint>
 
@@ -12,7 +11,7 @@ namespace {
 
 constexpr const char* kOsMesa = "libOSMesa.so.8";
 
-// Declares the OSMesa 8 names that this file uses. The build thus needs no OSMesa headers. Values: GL/osmesa.h.
+// The OSMesa 8 types and constants that this file uses; thus the build needs no OSMesa headers. Values: GL/osmesa.h.
 using OsmesaHandle = void*;
 constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaProfile = 0x33, kOsmesaCoreProfile = 0x34;
 constexpr int kOsmesaMajorVersion = 0x36, kOsmesaMinorVersion = 0x37;
@@ -50,7 +49,7 @@ class OsmesaContext : public Context {
   void release() override { make_current_(nullptr, nullptr, 0, 0, 0); }
 
  private:
-  // OSMesa requires a buffer. Nothing is drawn into this one.
+  // OSMesa requires a buffer. Weft draws only into framebuffer objects, so this one is small and unused.
   static constexpr int kSide = 4;
   std::array<std::uint8_t, kSide * kSide * 4> pixels_{};
 

@@ -16,7 +16,7 @@ std::string_view embedded_file(const std::string& file) {
   throw Error(ExitCode::internal, "shaders/{}: not among the shaders built into this program", file);
 }
 
-/// Kind of shader objects for GlObject; a shader is deleted after its program is linked.
+/// Makes and deletes shaders for GlObject. Program deletes its shaders as soon as it has linked them.
 struct ShaderKind {
   static GLuint create(const Gl& gl, GLenum stage) { return gl.CreateShader(stage); }
   static void destroy(const Gl& gl, GLuint name) { gl.DeleteShader(name); }

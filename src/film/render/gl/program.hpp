@@ -8,11 +8,12 @@
 
 namespace weft::render {
 
+/// A linked program of a vertex shader and an optional fragment shader.
 class Program {
  public:
   Program() = default;
-  /// `vertex` and `fragment`: file names in shaders/; `fragment` is empty if no colours are drawn.
-  /// `defines` ("CLOTH", "LIGHTS 2") precede the sources. Throws Error(internal) with the message
+  /// `vertex` and `fragment`: file names in shaders/; `fragment` is empty if the program draws no colours. `defines`:
+  /// macros that are defined before the sources, such as "CLOTH" or "LIGHTS 2". Throws Error(internal) with the message
   /// of the compiler or linker.
   Program(const Gl& gl, const std::string& vertex, const std::string& fragment,
           const std::vector<std::string>& defines = {});

@@ -5,7 +5,7 @@
 
 namespace weft::render {
 
-/// The library stays open until the process ends, because a software rasteriser keeps threads and LLVM state.
+/// A library that stays open until the process ends, because software rasterisers keep threads and LLVM data.
 class SharedLibrary {
  public:
   /// Throws Error(usage) with the dynamic loader's message if the library cannot be opened.
