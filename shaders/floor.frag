@@ -1,5 +1,5 @@
-// Infinite floor. Near the subjects, it is lit; far away, it fades into the backdrop. OPEN: variant for pixels that
-// show open floor (floor without shadow or occlusion), as most floor pixels do.
+// Infinite floor. Near the subjects, the floor is lit; far away, it fades into the backdrop. OPEN: variant for pixels
+// of open floor (floor without shadow, occlusion or reflected light); these are most pixels of the floor.
 #include "shading.glsl"
 #include "traced_light.glsl"
 #include "open_floor.glsl"
@@ -10,7 +10,7 @@ layout(location = 0) out vec4 color;
 #ifdef TILED
 layout(binding = 16) uniform sampler2D floor_picture;
 uniform vec4 picture_across, picture_up;  // rows of the map from world (x, y, z, 1) to picture coordinates
-uniform float tint;
+uniform float tint;  // factor on the colour of the picture
 #endif
 
 // Checkerboard, from 0 to 1, averaged over the pixel (box filter of a triangle wave, as in Quilez, "Filtering the

@@ -1,4 +1,5 @@
-// Data that all passes of a picture share. Names contain the space: world [m], view (right, up, backward [m]), clip.
+// Data that all passes of a picture share. Names of coordinates contain their space: world [m], view (right, up,
+// backward [m]), clip.
 layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
@@ -9,7 +10,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 sky;                // linear light from above
   vec4 horizon;            // linear light from the sides; w: Style::toe, linear light below which tones are darkened
   vec4 ground;             // linear light from below, for reflections
-  vec4 backdrop;           // linear colour at the horizon; w: fraction by which it is darker far from the subjects
+  vec4 backdrop;           // linear colour at the horizon; w: Style::glow
   vec4 backdrop_top;       // linear colour straight above
   vec4 viewport;           // width, height [pixels], and their reciprocals
   vec4 frustum;            // tangents of half the field of view (x, y), distance of the near plane [m], 0
@@ -35,9 +36,9 @@ vec3 world_from_view(vec3 direction_view) { return transpose(mat3(frame.view_fro
 // values of any 3x3 pixels are evenly spread over [0,1).
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
-// Points evenly spread over a disc of radius 1 (Vogel 1979): point k of n is sqrt((k + 1/2) / n) times a direction that
-// turns by the golden angle from point to point. Directions are computed incrementally, because a sine and cosine per
-// point would cost more than a texture lookup. `turn` in [0,1) sets the first direction.
+// Points evenly spread over a disc of radius 1 (Vogel 1979): point k of n is sqrt((k + 1/2) / n) times direction k.
+// Each direction is the one before, rotated by the golden angle, because a sine and cosine per point would cost more
+// than a texture lookup. `turn` in [0,1) selects the first direction.
 vec2 first_direction(float turn) {
   vec2 corner = vec2(abs(4.0 * turn - 2.0) - 1.0, abs(4.0 * fract(turn + 0.25) - 2.0) - 1.0);
   return normalize(corner);

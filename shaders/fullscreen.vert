@@ -1,4 +1,4 @@
-// One triangle that covers the picture. Its depth has no effect, because the depth test is off.
+// One triangle that covers the whole picture. Its depth has no effect, because the depth test is off.
 void main() {
   vec2 corner = vec2((gl_VertexID << 1) & 2, gl_VertexID & 2);
   gl_Position = vec4(corner * 2.0 - 1.0, 1.0, 1.0);

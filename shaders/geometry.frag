@@ -1,28 +1,28 @@
 // Writes the surface data of each pixel, for deferred shading. Forward shading would cost more: llvmpipe shades a whole
-// 4x4 block for every triangle that touches it. With the small triangles of cloth, it would shade about eight times as
-// many pixels as are visible. The floor writes only distance_surface.
+// 4x4 block for every triangle that touches the block. With the small triangles of cloth, llvmpipe would shade about
+// eight times as many pixels as are visible. The floor writes only distance_surface.
 #include "frame.glsl"
-const float kMaxRise = 0.02;  // limit on rise() [m], for triangles at folds, whose corner normals differ too much
+const float kMaxRise = 0.02;  // limit on rise() [m]; needed at folds, where the normals of the corners differ much
 in vec3 surface_normal_world;
 in vec2 surface_uv;
 in float surface_heat;
 in vec3 normal_squares, normal_products, plane;
-uniform float surface;
-// normal_heat: world normal on the visible side; w: heat. The length of the normal is 1 + the
-// height of the smooth surface above the triangle along this normal [m].
+uniform float surface;  // number of the surface
+// normal_heat: world normal on the visible side; w: heat. The length of the normal is 1 + h; h: height of the smooth
+// surface above the triangle along this normal [m].
 layout(location = 0) out vec4 normal_heat;
 layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // see "Surface numbers" in frame.glsl
 #ifdef PAINTED
-// `paint`: xyz: square root of the linear colour, which needs only 8 bits. w: 0 if the pixel is not
-// painted; from 0.6 (transparent) to 1 (opaque) if a picture lies over a colour; else 1.
+// `paint`: xyz: square root of the linear colour, for which 8 bits are enough. w: 0 if the pixel is not painted; from
+// 0.6 (transparent) to 1 (opaque) if a picture covers a colour; else 1.
 #ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, premultiplied
 #endif
-uniform int laid;         // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 and holes
+uniform int laid;         // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 with holes
 uniform vec3 color;       // linear
-uniform vec4 back_color;  // w < 0: colour of the back; else the back has the colour of the front, paler by w
+uniform vec4 back_color;  // used if w < 0; else the back has the colour of the front, paler by w
 layout(location = 3) out vec4 paint;
 #endif
 #ifdef TRIMMED
@@ -30,12 +30,12 @@ in vec3 trim_distances, trim_places;  // distances [m] and positions along the l
 layout(location = 4) out vec4 trims;  // as read in trim.glsl
 #endif
 #ifdef PEELED
-layout(binding = 12) uniform sampler2D peeled;  // distance of the layer drawn last; only what lies behind it is drawn
+layout(binding = 12) uniform sampler2D peeled;  // distance of the layer drawn before; only surfaces behind it are drawn
 #endif
 
-// Height of the smooth surface above its triangle, along the normal [m]. The smooth surface is the mean, with
-// barycentric weights, of the pixel's point projected onto the tangent planes at the three corners (Hanika, "Hacking
-// the Shadow Terminator", 2021).
+// Height of the smooth surface above its triangle, along the normal [m]. A point of the smooth surface is the mean,
+// with barycentric weights, of the projections of the triangle's point onto the tangent planes at the three corners
+// (Hanika, "Hacking the Shadow Terminator", 2021).
 float rise(vec3 n) {
   vec3 p = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0 / gl_FragCoord.w));
   vec3 products = normal_products.zxy * p.yzx + normal_products.yzx * p.zxy;

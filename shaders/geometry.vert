@@ -1,4 +1,4 @@
-// All triangle meshes, including the floor.
+// Vertices of all triangle meshes, including the floor.
 #include "frame.glsl"
 layout(location = 0) in vec3 position_world;
 layout(location = 1) in vec3 normal_world;
@@ -18,11 +18,11 @@ uniform float nearer;  // depth offset towards the viewer [m]
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
-// For rise() in geometry.frag: squares and products of the components of the normal n; n times dot(n, p), where p is
-// the position relative to the eye.
+// For rise() in geometry.frag: squares of the components of the normal n, their products, and n times dot(n, p), where
+// p is the position relative to the eye.
 out vec3 normal_squares, normal_products, plane;
 invariant gl_Position;
-out float gl_ClipDistance[1];  // height above the floor, for mirror.hpp
+out float gl_ClipDistance[1];  // height above the floor [m], for mirror.hpp
 void main() {
   surface_normal_world = normal_world;
   surface_uv = vertex_uv;
@@ -37,7 +37,8 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
-  // llvmpipe clips at 0 even if GL_CLIP_DISTANCE0 is off. Without the 1 mm, rounding would remove parts of the floor.
+  // llvmpipe clips at 0 even if GL_CLIP_DISTANCE0 is off. Without the added 1 mm, rounding would remove parts of the
+  // floor.
   gl_ClipDistance[0] =
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);

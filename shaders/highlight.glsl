@@ -1,5 +1,5 @@
-// Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 at normal
-// incidence.
+// Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017). n: normal; v, l: unit vectors to the
+// eye and to the light; alpha: roughness squared; f0: reflectance at normal incidence.
 float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
   vec3 h = normalize(v + l);
   float n_h = max(dot(n, h), 0.0), n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 1e-3), l_h = max(dot(l, h), 0.0);

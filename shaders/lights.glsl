@@ -4,12 +4,11 @@ struct Light {
   vec4 position_world;            // w: cosine of half the cone angle
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone, as a difference of cosines
 };
-// The first LIGHTS entries are valid, at least one. Index them by constants: with a variable index, llvmpipe reads a
-// member again for each pixel.
+// The first LIGHTS entries (at least one) are valid. Shaders index them by constants: with a variable index, llvmpipe
+// would read a member again for each pixel.
 layout(std140, binding = 1) uniform Lights { Light lights[4]; };
-// Returns the unit vector towards light i. `cone`: relative intensity of the light at the point.
-// For a sun, it is 1. For a spot, it is 0 outside the cone, 1 at the target, and inversely
-// proportional to the squared distance.
+// Returns the unit vector toward light i. `cone`: relative intensity of the light at the point. For a sun, `cone` is 1.
+// For a spot, it is 0 outside of the cone, 1 at the target, and inversely proportional to the squared distance.
 vec3 toward_light(int i, vec3 position_world, out float cone) {
   cone = 1.0;
 #ifdef SPOTS

@@ -1,11 +1,11 @@
-// Light of open floor (floor without shadow or occlusion), where the ray of a pixel hits it.
+// Light of open floor (floor without shadow, occlusion or reflected light) at the point that the ray of a pixel hits.
 #include "stage.glsl"
 
 #ifdef SHINY
 #include "highlight.glsl"
 #endif
 
-// Intersection of the ray of a pixel with the floor. n: normal, v: direction towards the eye.
+// Intersection of the ray of a pixel with the floor. n: normal; v: unit vector to the eye.
 struct FloorPoint {
   vec3 position_world, n, v, albedo;
 };
@@ -22,7 +22,8 @@ vec3 light_on_floor(int i, FloorPoint at) {
   return lights[i].color.rgb * cone * shown;
 }
 
-// 0 up to 1.5 radii (frame.eye_world.w) from the centre of the subjects, rising to 1 far away.
+// Fraction of backdrop in the floor: 0 up to 1.5 radii (frame.eye_world.w) from the centre of the subjects, rising to 1
+// far away.
 float away_from_subjects(vec3 position_world) {
   float away = max(length(position_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
   return away * away / (1.0 + away * away);
@@ -33,8 +34,8 @@ vec3 fade_out(vec3 color, vec3 position_world, vec3 ray_world) {
   return mix(color, backdrop_color(normalize(ray_world)), away_from_subjects(position_world));
 }
 
-// Distance of the floor along the view axis [m]. `ray_world` advances one metre along this axis. The bound 1e-6 avoids
-// a division by zero for rays near the horizon; there, the floor has faded into the backdrop.
+// Distance of the floor along the view axis [m]. The component of `ray_world` along this axis is 1 m. The bound 1e-6
+// avoids a division by zero for rays near the horizon, where the floor has faded into the backdrop.
 float floor_distance(vec3 ray_world) {
   return frame.floor_plane_world.w / max(-dot(frame.floor_plane_world.xyz, ray_world), 1e-6);
 }

@@ -1,4 +1,4 @@
-// Background: a seamless backdrop that the floor fades into, or a sky.
+// Background: a seamless backdrop, into which the floor fades, or a sky.
 vec3 backdrop_color(vec3 toward_world) {
   float up = dot(toward_world, frame.up_world.xyz);
   vec3 color = mix(frame.backdrop.rgb, frame.backdrop_top.rgb, smoothstep(-0.02, 0.6, up));

@@ -19,13 +19,13 @@ layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 7) uniform sampler2D materials;
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
-layout(binding = 10) uniform sampler2D paints;  // geometry.frag
+layout(binding = 10) uniform sampler2D paints;  // output `paint` of geometry.frag
 #endif
 layout(location = 0) out vec4 color;
 
 #ifdef CLOTH
-// Highlight of threads along t, wide across and narrow along them, because their facets lie around the thread
-// (anisotropic GGX, Burley, "Physically-Based Shading at Disney", 2012).
+// Highlight of threads, wide across the threads and narrow along them, because the facets lie around the thread
+// (anisotropic GGX, Burley, "Physically-Based Shading at Disney", 2012). t: along the threads; b: across.
 float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
   const float kAlong = 0.22, kAcross = 0.62;
   vec3 h = normalize(v + l);
@@ -36,8 +36,8 @@ float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
 }
 #endif
 
-// Surface data for add_light(). n_smooth: normal without threads, hems and seams. v: unit vector to the eye. shine:
-// factor on the highlight. alpha: roughness squared. f0: reflectance at normal incidence.
+// Surface data for add_light(). n: normal; n_smooth: normal without threads, hems and seams; v: unit vector to the eye;
+// shine: factor on the highlight; alpha: roughness squared; f0: reflectance at normal incidence.
 struct Point {
   vec3 position_world, n, n_smooth, v;
   float shine, alpha, f0;
@@ -50,17 +50,18 @@ struct Point {
   float skin;
 #endif
 };
+// Sums over the lights. through: light that reaches the other side of cloth; gloss: highlights.
 struct LightSums {
   vec3 diffuse, through, gloss;
 };
 const float kThreadShine = 0.14;  // reflectance factor of threads with full gloss
 #ifdef SKIN
-// Below skin, red light travels farthest, so skin is redder beside the terminator and in penumbrae. Tuned by eye, from
-// profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
+// Inside skin, red light travels farthest, so that skin is redder near the terminator and in penumbrae. The values are
+// tuned by eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
 const vec3 kScattered = vec3(0.50, 0.17, 0.06);
-const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // light emerges down to minus this cosine of normal and light
+const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // light emerges down to this cosine of normal and light, negated
 vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(share * (2.0 - share)), skin * kScattered); }
-// The clamped cosine max(cosine, 0) without its kink at the terminator.
+// The clamped cosine max(cosine, 0), rounded at the terminator.
 vec3 scattered_cosine(float cosine, float skin) {
   vec3 width = skin * kPastTerminator, rounded = clamp(cosine + width, vec3(0.0), 2.0 * width);
   return rounded * rounded / max(4.0 * width, 1e-4) + max(cosine - width, 0.0);
@@ -79,7 +80,7 @@ void add_light(inout LightSums sums, int i, Point at, float lit) {
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #endif
 #ifdef CLOTH
-  // Light from the other side of the cloth passes between the threads.
+  // Light that hits the other side of the cloth passes between the threads.
   sums.through += strength * max(-side, 0.0);
   float shine = highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0);
 #ifdef GLOSSY
@@ -112,7 +113,8 @@ void main() {
   vec3 offset_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, distance_view));
   at.position_world = offset_world + frame.eye_world.xyz;
   at.v = -normalize(offset_world);
-  // Near outlines, the smooth normal may point away from the eye. If so, tilts it to nearly 90 degrees to the view ray.
+  // Near outlines, the smooth normal may point away from the eye. The normal is then tilted until it is nearly
+  // perpendicular to the view ray.
   vec3 n_seen = normalize(normal_heat.xyz);
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
   float roughness = front_roughness.w;
@@ -133,7 +135,8 @@ void main() {
   if (paint.w > 0.5) {
     albedo = paint.rgb * paint.rgb;
 #ifdef SKIN
-    // Only colours that skin can have are shaded as skin; painted hair and shoes are glossier.
+    // Only pixels with a colour that skin can have are shaded as skin. Pixels that a picture covers, such as hair and
+    // shoes, are glossier.
     float bare = opacity_threads.z * clamp(2.5 * (1.0 - paint.w), 0.0, 1.0);
     at.skin = bare * smoothstep(0.01, 0.12, albedo.r - albedo.b);
     at.alpha = mix(at.alpha, min(at.alpha, 0.18), opacity_threads.z - bare);
@@ -145,8 +148,8 @@ void main() {
 #endif
 #ifdef CLOTH
   at.finish = texelFetch(materials, ivec2(3, row), 0);
-  at.finish.x *= at.finish.x * at.finish.x;  // cubed: highlights of cotton and satin differ a hundredfold
-  // Derivatives also read pixels beside cloth, whose rest coordinates may be those of an earlier picture.
+  at.finish.x *= at.finish.x * at.finish.x;  // cubed, because the highlights of cotton and satin differ much
+  // Derivatives also read pixels beside cloth, where the texture may contain rest coordinates of an earlier picture.
   vec2 rest_uv = row < 0 ? vec2(0.0) : texelFetch(rest_uvs, pixel, 0).xy;
   int threads = int(opacity_threads.y);
   Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, threads, at.finish.z, at.n, at.position_world);
@@ -180,8 +183,8 @@ void main() {
 
   vec4 lit = texelFetch(lamps_lit, pixel, 0), from_surfaces = texelFetch(surface_light, pixel, 0);
   float open = from_surfaces.w;
-  // Near shaded floor, `from_surfaces` is negative and may subtract more than the light of the surroundings, hence the
-  // lower bound.
+  // Near shaded floor, `from_surfaces` is negative. The lower bound is needed because it may subtract more than the
+  // light of the surroundings.
   vec3 around_light = irradiance(at.n) * open;
   around_light = max(around_light + from_surfaces.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));
@@ -198,7 +201,7 @@ void main() {
 
   float edge = 1.0 - max(dot(at.n_smooth, at.v), 0.0), rim = edge * edge * edge * edge;
 #ifdef CLOTH
-  // Protruding fibres scatter light at grazing angles: a soft sheen in a paler tone of the cloth.
+  // Protruding fibres scatter light at grazing angles, which gives a soft sheen in a paler colour of the cloth.
   vec3 pale = mix(albedo, vec3(0.6), 0.35);
   vec3 sheen = pale * light.diffuse * (at.finish.z * edge * edge * edge);
   vec3 through = irradiance(-at.n_smooth) * open + light.through;
@@ -210,11 +213,11 @@ void main() {
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
 #elif defined(METAL)
-  // Nearby surfaces in the mirrored direction cover the surroundings and add their own light; shaded floor subtracts
+  // Other surfaces in the mirrored direction cover the surroundings and add their own light; shaded floor subtracts
   // light.
   vec3 mirrored = reflect(-at.v, at.n);
   vec4 near_by = texelFetch(mirrored_surfaces, pixel, 0);
-  // Mirror rays exist only for metal and coats; other surfaces use the open fraction of the surroundings.
+  // Only metal and coats have mirror rays; other surfaces use the uncovered fraction of all surroundings.
   float past = at.finish.x + at.finish.y > 0.0 ? 1.0 - near_by.w : open;
   vec3 share = at.colored_f0 + (1.0 - at.colored_f0) * rim * (1.0 - roughness);
   vec3 around = surroundings(mirrored, at.alpha) * past, above = surroundings(mirrored, kCoatAlpha) * past;
@@ -225,7 +228,7 @@ void main() {
   vec3 linear = mix(base, above, coat) + light.gloss;
 #else
 #ifdef SKIN
-  // Fine hairs scatter light at grazing angles.
+  // Fine hairs of skin scatter light at grazing angles.
   light.diffuse *= 1.0 + 0.35 * at.skin * edge * edge * edge;
 #endif
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * open;
@@ -234,7 +237,7 @@ void main() {
 #endif
   float alpha = 1.0;
 #ifdef SHEER
-  // At oblique view, light has a longer path through the threads.
+  // At oblique view, the path of light through the threads is longer.
   float layers = 1.0 / max(dot(at.n_smooth, at.v), 0.2);
 #ifdef TRIMMED
   layers *= trimmed.layers;

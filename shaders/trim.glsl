@@ -1,36 +1,38 @@
-// Hems, stitches and seams of cloth, drawn by distance from borders and seams (trims.hpp). Details finer than a pixel
-// contribute by their coverage, which avoids moiré and shimmer. Include after weave.glsl.
+// Draws hems, stitches and seams of cloth by the distance from borders and seams (trims.hpp). Details finer than a
+// pixel count in proportion to the area of the pixel that they cover, which avoids moiré and shimmer. Include after
+// weave.glsl.
 layout(binding = 11) uniform sampler2D trims;  // distances from border and seam, position along the nearer one [m]
 
-// Lengths in [m]. Stitches pull a groove into the cloth.
+// Lengths [m]. Stitches pull a groove into the cloth.
 const float kStitchFromFold = 0.002;  // distance of a hem's stitches from its inner edge
 const float kGroove = 0.0011, kThread = 0.00028;  // half widths
-const float kStitch = 0.0032;  // stitch pitch
+const float kStitch = 0.0032;  // distance from stitch to stitch
 const float kOnTop = 0.78;     // visible fraction of a stitch's thread
-const float kTwin = 0.005;     // distance between rows: knits and denim are sewn with two needles
+const float kTwin = 0.005;     // distance of both rows of stitches in knits and denim, which are sewn with two needles
 const vec3 kJeans = vec3(0.60, 0.27, 0.05);  // linear colour of the thread in denim
-const float kValley = 0.0013;  // half width of the valley along a seam
+const float kValley = 0.0013;  // half width of the groove along a seam
 
-// Fraction of a pixel of width `width` at `at` that is covered by a band of half width `half_width` at `center`.
+// Fraction of a pixel, of width `width` around `at`, that a band of half width `half_width` around `center` covers [m].
 float band(float at, float width, float center, float half_width) {
   float from = max(at - 0.5 * width, center - half_width), to = min(at + 0.5 * width, center + half_width);
   return max(to - from, 0.0) / width;
 }
 
-// Fraction of a pixel of length `width` in which the thread of a stitch line lies on top of the cloth.
+// Fraction of a pixel, of length `width` [m] along a stitch line, in which the thread lies on top of the cloth.
+// `along`: position on the line [m].
 float on_top(float along, float width) {
   float from = (along - 0.5 * width) / kStitch, to = (along + 0.5 * width) / kStitch;
   float sum = (floor(to) - floor(from)) * kOnTop + min(fract(to), kOnTop) - min(fract(from), kOnTop);
   return sum * kStitch / width;
 }
 
-// Factor on the colour at a stitch line at `center`: thread on top is paler, thread below the cloth leaves a dark hole,
-// and the groove is shaded.
+// Factor on the colour near a stitch line at `center`: thread on top is paler, there is a dark hole where the thread is
+// below the cloth, and the groove is darker. `shown`: result of on_top().
 float stitches(float at, float width, float center, float shown) {
   return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
 }
 
-// One stitch line; in knits and denim also a second one, at distance `beside` from the first.
+// Effect of one stitch line; in knits and denim also of a second one, at the distance `beside` from the first [m].
 struct Rows {
   float tone, thread;  // thread: fraction of the pixel that it covers
 };
@@ -60,11 +62,11 @@ struct Trimmed {
 Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
-  // `inward` and `aside` below: directions in the surface in which the distances from border and seam increase.
+  // `inward` and `aside` (below): directions in the surface in which the distances from border and seam increase.
   vec2 u_right = dFdx(rest_uv), u_up = dFdy(rest_uv);
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
-  // Sets a lower bound on the pixel's width across borders and seams, which is the derivative of the distance. On the
-  // seam itself, this derivative is zero, because neighbouring pixels on both sides have equal distances.
+  // `width`: width of the pixel across borders and seams: the derivative of the distance. It needs a lower bound,
+  // because the derivative is zero on the seam itself, where neighbouring pixels on both sides have equal distances.
   width.xy = max(width.xy, max(pixel_width, 0.7 * min(sqrt(abs(area)), 1.0)));
   if (woven.at_outline) width = vec3(pixel_width);
   float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
@@ -73,7 +75,7 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
   inward *= inversesqrt(max(dot(inward, inward), 1e-20));
   aside *= inversesqrt(max(dot(aside, aside), 1e-20));
 
-  // The edge of the cloth is rounded. A hem ends in a step on the back, which is slightly visible on the front.
+  // The edge of the cloth is rounded. A hem ends at a step on the back, which is also slightly visible on the front.
   float fold = hem > 0.0 ? 2.0 * thickness : 0.5 * thickness;
   float rise = band(at.x, width.x, 0.5 * fold, 0.5 * fold) * 0.8, tone = 1.0, thread = 0.0;
   if (hem > 0.0) {
@@ -84,8 +86,8 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
     thread = sewn.thread;
   }
   float valley = band(at.y, width.y, 0.0, kValley);
-  // If the valley is only a few pixels wide, derivatives across the seam are invalid. Then the slopes do not tilt the
-  // normal, but darken the colour.
+  // If the groove along a seam (`valley`) is only a few pixels wide, derivatives across the seam are invalid. Then its
+  // slopes darken the colour instead of tilting the normal.
   const float kSlope = 0.7;
   float sloped = woven.at_outline ? 0.0 : 1.0 - smoothstep(0.3, 0.6, width.y / kValley);
   float fall = kSlope * sloped * valley;
