@@ -48,7 +48,7 @@ const Table& part_rules() {
   return kTable;
 }
 
-/// Access to a member of the source of a character.
+/// Returns a function that returns a member of the source of a character.
 template <class Kind, class Base, class Field>
 auto of_source(Field Base::*field) {
   return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };

@@ -21,8 +21,7 @@ namespace weft::scene {
 
 namespace {
 
-// Maximum number of particles of all rectangles of cloth together: their data fit into the memory
-// of a workstation.
+// Maximum number of particles of all rectangles of cloth together. Their data fit into the memory of a workstation.
 constexpr long kMaxParticles = 4'000'000;
 
 template <class Entries>
@@ -39,8 +38,8 @@ std::vector<std::string> names_of_all(const Scene& scene) {
   return names;
 }
 
-/// Reports the name that `key` gives if it is not in `names`; an empty name counts as not given.
-/// `kind`: of the named objects, for the message.
+/// Reports `name`, the value of `key`, unless it is in `names` or empty. `kind`: the named objects in the message, such
+/// as "a cloth".
 void check_reference(const std::string& name, const std::vector<std::string>& names, const std::string& kind,
                      const std::string& key, Findings& findings) {
   if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
@@ -64,8 +63,8 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-/// Reports each key frame that changes several angles, at least one of them by more than half a
-/// turn: such a change does not define an axis of rotation.
+/// Reports each key frame in which several angles change, at least one of them by more than half a turn, because such a
+/// change does not define an axis of rotation.
 template <class Key>
 void check_rotation_changes(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
   for (std::size_t i = 1; i < keys.size(); ++i) {
@@ -79,8 +78,7 @@ void check_rotation_changes(const std::vector<Key>& keys, const std::string& pat
   }
 }
 
-/// Reports a picture that cannot be decoded, so that this mistake appears together with all others,
-/// before any run.
+/// Reports a picture that cannot be decoded, because users must see all mistakes of a scene before a run begins.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.has_mistake(key)) return;
   try {
@@ -120,11 +118,11 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
       findings.report(path + ".vertex_group",
                       "expected none for a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
-  // Other shapes have no rows of particles; crossed triangles have particles between the rows, too.
+  // Other shapes have no rows of particles; crossed_triangles also has particles between the rows.
   if (rectangle_particles(cloth) == 0 || cloth.shape == ClothShape::crossed_triangles) return;
-  // Report a part that lies between two rows of particles, and thus contains no particle. If the
-  // part contains no row along an axis, the lambda returns the position of the nearest row, as a
-  // fraction of the size of the cloth; else nothing.
+  // Report a part that lies between two rows of particles, and thus contains no particle. The lambda returns nothing if
+  // the part contains a row along an axis, else the position of the nearest row, as a fraction of the size of the
+  // cloth.
   const auto nearest_missed_row = [](double low, double high, int count, double grading) {
     std::optional<double> nearest;
     const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
@@ -217,8 +215,8 @@ void check_attachments(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports each `over` that names no cloth. Also reports the `over` of the first cloth that is worn
-/// over itself, directly or through others.
+/// Reports each `over` that does not name a cloth. Also reports the `over` of the first cloth that is worn over itself,
+/// directly or through other cloths.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
@@ -281,8 +279,8 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
-// For an obstacle with a mass or density, which forces move, reports keys that do not fit. For
-// other obstacles, reports keys that need a mass or density.
+// Forces move obstacles that have a mass or density. For these, reports keys that contradict such motion; for all other
+// obstacles, reports keys that need a mass or density.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
     for (const auto& [key, is_given] :
@@ -365,9 +363,9 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reports key frames with a focal length if the camera has a field of view, and the reverse,
-/// because a camera cannot change between the two. Also reports `sensor_width` without
-/// `focal_length`, and `follow_rotation` without `follow`.
+/// Reports key frames with a focal length if the first one has a field of view, and the reverse, because a camera
+/// cannot change between the two. Also reports `sensor_width` without `focal_length`, and `follow_rotation` without
+/// `follow`.
 void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
   const bool by_focal_length = has_focal_length(camera);
   if (!by_focal_length && findings.has(path + ".sensor_width"))

@@ -16,8 +16,8 @@ inline const std::vector<std::string> kXyz = {"x", "y", "z"};
 inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
-// Default colours (sRGB). The floor reflects 0.4 of the light, so that darker and brighter objects
-// stand out from it.
+// Default colours (sRGB). The floor reflects 0.4 of the light, so that both darker and brighter objects contrast with
+// it.
 inline const Vec3 kClothColor(0.60, 0.27, 0.22), kObstacleColor(0.76, 0.72, 0.65), kFloorColor(0.66, 0.66, 0.65);
 inline Look look_of(const Vec3& color) {
   Look look;
@@ -31,10 +31,10 @@ inline Look rope_look() {
   return look;
 }
 
-/// Rotation about the fixed x, then y, then z axis by the given angles [degrees].
+/// Rotation about the fixed x axis, then the y axis, then the z axis, by these angles [degrees].
 Quat from_angles(const Vec3& degrees);
 
-/// Adds the rows of the rotation of a pose. `otherwise`: documentation of their default.
+/// Adds the rows of the rotation of a pose. `otherwise`: documentation of the default.
 template <class S, class Member>
 void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
   const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
@@ -54,8 +54,8 @@ void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherw
       .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
 }
 
-/// Adds the rows of position and rotation of a pose. `position_of`: documentation of the position;
-/// `otherwise`: of the default.
+/// Adds the rows of position and rotation of a pose. `position_of`: documentation of the position; `otherwise`:
+/// documentation of the default.
 template <class S, class Member>
 void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
   rows.vector(

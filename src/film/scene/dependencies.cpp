@@ -19,20 +19,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Maximum size of a dependency [bytes]. Larger files are skipped; no reader of their formats
-/// accepts them.
+/// Maximum size of a dependency [bytes]. Larger files are skipped, because the readers of all formats refuse them.
 constexpr std::uintmax_t kMaxDependencyBytes = std::uintmax_t{256} << 20;
 
-/// Maximum length of a file name with its folders. Longer texts do not count as file names.
+/// Maximum length of a file name with its folders [bytes]. Longer texts are not taken for file names.
 constexpr std::size_t kMaxFileNameBytes = 1024;
 
 bool is_alphanumeric(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Whether a text may be a file name: it ends with a dot and 2 to 12 letters and digits, of which
-/// at least one is a letter, does not begin with that dot, and is not longer than
-/// kMaxFileNameBytes.
+/// Whether a text may be a file name. It must end with a dot and 2 to 12 letters and digits, at least one of them a
+/// letter. It must not begin with this dot, and must not be longer than kMaxFileNameBytes.
 bool has_extension(std::string_view text) {
   const std::size_t dot = text.rfind('.');
   if (dot == std::string_view::npos || dot == 0 || text.size() > kMaxFileNameBytes) return false;
@@ -58,9 +56,9 @@ std::string decode_escapes(std::string_view text) {
   return plain;
 }
 
-/// Possible file names in text or binary content. Splits the content twice: first at quotes and
-/// control characters, then also at brackets, commas, equals signs and bars. Returns those pieces,
-/// and those words in pieces, for which has_extension() is true.
+/// Finds possible file names in text or binary content. Splits the content twice: first at quotes and control
+/// characters, then also at brackets, commas, equals signs and bars. Returns the pieces, and the words in pieces, for
+/// which has_extension() is true.
 std::set<std::string> find_possible_names(std::string_view content) {
   std::set<std::string> names;
   const auto add = [&](std::string_view text) {
@@ -91,16 +89,17 @@ std::set<std::string> find_possible_names(std::string_view content) {
   return names;
 }
 
+/// Visits files and the files that they name, each file once.
 class DependencyWalk {
  public:
   explicit DependencyWalk(const DependencyVisitor& each) : each_(each) {}
 
-  /// Visits a file and all files that it names, directly or through others.
+  /// Visits a file and all files that it names, directly or through other files.
   void visit(const fs::path& file, FileUse use = FileUse::simulation) {
     const std::optional<std::string> content = visit_alone(file, use);
     if (!content) return;
     for (const std::string& name : find_possible_names(*content)) visit(file.parent_path() / name, use);
-    // The library assimp also reads the motion file that has the same name with this extension.
+    // The library assimp also reads the motion file that has the same name, but this extension.
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"), use);
   }
 

@@ -13,7 +13,7 @@ namespace weft::scene {
 
 namespace {
 
-/// The description of a parse error, for the user. Rewords the parser's text about a repeated key.
+/// Text of a parse error for the user. Replaces the parser's own text about a repeated key.
 std::string explain(std::string_view description) {
   const std::string_view redefined = "cannot redefine existing ";
   const auto found = description.find(redefined);

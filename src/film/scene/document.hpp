@@ -13,21 +13,19 @@
 
 namespace weft::scene {
 
-/// Maximum size of a scene file [bytes]. A scene with ten thousand key frames has about one
-/// megabyte.
+/// Maximum size of a scene file [bytes]. For comparison: a scene with ten thousand key frames has about one megabyte.
 inline constexpr std::uintmax_t kMaxFileSize = 16 << 20;
 
-/// Reads a scene file. If `file` is no regular file, is larger than kMaxFileSize or cannot be read,
-/// reports a mistake without a place and returns nothing.
+/// Reads a scene file. If `file` is not a regular file, is larger than kMaxFileSize or cannot be read, reports a
+/// mistake without a place and returns nothing.
 std::optional<std::string> read_file(const std::filesystem::path& file, Findings& findings);
 
-/// Parses TOML text. If the text is empty or no TOML, reports a mistake and returns nothing.
+/// Parses TOML text. If the text is empty or not TOML, reports a mistake and returns nothing.
 std::optional<toml::table> parse(std::string_view text, Findings& findings);
 
-/// Sets a value in the document, given as "path.to.key=value". In the path, the name or index of an
-/// entry selects it from a list. Creates missing tables. If the value is no TOML but a plain word,
-/// it counts as text. If the path or the value is not valid, reports a mistake and changes no
-/// value.
+/// Sets a value in the document. `override_text`: "path.to.key=value". In the path, a name or an index selects an entry
+/// of a list. Creates missing tables. A plain word that is not a TOML value counts as text. If the path or the value is
+/// not valid, reports a mistake and changes no value.
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings);
 
 }  // namespace weft::scene

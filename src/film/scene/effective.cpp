@@ -30,8 +30,7 @@ std::string toml_string(const std::string& text) {
   return out + "\"";
 }
 
-/// A value as TOML. fmt writes a number with the fewest digits from which reading gives the same
-/// double.
+/// A value as TOML text. fmt writes numbers with the fewest digits that give the same double when they are read.
 std::string toml_value(const Value& value, const Rule& rule) {
   if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
   if (const auto* text = std::get_if<std::string>(&value)) return toml_string(*text);
@@ -51,16 +50,18 @@ std::string toml_value(const Value& value, const Rule& rule) {
   return rule.components.empty() ? fmt::format("{}", numbers[0]) : fmt::format("[{}]", fmt::join(numbers, ", "));
 }
 
+/// Which keys are written: all, or only those that affect the simulation.
 enum class Part { all, simulated };
 
+/// Writes the effective scene as TOML.
 class Writer {
  public:
   explicit Writer(Part part) : part_(part) {}
 
   std::string text;
 
-  /// Writes a table: first its own keys, then its inner tables and lists. `path`: key path of the
-  /// table; empty: the root.
+  /// Writes a table: first its own keys, then its inner tables and lists. `path`: key path of the table; empty for the
+  /// root table.
   void write(const Table& table, void* target, const std::string& path) {
     for_rules(table, target, [&](const Rule& rule) { write_value(rule, target); });
     for_rules(table, target, [&](const Rule& rule) {
@@ -128,6 +129,7 @@ std::string text_of(const Scene& scene, Part part) {
   return std::move(writer.text);
 }
 
+/// The hash function FNV-1a with 64 bits (Fowler, Noll and Vo).
 class Fnv1a {
  public:
   void add(std::string_view bytes) {
@@ -182,7 +184,7 @@ void identify(Scene& scene) {
     scene.files.push_back(file);
     for (Fnv1a* hash : {&shown, &simulated}) {
       if (hash == &simulated && use == FileUse::pictures) continue;
-      hash->add(fmt::format("{} ", content.size()));  // so that the hash depends on the boundaries between files
+      hash->add(fmt::format("{} ", content.size()));  // thus the hash depends on the boundaries between files
       hash->add(content);
     }
   });
@@ -190,8 +192,8 @@ void identify(Scene& scene) {
   keep_file_names(copy);
   shown.add(text_of(copy, Part::all));
   simulated.add(text_of(copy, Part::simulated));
-  // The duration affects the motion of characters: this motion is sampled into key frames up to the
-  // end of the film, and the last key frames influence the interpolation before them.
+  // The duration affects the motion of characters, because this motion is sampled into key frames up to the end of the
+  // film, and the last key frames influence the interpolation before them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
   scene.hash = shown.value();
   scene.simulation_hash = simulated.value();

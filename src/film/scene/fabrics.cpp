@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-// Test methods and their units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
+// Units of the test methods. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
 //   bending     B: 1 gf·cm²/cm = 98.07 µN·m; 2HB: 1 gf·cm/cm = 9.807 mN
 //   shear       G: 1 gf/(cm·deg) = 56.2 N/m per radian; Material::shear is 2 G
 //   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; the linearity LT is 2 / (n + 1) if the force is
@@ -13,16 +13,16 @@
 //   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
 //
 // How measurements become a Material, for all fabrics:
-//   stretch      the secant stiffness up to 19.6 N/m, the load of worn and hanging cloth. In fabrics with threads, the
-//                force is taken as proportional to strain²: then LT is 2/3 (measured: 0.50 to 0.60 for suitings, 0.66
-//                to 0.78 for denims), and the secant is 98.0 N/m / EMT. In fabrics without threads, the force is
-//                taken as proportional to strain, and the secant is 490.3 N/m / EMT.
+//   stretch      the secant stiffness up to 19.6 N/m, the load of worn and hanging cloth. For fabrics with threads, the
+//                force is assumed to be proportional to strain²: then LT is 2/3 (measured: 0.50 to 0.60 for suitings,
+//                0.66 to 0.78 for denims), and the secant is 98.0 N/m / EMT. For fabrics without threads, the force
+//                is assumed to be proportional to strain, and the secant is 490.3 N/m / EMT.
 //   max_stretch  the limit of forces::Lock, chosen so that the forces of `stretch` and of the lock
 //                add up to 490 N/m at the mean EMT of weft and warp.
 //   shear        2 G
 //   bend         √(weft · warp), since a Material has one bending stiffness for all directions
 //   bend_friction   HB
-//   All these values are rounded to two digits, because none is known more precisely.
+//   These values are rounded to two digits, because none is known more precisely.
 //
 // Quantities without a measurement are estimated from fibre, weave and weight:
 //   bend         130 µN·m (density / 1 kg/m²)^1.35. This is within 13 % of the medians of 251 fabrics, measured by
@@ -40,27 +40,27 @@
 //                without threads 12 %
 //   thickness    2.2 mm per kg/m²; measured: 1.7 to 4
 //
-// Chosen, not measured: friction (published for cloth on cloth: usually 0.2 to 0.6), contact
-// thickness (several times the thickness of the fabric, which contact cannot resolve), drag, and
-// viscosity of bending. Stretch and shear have no viscosity, because implicit Euler already damps
-// them like a viscosity of half a time step times the stiffness.
+// Not measured but chosen are: friction (published for cloth on cloth: usually 0.2 to 0.6), contact thickness (several
+// times the thickness of the fabric, because contact cannot resolve the thickness itself), drag, and viscosity of
+// bending. Stretch and shear have no viscosity, because implicit Euler already damps them as much as a viscosity of
+// half a time step times the stiffness would.
 
 namespace weft::scene {
 
 namespace {
 
-// Bending viscosity / bending stiffness [s]. Without inertia, a fold opens within about this time.
+// Bending viscosity divided by bending stiffness [s]: about the time in which a fold without inertia opens.
 constexpr double kBendingDampingTime = 0.1;
 
 enum class Fibre { cotton, wool, filament };
 enum class Weave { woven, knitted, none };
-/// Bending stiffness relative to fabrics of the same weight: the 10, 25, 50, 75 or 90 % quantile of measured fabrics.
+/// Bending stiffness compared with measured fabrics of the same weight: their 10, 25, 50, 75 or 90 % quantile.
 enum class Hand { limp, soft, usual, firm, stiff };
 
 using Measured = std::optional<double>;
 using Pair = std::optional<std::pair<double, double>>;
 
-/// Published values of a fabric. Values that are absent are estimated.
+/// Published values of a fabric. Absent values are estimated.
 struct Row {
   const char* name;
   const char* what;
@@ -78,14 +78,14 @@ struct Row {
   Pair drape = {};             // minimum and maximum of Cusick's coefficient [%]
   double contact = 2;          // contact thickness [mm]
   double friction = 0.3;
-  std::optional<Finish> finish = {};  // absent: that of the fibre
+  std::optional<Finish> finish = {};  // if absent, that of the fibre
 };
 
 constexpr const char* kMatsudaira =
     "Matsudaira et al., J. Textile Eng. 61(6), 2015, tables 1 and 2, as transcribed in 3fold-motion-engine";
 constexpr const char* kNone = "none found: all estimated";
 
-// In the order of the documentation: cotton and similar fibres, wool, filaments, leather.
+// The fabrics, in the order of the documentation: cotton and similar fibres, wool, filaments, leather.
 constexpr Row kRows[] = {
     {.name = "cotton",
      .what = "light plain weave",
@@ -252,8 +252,8 @@ constexpr Row kRows[] = {
      .finish = Finish{0.35, 0.5, 0.1, 0, Threads::none}},
 };
 
-// The finish of a row; if absent, that of its fibre: cotton scatters light, wool is fuzzy,
-// filaments are glossy.
+// The finish of a row or, if it is absent, that of its fibre: cotton scatters light, wool is fuzzy, filaments are
+// glossy.
 Finish finish_of(const Row& row) {
   if (row.finish) return *row.finish;
   return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}
@@ -261,13 +261,15 @@ Finish finish_of(const Row& row) {
                                     : Finish{0.4, 0.5, 0.12, 0.2};
 }
 
+// Rounds a positive value to two significant digits.
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
-  // A quotient of integers is rounded correctly. The result is thus the double that a text such as
-  // "0.015" gives.
+  // Divides integers, because their quotient is rounded correctly: the result is the double that a text such as "0.015"
+  // gives.
   return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
 }
 
+// The measured value times `unit`, else `estimate`.
 template <class Value>
 constexpr MeasuredValue known_or(const std::optional<Value>& measured, double unit, double estimate) {
   return measured ? MeasuredValue{*measured * unit, false} : MeasuredValue{estimate, true};
@@ -278,7 +280,7 @@ constexpr std::pair<Measured, Measured> both(const Pair& pair) {
 }
 
 double estimated_bend(const Row& row) {
-  // 10, 25, 50, 75 and 90 % quantiles of a class of weight, relative to its median: means over the
+  // The 10, 25, 50, 75 and 90 % quantiles of a class of weight, relative to the median of this class: means over the
   // nine classes.
   constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
   return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
@@ -320,8 +322,8 @@ Measurements measurements(const Row& row) {
   return m;
 }
 
-// The max_stretch for which the force at the strain `extension` is kExtensionLoad: the lock exerts
-// the part of this load that exceeds the force of the secant stiffness.
+// The max_stretch for which the force at the strain `extension` is kExtensionLoad. The lock exerts the part of this
+// load that the secant stiffness does not exert.
 double max_stretch_for(Weave weave, double extension) {
   constexpr double kOnset = 0.7, kTension = 4e3;  // constants of forces::Lock
   const double rest = kExtensionLoad - secant_stiffness(weave, extension) * extension;

@@ -10,8 +10,7 @@
 
 namespace weft::scene {
 
-/// A value, and whether it is estimated by the rules in fabrics.cpp because no measurement is
-/// known.
+/// A value, and whether it is estimated by the rules in fabrics.cpp, because no measurement is known.
 struct MeasuredValue {
   double value = 0;
   bool estimated = false;
@@ -20,7 +19,7 @@ struct MeasuredValue {
 /// Quantities of a fabric that textile laboratories measure. EMT, G, B and HB are names of KES (see fabrics.cpp).
 struct Measurements {
   MeasuredValue density;                           ///< [kg/m²]
-  MeasuredValue thickness;                         ///< of the cloth itself [m]
+  MeasuredValue thickness;                         ///< of the cloth itself, not of its contact [m]
   MeasuredValue extension_weft, extension_warp;    ///< EMT: strain at kExtensionLoad [1]
   MeasuredValue shear;                             ///< G: shear force per width / shear angle [N/m]
   MeasuredValue bend_weft, bend_warp;              ///< B: bending stiffness per width [N·m]
@@ -30,6 +29,7 @@ struct Measurements {
                                                    ///< largest published value [1]
 };
 
+/// A named fabric: its measurements, and the material and finish that follow from them.
 struct Fabric {
   Material material;  ///< contact thickness, friction, drag and viscosities are chosen; all other
                       ///< values follow from `measured`

@@ -1,4 +1,4 @@
-// Collects the mistakes in a scene while it is read, and the place of each key.
+// Collects the mistakes in a scene and the place of each key while the scene is read.
 #pragma once
 
 #include <toml++/toml.h>
@@ -12,24 +12,25 @@
 
 namespace weft::scene {
 
-/// A place in the scene file, or an override on the command line.
+/// A place in the scene file, or an override of the command line.
 struct Place {
   int line = 0, column = 0;   ///< counted from 1; 0: none
   std::string override_text;  ///< see Mistake
 };
 
-/// Place of a node or key of a parsed document. `source`: of the node or key; its path is the text
-/// of the override that gave the node, and empty if the file did.
+/// Place of a node or key of a parsed document. `source`: its source region. If an override gave the node, the path in
+/// `source` is the text of this override; if the file gave it, this path is empty.
 Place place_of(const toml::source_region& source);
 
+/// The mistakes and the places of keys. A key path is the whole path of a key, such as cloth.band.size.
 class Findings {
  public:
-  /// Stores the place of `key`, a whole path such as cloth.band.size.
+  /// Stores the place of a key path.
   void set_place(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
   /// Whether the scene gives the key.
   bool has(const std::string& key) const { return places_.contains(key); }
-  /// The place of the key or, if no place is stored for it, of the innermost table around it that
-  /// has one; else 1:1.
+  /// The place of the key or, if none is stored, that of the innermost table around it that has one. If no table around
+  /// it has one: line 1, column 1.
   Place place(std::string key) const;
 
   /// Adds a mistake. `text`: what was expected, and what was found.
@@ -38,16 +39,16 @@ class Findings {
   void report(const std::string& key, std::string text);
   bool has_mistake(const std::string& key) const { return has_mistake_.contains(key); }
 
-  /// Stores the key path ("cloth.band") of the next entry of a list ("cloth"). Checks use it after reading.
+  /// Stores the key path ("cloth.band") of the next entry of a list ("cloth"), for the checks that follow reading.
   void add_entry(const std::string& list, std::string path) { entries_[list].push_back(std::move(path)); }
   const std::string& entry(const std::string& list, std::size_t i) const { return entries_.at(list).at(i); }
 
-  /// Returns and clears the mistakes, at most kMaxMistakes: first those of the file in its order,
-  /// then those of overrides. If there are more, a last entry gives the number of further mistakes.
+  /// Returns and clears the mistakes: first those of the file in its order, then those of overrides. The list has at
+  /// most kMaxMistakes mistakes; if there are more, one more entry gives the number of further mistakes.
   std::vector<Mistake> take_mistakes();
 
  private:
-  /// Sorts the mistakes, and removes those beyond kMaxMistakes.
+  /// Sorts the mistakes, and removes all after the first kMaxMistakes.
   void keep_first();
 
   std::vector<Mistake> mistakes_;

@@ -16,8 +16,8 @@ const Obstacle* obstacle_named(const Scene& scene, const std::string& name) {
   return name.empty() || found == scene.obstacles.end() ? nullptr : &*found;
 }
 
-/// The obstacle that `obstacle` follows, the one that this follows, and so on; each at most once.
-/// If the chain returns to `obstacle`, `obstacle` is the last entry.
+/// The chain of followed obstacles: the obstacle that `obstacle` follows, the one that this obstacle follows, and so
+/// on, each at most once. If the chain returns to `obstacle`, this is the last entry.
 std::vector<const Obstacle*> parents_of(const Scene& scene, const Obstacle& obstacle) {
   std::vector<const Obstacle*> chain;
   const Obstacle* parent = obstacle_named(scene, obstacle.follow);

@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-// Adds the names of all cloths that are below the cloth `name`.
+// Adds the names of all cloths that are below the cloth `name` to `below`.
 void add_below(const Scene& scene, const std::string& name, std::set<std::string>& below) {
   for (const Cloth& cloth : scene.cloths)
     if (cloth.name == name)
@@ -15,6 +15,7 @@ void add_below(const Scene& scene, const std::string& name, std::set<std::string
         if (below.insert(next).second) add_below(scene, next, below);
 }
 
+// Number of frames in which the layers are put on; see list_layers().
 int dressing_frames(const Scene& scene) {
   int frames = scene.preroll_frames();
   for (const Character& character : scene.characters)

@@ -9,21 +9,19 @@
 
 namespace weft::scene {
 
-/// Whether the cloth `outer` is worn over the cloth `inner`, directly or through other cloths.
-/// False if there is no cloth `outer`.
+/// Whether the cloth `outer` is worn over the cloth `inner`, directly or through other cloths. False if no cloth has
+/// the name `outer`.
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
-/// For each cloth, the number of layers below it: the number of other cloths in the longest chain
-/// that begins with this cloth and in which each cloth is worn over the next one. 0 if it is worn
-/// over no other cloth.
+/// The number of layers below each cloth: the number of other cloths in the longest chain that begins with this cloth
+/// and in which each cloth is worn over the next one. 0 if the cloth is worn over no other cloth.
 std::vector<std::size_t> layer_depths(const Scene& scene);
 
 using model::Layer;
 
-/// All layers from the skin outward, at least one. They are put on one after the other, at the
-/// beginnings of equal intervals, rounded to frames. The first interval begins at the start of the
-/// preroll. The last one ends with the preroll or, if earlier, after the shortest nonzero
-/// `dressing` of a character.
+/// All layers from the skin outward, at least one. The layers are put on one after the other, at the beginnings of
+/// equal intervals, rounded to frames. The first interval begins at the start of the preroll. The last interval ends
+/// with the preroll or, if this is earlier, after the shortest nonzero `dressing` of a character.
 std::vector<Layer> list_layers(const Scene& scene);
 
 }  // namespace weft::scene

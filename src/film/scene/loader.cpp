@@ -47,8 +47,8 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
   }
 }
 
-/// `text`: content of the file; nullopt if it cannot be read, which `findings` then contains as a
-/// mistake.
+/// Loads a scene. `text`: content of the file; nullopt if the file cannot be read (`findings` then contains this
+/// mistake).
 LoadResult load_from(const std::optional<std::string_view>& text, const std::filesystem::path& file,
                      const std::vector<std::string>& overrides, Findings& findings) {
   LoadResult result;

@@ -9,7 +9,7 @@ namespace weft::scene {
 
 namespace {
 
-// Documentation of the key `fabric`; lists the fabrics whose bending is measured.
+// Documentation of the key `fabric`. It names the fabrics whose bending is measured.
 std::string fabric_documentation() {
   std::vector<std::string> measured, estimated;
   for (const Fabric& fabric : fabrics())

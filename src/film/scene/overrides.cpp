@@ -32,8 +32,8 @@ bool is_plain_word(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), plain);
 }
 
-/// Parses a value. Returns the table { value = ... }, whose nodes have `source` as source path.
-/// Returns nothing if the text is neither a TOML value nor a plain word.
+/// Parses a value. Returns the table { value = ... }, whose nodes have `source` as source path; nothing if the text is
+/// neither a TOML value nor a plain word.
 std::optional<toml::table> parse_value(std::string_view text, const std::string& source) {
   const auto parse = [&](const std::string& value) -> std::optional<toml::table> {
     try {
@@ -49,8 +49,8 @@ std::optional<toml::table> parse_value(std::string_view text, const std::string&
   return is_plain_word(text) ? parse(fmt::format("\"{}\"", text)) : std::nullopt;
 }
 
-/// The entry of a list with the name `part` or, if no entry has this name, with the index `part`;
-/// null if there is none. If no entry has this name, `names` receives the names of all entries.
+/// Finds the entry of a list with the name `part` or, if no entry has this name, the entry with the index `part`; null
+/// if there is neither. If no entry has the name `part`, `names` receives the names of all entries.
 toml::node* find_entry(toml::array& list, const std::string& part, std::vector<std::string>& names) {
   for (toml::node& entry : list) {
     const auto* table = entry.as_table();
@@ -64,8 +64,7 @@ toml::node* find_entry(toml::array& list, const std::string& part, std::vector<s
   return is_index ? list.get(index) : nullptr;
 }
 
-/// Text that suggests the nearest name or, if none is similar, all names; empty if there are no
-/// names.
+/// Text that suggests the name most similar to `part` or, if none is similar, all names; empty if there are no names.
 std::string suggest_names(const std::string& part, const std::vector<std::string>& names) {
   const std::string nearest = suggestion(part, names);
   return !nearest.empty() || names.empty() ? nearest : fmt::format("; there is {}", fmt::join(names, ", "));
@@ -74,8 +73,8 @@ std::string suggest_names(const std::string& part, const std::vector<std::string
 }  // namespace
 
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
-  // Messages show this text as the place of a mistake. As source path, it also marks nodes that
-  // come from overrides.
+  // Messages show this text as the place of a mistake. As the source path of a node, it also marks the node as given by
+  // an override.
   std::string source = "--set " + override_text;
   std::replace_if(
       source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');

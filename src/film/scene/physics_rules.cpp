@@ -36,7 +36,8 @@ const Table& physics_key_rules() {
   return kTable;
 }
 
-/// Access to a member of the first key frame of a fan, which stores the values given directly in the table of the fan.
+/// Returns a function that returns a member of the first key frame of a fan. This key frame stores the values that the
+/// table of the fan gives directly.
 template <class Field>
 auto own_of_fan(Field FanKey::*field) {
   return [field](Fan& fan) -> Field& { return fan.keys.front().*field; };

@@ -6,7 +6,8 @@
 namespace weft::scene {
 namespace {
 
-/// Adds the keys of a ClothPart: they select particles of a cloth, and give the strength of the effect on each.
+/// Adds the keys of a ClothPart, which select particles of a cloth and give the strength of the effect on each
+/// particle.
 template <class S>
 void part_rows(TableBuilder<S>& rows) {
   rows.plain(Type::text, "panel", &S::panel,

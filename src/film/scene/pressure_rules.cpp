@@ -7,7 +7,7 @@
 namespace weft::scene {
 namespace {
 
-/// Name, range, unit and documentation of the quantity of one PressureControl.
+/// Name, range, unit and documentation of the quantity that belongs to one PressureControl.
 struct Quantity {
   const char* key;
   Range range;
@@ -37,8 +37,8 @@ void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const
 }  // namespace
 
 const Table& pressure_rules() {
-  // The ranges only keep sums finite; they are far above real values: silk bursts at a few kPa, and
-  // 1e9 m³ are a cubic kilometre.
+  // The ranges only keep sums finite. They are far above real values: silk bursts at a few kPa, and 1e9 m³ are a cubic
+  // kilometre.
   static const Quantity kGauge = {"gauge", within(-1e6, 1e6), "Pa",
                                   "pressure inside minus pressure outside; negative: it draws the cloth in"};
   static const Quantity kAir = {

@@ -17,8 +17,8 @@ std::string join_path(const std::string& path, std::string_view key) {
   return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
 }
 
-/// Place of a key. For the key of an override, toml++ stores no place; returns the place of its
-/// value instead.
+/// Place of a key. If an override gives the key, toml++ stores no place for it; the result is then the place of its
+/// value.
 Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
@@ -28,8 +28,8 @@ bool is_override(const toml::node& node) {
   return !place_of(node.source()).override_text.empty();
 }
 
-/// Whether the file gives the key of `rule`, but an override (--set) gives a key that excludes and
-/// thus replaces this key.
+/// Whether the file gives the key of `rule`, but an override (--set) gives a key that excludes this key, and thus
+/// replaces it.
 bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
   const toml::node* node = table.get(rule.key);
   return node != nullptr && !is_override(*node) && std::ranges::any_of(rules, [&](const Rule& other) {
@@ -50,7 +50,7 @@ std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
   const bool cut = text.size() > kMaxShownCharacters;
   if (cut) {
-    // Move the end back over continuation bytes, so that no UTF-8 character is cut.
+    // Move the end back over continuation bytes, so that the end is not inside a UTF-8 character.
     std::size_t end = kMaxShownCharacters;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
     text = text.substr(0, end);
@@ -63,7 +63,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  // A longer name is hardly a misspelt key, and the search would be slow.
+  // A longer name is probably not a misspelt key, and the search would be slow.
   if (name.size() > 64) return {};
   const std::string nearest = nearest_name(name, known);
   return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
@@ -92,7 +92,7 @@ void Reader::read(const toml::table& table, const Table& rules, void* target, co
   };
   read_rules(rules.rules);
   const Variant* variant = rules.variant_of(target);
-  // If the selector has a mistake, report only this one, and accept the keys of all variants.
+  // If the selector has a mistake, report only this mistake, and accept the keys of all variants.
   const bool undecided = !rules.selector.empty() && findings_.has_mistake(join_path(path, rules.selector));
   if (variant != nullptr && !undecided) read_rules(variant->rules);
   report_unknown(table, rules, undecided ? nullptr : variant, path);
@@ -111,8 +111,8 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   }
   findings_.set_place(key, place_of(node->source()));
 
-  // If two keys exclude each other, a key from --set replaces one from the file. If both come from
-  // --set or both from the file, report a mistake.
+  // If two keys exclude each other, a key of --set replaces a key of the file. If --set gives both or the file gives
+  // both, report a mistake.
   const toml::node* excluded = rule.excludes.empty() ? nullptr : table.get(rule.excludes);
   if (excluded != nullptr && is_override(*node) == is_override(*excluded)) {
     findings_.report(key, place_of(node->source()),
@@ -183,7 +183,7 @@ void Reader::report_unknown(const toml::table& table, const Table& rules, const 
     const std::string name(key.str());
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
 
-    // Suggest the likeliest cause: a key of another variant, else a key of an inner table, else a misspelling.
+    // Name the most probable cause: a key of another variant, else a key of an inner table, else a misspelling.
     std::string text = "unknown key";
     std::vector<std::string> owners;
     for (const Variant& each : rules.variants) {

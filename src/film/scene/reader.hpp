@@ -12,10 +12,9 @@
 
 namespace weft::scene {
 
-/// Describes a node for messages, such as: -0.001; the text "heavy"; an array of 4 values.
+/// Describes a node for messages, such as `-0.001`, `the text "heavy"` or `an array of 4 values`.
 std::string describe_node(const toml::node& node);
-/// The text in quotes for messages: its first 40 bytes at most, with ASCII control characters
-/// escaped.
+/// The text in quotes, for messages: at most its first 40 bytes, with escaped ASCII control characters.
 std::string in_quotes(std::string_view text);
 /// Whether the text is valid as the name of a list entry.
 bool is_name(std::string_view text);
@@ -23,21 +22,22 @@ bool is_name(std::string_view text);
 /// is similar or `name` is longer than 64 bytes.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 
+/// Reads one document. Findings receives the mistakes and the places of keys.
 class Reader {
  public:
   /// `folder`: base of relative file names.
   Reader(Findings& findings, std::filesystem::path folder) : findings_(findings), folder_(std::move(folder)) {}
 
-  /// Fills `target`, a struct that `rules` describes, from the table at the key path `path` (empty:
-  /// the whole file). Reports mistakes; a key with a mistake keeps its default.
+  /// Fills `target`, a struct that `rules` describes, from `table`. `path`: key path of the table; empty for the root.
+  /// Reports mistakes; a key with a mistake keeps its default.
   void read(const toml::table& table, const Table& rules, void* target, const std::string& path);
 
  private:
   void read_rule(const toml::table& table, const Rule& rule, void* target, const std::string& path);
   void read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path);
-  /// The key path of a list entry. If the entry has a valid name that is not yet in `names`, the
-  /// path ends with this name, and `names` receives it. Otherwise, the path is `by_index`, which
-  /// ends with the index. Reports a name that occurs twice.
+  /// The key path of a list entry. If the entry has a valid name that is not yet in `names`, the path ends with this
+  /// name, and `names` receives the name. Otherwise, the path is `by_index`, which ends with the index. Reports a name
+  /// that occurs twice.
   std::string entry_path(const toml::table& table, const Rule& rule, const std::string& path,
                          const std::string& by_index, std::set<std::string>& names);
   void report_unknown(const toml::table& table, const Table& rules, const Variant* variant, const std::string& path);

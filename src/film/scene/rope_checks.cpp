@@ -10,10 +10,10 @@
 namespace weft::scene {
 namespace {
 
-constexpr long kMaxRopeParticles = 1'000'000;  // of all ropes together
+constexpr long kMaxRopeParticles = 1'000'000;  // maximum number for all ropes together
 
-// Reports mistakes in the start path of a rope. Returns whether start_shape() can be computed, to
-// check the pieces.
+// Reports mistakes in the start path of a rope. Returns whether start_shape() can be computed, so that the pieces can
+// be checked.
 bool check_course(const Scene& scene, const Rope& rope, const std::string& path, Findings& findings) {
   if (rope.points.empty()) {
     for (const auto& [key, end] : {std::pair("from", rope.from), std::pair("to", rope.to)})
@@ -54,6 +54,7 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
   return true;
 }
 
+// Reports too many particles and too short pieces. `particles`: number of particles of all ropes so far.
 void check_pieces(const Scene& scene, const Rope& rope, const std::string& path, long& particles, Findings& findings) {
   const RopeShape shape = start_shape(rope, scene.up);
   particles += static_cast<long>(shape.places.size());

@@ -6,8 +6,8 @@
 
 namespace weft::scene {
 
-/// Reports each rope that has no valid start path, pieces shorter than kMinRopePiece, or the name
-/// of a cloth. Also reports too many particles of all ropes together.
+/// Reports each rope that has no valid start path, that has pieces shorter than kMinRopePiece, or that has the name of
+/// a cloth. Also reports if all ropes together have too many particles.
 void check_ropes(const Scene& scene, Findings& findings);
 
 }  // namespace weft::scene

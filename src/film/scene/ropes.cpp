@@ -10,12 +10,11 @@ namespace weft::scene {
 namespace {
 
 constexpr double kStandardGravity = 9.81;  // [m/s²]; the weight in RopeMaterial::bending_length refers to it
-constexpr int kMinRopePieces = 4;
-constexpr int kSplinePieces = 16;  // pieces of a spline between two points
-constexpr int kCatenaryPieces = 512;
+constexpr int kMinRopePieces = 4;          // minimum number of pieces that the program chooses
+constexpr int kSplinePieces = 16;          // number of lines that approximate a spline between two points
+constexpr int kCatenaryPieces = 512;       // number of lines that approximate a catenary
 
-// The polyline through the points of a rope. If the rope is closed, the polyline ends at the first
-// point.
+// A polyline along the points of a rope. If the rope is closed, the polyline ends at the first point.
 std::vector<Vec3> path_through(const Rope& rope) {
   const std::vector<Vec3>& points = rope.points;
   const auto count = static_cast<int>(points.size()), spans = rope.closed ? count : count - 1;
@@ -33,10 +32,10 @@ std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, cons
   const double rise = up.dot(chord);
   const Vec3 along = chord - rise * up;
   const double span = along.norm();
-  // Solve sinh(u) / u = ratio by bisection. The catenary parameter a = span / (2 u) is the ratio of
-  // the horizontal tension to the weight per length [m].
+  // Solves sinh(u) / u = ratio by bisection. The catenary parameter a = span / (2 u) is the ratio of the horizontal
+  // tension to the weight per length [m].
   const double ratio = std::sqrt(length * length - rise * rise) / span;
-  if (ratio <= 1) return {from, to};  // only rounding errors make the length exceed the chord
+  if (ratio <= 1) return {from, to};  // the length exceeds the chord only by rounding errors
   double low = 0, high = 1;
   while (std::sinh(high) / high < ratio) high *= 2;
   for (int k = 0; k < 100; ++k) {
@@ -75,11 +74,10 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
 
 }  // namespace
 
-// For nylon, polyester, polypropylene and steel (wire with a fibre core), mass and stiffness are
-// from formulas for mooring ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py).
-// For comparison: by data sheets of Robline, ropes of 10 mm have a mass of 680 kg/m per m²
-// (polyester) or 430 (polypropylene). The values of cotton and all bending lengths are estimates,
-// based on a limp line of 6 mm with a bending length of 9 cm.
+// Mass and stiffness of nylon, polyester, polypropylene and steel (wire with a fibre core) are from formulas for
+// mooring ropes, as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). For comparison: according to data
+// sheets of Robline, ropes of 10 mm have a mass of 680 kg/m per m² (polyester) or 430 (polypropylene). The values of
+// cotton and all bending lengths are estimates, based on a limp line of 6 mm with a bending length of 9 cm.
 const std::vector<RopeMaterial>& rope_materials() {
   static const std::vector<RopeMaterial> kMaterials = {
       {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},

@@ -9,8 +9,7 @@
 
 namespace weft::scene {
 
-/// Constants of a kind of rope. `mass` and `stretch` are the values of a rope, divided by the
-/// square of its diameter.
+/// Constants of a kind of rope. `mass` and `stretch` are the values of a rope divided by the square of its diameter.
 struct RopeMaterial {
   std::string name;
   double mass;            ///< mass per length / diameter² [kg/m per m²]
@@ -40,21 +39,20 @@ RopeShape start_shape(const Rope& rope, UpAxis up);
 /// Default length of a piece [diameters].
 inline constexpr double kRopePiece = 3;
 using model::kMinRopePiece;
-/// Minimum horizontal distance between the ends of a rope for which hangs_slack() is true
-/// [diameters].
+/// Minimum horizontal distance between the ends of a rope that hangs slack (hangs_slack()) [diameters].
 inline constexpr double kMinRopeSpan = 4;
 /// Whether the scene gives only the ends of a rope, and start_length() exceeds their distance.
 bool hangs_slack(const Rope& rope);
 
-/// Rest length at the start that the scene gives: `length` or, without it, that of the first key
-/// [m]. If the scene gives neither, returns nullopt; the rest length is then that of the start
-/// shape.
+/// Rest length at the start that the scene gives [m]: `length` or, without it, the length of the first key. nullopt if
+/// the scene gives neither; the rest length is then that of the start shape.
 std::optional<double> start_length(const Rope& rope);
 
 /// The one-dimensional cloth that is simulated for a rope.
 Cloth as_cloth(const Rope& rope);
 /// Appends as_cloth() of each rope to the cloths of the scene.
 void add_rope_cloths(Scene& scene);
+/// Removes the cloths that add_rope_cloths() has appended.
 void remove_rope_cloths(Scene& scene);
 
 }  // namespace weft::scene

@@ -1,6 +1,6 @@
-// The scene format as data: a table of rules, one for each TOML key. Reader, the JSON schema and
-// the effective scene use these rules and contain no key, range or default of their own. Defaults
-// are the initialisers of the structs that rules fill.
+// The scene format as data: tables of rules, with one rule for each TOML key. Reader, the JSON schema and the effective
+// scene use these rules, and contain no key, range or default themselves. Defaults are the initialisers of the structs
+// that the rules fill.
 #pragma once
 
 #include <functional>
@@ -11,10 +11,11 @@
 
 namespace weft::scene {
 
-/// A value as read from TOML or written to it: absent, flag, text, numbers or texts. Numbers: one,
-/// or one per component; for Type::points, those of all points, one after the other.
+/// A value that is read from TOML or written to it: absent, flag, text, numbers or texts. Numbers: a single one, or one
+/// per component; for Type::points, the numbers of all points one after the other.
 using Value = std::variant<std::monostate, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
+/// Type of the value of a key.
 enum class Type {
   boolean,
   text,
@@ -30,7 +31,7 @@ enum class Type {
   keys,  ///< list of key frames: tables in time order, usually written as keys = [{...}, ...]
 };
 
-/// Bounds of each number of a value. All numbers have both bounds, so that no scene can cause an overflow.
+/// Bounds of each number of a value. Each number has both bounds, so that no scene can cause an overflow.
 struct Range {
   double low = 0, high = 0;
   bool low_open = false;  ///< the lower bound itself is not allowed
@@ -42,6 +43,7 @@ inline Range above(double low, double high) {
   return {low, high, true};
 }
 
+/// Whether a scene must give a key.
 enum class Need {
   optional,
   required,
@@ -74,15 +76,13 @@ struct Rule {
 
   const Table* table = nullptr;                     ///< table, list, keys: the rules of an entry
   std::function<void*(void*)> inner;                ///< table: the struct of the inner table
-  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write;
-                                                    ///< table: whether to write it (0: no); absent:
-                                                    ///< yes
+  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0 if the
+                                                    ///< effective scene omits it (without function: never)
   std::function<void*(void*, std::size_t)> entry;   ///< list, keys: entry i
   std::function<void*(void*, std::size_t)> append;  ///< list, keys: creates entry i with its defaults
 };
 
-/// Rules that apply only if the selector of the table has the value `name`; for example, the keys
-/// of one shape.
+/// Rules that apply only if the selector of the table has the value `name`, such as the keys of one shape.
 struct Variant {
   std::string name;
   std::vector<Rule> rules;
@@ -99,8 +99,7 @@ struct Table {
   /// The rule of this key in `rules`, or the variant of this name; null if there is none.
   const Rule* find(std::string_view key) const;
   const Variant* find_variant(std::string_view name) const;
-  /// The variant that the selector in the struct `target` selects; null if the table has no
-  /// selector.
+  /// The variant that the selector in the struct `target` selects; null if the table has no selector.
   const Variant* variant_of(void* target) const;
 };
 

@@ -1,5 +1,5 @@
-// The rules of the scene format: each key with its unit, range and documentation. Defaults are the
-// initialisers in scene.hpp. Upper bounds ensure that no single value exhausts memory or time.
+// The rules of the scene format: each key with its unit, range and documentation. Defaults are the initialisers in
+// scene.hpp. Because of the upper bounds, no single value can exhaust memory or time.
 #include <array>
 #include <cmath>
 
@@ -19,7 +19,7 @@ namespace weft::scene {
 
 namespace {
 
-/// Converts a vector from axes with z up to axes with the up axis of the scene.
+/// Converts a vector from axes with z up to the axes of the scene.
 Vec3 rotate_to_up_axis(UpAxis up, const Vec3& z_up) {
   return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
 }
@@ -255,7 +255,7 @@ const Table& cloth_rules() {
   return kTable;
 }
 
-/// Access to a member of the shape of an obstacle.
+/// Returns a function that returns a member of the shape of an obstacle.
 template <class Kind, class Field>
 auto of_shape(Field Kind::*field) {
   return [field](Obstacle& o) -> Field& { return std::get<Kind>(o.shape).*field; };
@@ -392,7 +392,7 @@ void append_camera(Scene& s, std::size_t) {
 }  // namespace
 
 const Table& scene_rules() {
-  // The up axis comes first, because defaults of later keys depend on it.
+  // The rule of the up axis comes first, because the defaults of later keys depend on it.
   static const Table kTable =
       TableBuilder<Scene>("A scene of Weft: SI units, angles in degrees, colors in sRGB.")
           .choice_by(

@@ -1,6 +1,5 @@
-// A checked scene: plain values with all defaults filled in. Units are SI units, except where
-// another one is given. A "key frame" is a value at one time; a "key" alone is a key of the TOML
-// text.
+// A checked scene: plain values with all defaults. Units are SI units unless another unit is given. A "key frame" is a
+// value at one time; a "key" alone is a key of the TOML text.
 #pragma once
 
 #include <cmath>
@@ -28,7 +27,7 @@
 
 namespace weft::scene {
 
-// Types of the physics that a scene uses unchanged.
+// Types of the physics that scenes use unchanged.
 using Integrator = integrator::Method;
 using model::Bounds;
 using model::Contact;
@@ -59,13 +58,13 @@ enum class UpAxis { y, z };
 
 enum class HeatQuantity { none, strain, speed };
 
+/// Length of the film, frame rate and time steps.
 struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
   double fps = 25;      ///< frames per second
   double preroll = 0;   ///< time simulated before frame 0 and not shown [s]
-  double step = 0.01;   ///< see model::Time::step [s]
-  /// Allowed local error of positions per step [m], which determines the steps in place of `step`;
-  /// absent: `step` does.
+  double step = 0.01;   ///< maximum time step [s]; see model::Time::step
+  /// Allowed local error of positions per step [m]. If present, the step length follows from it, else from `step`.
   std::optional<double> tolerance = std::nullopt;
   Integrator integrator = Integrator::implicit_euler;
 };
@@ -93,9 +92,10 @@ struct Finish {
   Threads threads = Threads::plain;
 };
 
+/// How an object is drawn.
 struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< colours of panels that differ from those of the cloth
-  bool as_file = true;             ///< characters: use the colours and pictures of their file, if any
+  bool as_file = true;             ///< characters: colours and pictures of their file are used, if there are any
   double roughness = 0.6;
   std::optional<double> gloss;        ///< cloth: gloss of the threads (absent: that of the fabric);
                                       ///< obstacles: strength of a clear coat (absent: 0)
@@ -112,14 +112,15 @@ struct Look : Paint {
   bool visible = true;
 };
 
-/// Key frame of a pin: the pose in which the pin holds its particles at one time. The particles
-/// rotate about their centroid.
+/// Key frame of a pin: the pose in which the pin holds its particles at one time. The particles rotate about their
+/// centroid.
 struct PinKey {
   double time = 0;  ///< [s], strictly increasing
   Pose pose;        ///< its position: the displacement of the centroid or, if `in_world`, the centroid
   bool in_world = false;
 };
 
+/// The motion of the particles of a pin.
 struct PinTrack {
   Interpolation interpolation = Interpolation::cubic;
   std::vector<PinKey> keys;  ///< empty: the particles keep their start positions
@@ -127,11 +128,10 @@ struct PinTrack {
 
 enum class VertexColor { none, red, green, blue, brightness };
 
-/// A part of a cloth: the particles from `low` to `high`, in fractions of the size of the cloth
-/// along weft and warp. For a mesh, this size is the extent along x and y before the pose is
-/// applied. `mask`, `vertex_color` and `vertex_group` each give a particle a fraction from 0 to 1:
-/// the strength of the effect on the particle. If several of them are given, the fractions are
-/// multiplied.
+/// A part of a cloth: the particles between the corners `low` and `high`, in fractions of the size of the cloth along
+/// weft and warp. For a mesh, this size is the extent along x and y before the pose is applied. `mask`, `vertex_color`
+/// and `vertex_group` each give a particle a fraction from 0 to 1, which is the strength of the effect on the particle.
+/// If several of them are given, their fractions are multiplied.
 struct ClothPart {
   std::string panel;  ///< pattern: only this panel, to which low, high and mask then refer; empty: all panels
   Vec2 low{0, 0}, high{1, 1};
@@ -141,16 +141,15 @@ struct ClothPart {
   VertexColor vertex_color = VertexColor::none;  ///< mesh: colour channel that gives fractions
   std::string vertex_group;  ///< mesh: vertex group or bone whose weights are fractions; empty: none
 
-  /// Whether a particle at the fractions (u, v) is from `low` to `high`. Thanks to the tolerance
-  /// kSlack, the part includes particles at a bound that the scene gives with nine digits, such as
-  /// 0.333333333.
+  /// Whether a particle at the fractions (u, v) is between `low` and `high`. With the tolerance kSlack, the part
+  /// contains particles at a bound that the scene gives with nine digits, such as 0.333333333.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
     return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
   }
 };
 
-/// A pin: particles that are held in place, or moved.
+/// A pin: particles of a cloth that are held in place or moved.
 struct Pin : ClothPart {
   std::string follow;              ///< body or "<character>.<part>" with which the particles move; empty: none
   PinTrack motion;                 ///< used if `follow` is empty
@@ -158,13 +157,12 @@ struct Pin : ClothPart {
   std::optional<double> strength;  ///< stiffness of the spring of a particle with fraction 1 [N/m];
                                    ///< absent: particles with a fraction of at least 0.5 are held
                                    ///< exactly
-  /// Distance from the part, along the cloth at rest, over which the pull on the particles around
-  /// it falls to 0 [m]; needs `strength`.
+  /// Distance from the part, along the cloth at rest, over which the pull on the particles around the part falls to 0
+  /// [m]; needs `strength`.
   double fade = 0;
 };
 
-/// The two names in a `follow`: of the body and, for a part of a character, of the part (else
-/// empty).
+/// The two names in a `follow`: name of the body, and name of the part of a character (empty if there is none).
 struct Followed {
   std::string body, part;
 };
@@ -178,8 +176,7 @@ struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
-/// Springs from particles of a cloth to points of another cloth or body, such as buttons, pegs and
-/// tacks.
+/// Springs between particles of a cloth and points of another cloth or body, such as buttons, pegs and tacks.
 struct Attachment : ClothPart {
   std::string name, cloth, to;        ///< `to`: the other cloth, rope or body
   double stiffness = 10000;           ///< of the spring of a particle with fraction 1 [N/m]
@@ -188,23 +185,23 @@ struct Attachment : ClothPart {
   std::optional<double> breaking_load;  ///< sum of the spring forces above which all springs break [N]; absent: never
 };
 
-/// What the start does if the cloth touches or crosses surfaces: it refuses the scene (as_given),
-/// or moves the cloth off them (untangle).
+/// Action if the cloth touches or crosses surfaces at the start: the scene is refused (as_given), or the cloth is moved
+/// off the surfaces (untangle).
 enum class ClothStart { as_given, untangle };
-/// `quads`, `aligned_triangles` and `crossed_triangles`: rectangles of cloth, which differ in their
-/// meshes.
+/// `quads`, `aligned_triangles` and `crossed_triangles` are rectangles of cloth with different meshes.
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern, rope };
 /// Source of the rest shape of a mesh. `automatic`: the UVs if they are panels of cloth (UvRest), else the mesh.
 enum class ClothRest { automatic, mesh, uv };
 
 struct Rope;
 
+/// A sheet of cloth, or the one-dimensional cloth of a rope.
 struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< rectangles: size along weft and warp [m]
   int particles_weft = 41, particles_warp = 41;  ///< rectangles; crossed_triangles have one more per cell
-  Vec2 grading{1, 1};                            ///< rectangles: last spacing of particles / first spacing
+  Vec2 grading{1, 1};                            ///< rectangles: ratio of the last to the first spacing of particles
   std::filesystem::path file;                    ///< mesh or sewing pattern; absolute path
   double scale = 1;                              ///< mesh, pattern: factor on all lengths of the file
   FileUp up = FileUp::as_file;                   ///< mesh: up axis of the file
@@ -220,9 +217,9 @@ struct Cloth {
   Pose pose;               ///< of the middle of a rectangle (weft along x, warp along y), or of the origin of a file
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
   Vec3 spin{0, 0, 0};      ///< angular velocity at the start, about the centre of mass [degrees/s]
-  Vec2 start_scale{1, 1};  ///< lengths at the start / lengths at rest, along weft and warp
+  Vec2 start_scale{1, 1};  ///< ratio of the lengths at the start to those at rest, along weft and warp
   std::optional<ClothStart> start;  ///< absent: see starts_untangled()
-  std::vector<std::string> over;    ///< names of cloths directly below this one
+  std::vector<std::string> over;    ///< names of the cloths directly below this cloth
   double start_noise = 0;           ///< maximum random displacement of a particle at the start, along each axis [m]
   Material material;
   Pressure pressure;
@@ -232,9 +229,9 @@ struct Cloth {
   std::shared_ptr<const Rope> rope;  ///< the rope for which this cloth is simulated; null: a sheet
 };
 
-/// Whether the start moves this cloth off surfaces that it touches or crosses. The default is true
-/// for patterns, because the program, not the scene, places their panels. (Cloth worn `over` other
-/// cloth is moved off that cloth in any case.)
+/// Whether the cloth is moved off surfaces that it touches or crosses at the start. The default is true for patterns,
+/// because the program, not the scene, places their panels. (Cloth worn `over` other cloth is always moved off that
+/// cloth.)
 inline bool starts_untangled(const Cloth& cloth) {
   return cloth.start ? *cloth.start == ClothStart::untangle : cloth.shape == ClothShape::pattern;
 }
@@ -270,6 +267,7 @@ struct Rope {
   std::vector<Weight> weights;
 };
 
+/// A rigid body: it rests, or key frames or forces move it.
 struct Obstacle {
   std::string name;
   Shape shape;
@@ -279,12 +277,12 @@ struct Obstacle {
   double mass = 0;         ///< [kg]; 0: follows from `density`
   double density = 0;      ///< [kg/m³]; 0: follows from `mass`; if both are 0, forces do not move the obstacle
   Vec3 velocity{0, 0, 0};  ///< at the start or at `release`, if forces move it and it has at most one key frame [m/s]
-  Vec3 spin{0, 0, 0};      ///< likewise: angular velocity about the centre of mass [degrees/s]
-  /// If forces move the obstacle: time from which they do [s]; until then, it rests or follows its
-  /// key frames. Absent: forces always do.
+  Vec3 spin{0, 0, 0};      ///< at the same time: angular velocity about the centre of mass [degrees/s]
+  /// If forces move the obstacle: time at which they begin to act [s]; until then, the obstacle rests or follows its
+  /// key frames. Absent: forces act from the start.
   std::optional<double> release;
-  /// Obstacle or "<character>.<part>" with which this obstacle moves: the rigid motion of that body
-  /// since the start of the run is applied in addition to the motion of this obstacle. Empty: none.
+  /// Obstacle or "<character>.<part>" that this obstacle follows: the rigid motion of the followed body since the start
+  /// of the run is added to the motion of this obstacle. Empty: none.
   std::string follow = {};
   double friction = 0.3;
   bool collide = true;
@@ -299,14 +297,14 @@ inline bool is_dynamic(const Obstacle& obstacle) {
 
 enum class Stance { first, rest };
 
-/// Names of one joint in two files. Needed only if the program does not find the joint in a file.
+/// Names of one joint in two files. Only needed if the program does not find the joint in one of them.
 struct JointNames {
   std::string name;                   ///< one of character::joint_names()
   std::optional<std::string> body;    ///< its name in the file of the character; absent: found by the program
-  std::optional<std::string> motion;  ///< its name in the file of the motion; absent: likewise
+  std::optional<std::string> motion;  ///< its name in the file of the motion; absent: found by the program
 };
 
-/// Horizontal travel of a clip: as in its file, none (in place), or at a mean speed.
+/// Horizontal motion of a clip: as in its file, none (in place), or with a given mean speed.
 struct Travel {
   enum class Kind { file, none, speed };
   Kind kind = Kind::file;
@@ -322,9 +320,10 @@ struct SkeletonMotion {
   Travel travel;
   /// Pose during Character::dressing. `first`: that of the clip at Character::start; `rest`: that of the skeleton.
   Stance stance = Stance::first;
-  /// Angle between the straight arms and the downward direction, in `stance` [degrees]; absent: as in the pose.
+  /// Angle between the straight arms and the downward direction in the pose of `stance` [degrees]; absent: as in the
+  /// pose.
   std::optional<double> stance_arms;
-  bool loop = false;     ///< whether the clip is repeated; each round starts where the one before ended
+  bool loop = false;     ///< whether the clip is repeated; each round starts where the round before ended
   double crossfade = 0;  ///< clip time at the end of a round in which it is blended into the next one [s]; 0: none
 };
 
@@ -335,8 +334,7 @@ struct CharacterFile : SkeletonMotion {
   std::vector<std::string> without;  ///< names of the meshes to leave out, or of their nodes
 };
 
-/// The built-in mannequin; see character::MannequinBuild. In scenes with z up, it faces −y and
-/// walks along −y.
+/// The built-in mannequin; see character::MannequinBuild. In scenes with z up, it faces −y and walks along −y.
 struct Mannequin : SkeletonMotion {
   double height = 1.75;       ///< [m]
   double girth = 1;           ///< factor on widths and depths of the slender default
@@ -356,8 +354,8 @@ struct MeshSequence {
 
 using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 
-/// A part of a character with contact settings of its own. `bone` or `material` selects it; without
-/// both, `name` does, such as "head".
+/// A part of a character with its own contact settings. `bone` or `material` selects the part; if both are absent,
+/// `name` selects it, such as "head".
 struct BodyPart {
   std::string name;
   std::optional<std::string> bone;      ///< node of the character's file; includes all nodes below it
@@ -367,8 +365,7 @@ struct BodyPart {
   double thickness = 0;            ///< thickness of padding [m]; half of it is added to the contact distance
 };
 
-/// A body with prescribed motion. The program converts this motion to key frames of the body's
-/// vertices.
+/// A body with prescribed motion. The program converts this motion to key frames of the vertices of the body.
 struct Character {
   std::string name;
   CharacterSource source;
@@ -401,11 +398,12 @@ inline SkeletonMotion* acting_of(Character& character) {
   return const_cast<SkeletonMotion*>(acting_of(std::as_const(character)));
 }
 
+/// Key frame of a light.
 struct LightKey {
   double time = 0;  ///< [s]
   /// Suns: direction in which the light travels. Spots: position and target [m].
   Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
-  double intensity = 1;
+  double intensity = 1;  ///< with 1, a white surface that faces the light (spot: at its target) looks white
 };
 
 struct Light {
@@ -422,9 +420,10 @@ enum class StageLook { studio, stage, daylight, clay, wire, strain };
 
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;  ///< name; empty: the first camera or, if there is none, one that the program places
+  std::string camera;  ///< name; empty: the first camera or, without cameras, one that the program places
   StageLook look = StageLook::studio;
   std::optional<Vec3> sky_color, ground_color;  ///< sRGB; absent: those of the look
+  /// Fraction of all light that comes from the surroundings; absent: that of the look.
   std::optional<double> sky_intensity;
   double exposure = 0;                     ///< exposure compensation [stops]
   double motion_blur = 0;                  ///< shutter angle [degrees]
@@ -446,7 +445,7 @@ struct Scene {
   Solver solver;
   Contact contact;
   std::vector<Cloth> cloths;  ///< cloths of ropes come last
-  std::vector<Rope> ropes;    ///< for each of them, `cloths` has a cloth
+  std::vector<Rope> ropes;    ///< `cloths` contains a cloth for each of them
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;

@@ -1,5 +1,5 @@
-// The JSON schema of a format (Draft 2020-12). It uses only features of draft 7, because some
-// editors know no later ones.
+// The JSON schema of a format (Draft 2020-12). It uses only features of draft 7, because some editors do not support
+// later drafts.
 #include <fmt/format.h>
 
 #include "core/json.hpp"
@@ -61,8 +61,8 @@ Json type_schema(const Rule& rule) {
   return {};
 }
 
-/// The description of a key: its documentation, components, unit, default and excluded key, such as
-/// "length of the film [s]".
+/// The description of a key, such as "length of the film [s]": documentation, components, unit, default and excluded
+/// key.
 std::string description(const Rule& rule) {
   std::string text = rule.documentation;
   if ((rule.type == Type::number || rule.type == Type::points) && !rule.components.empty())
@@ -83,7 +83,7 @@ Json default_of(const Rule& rule, void* defaults) {
   return nullptr;
 }
 
-/// Adds the key of one rule to the properties and, if it must be given, to the required keys of a table.
+/// Adds the key of one rule to the properties of a table and, if the key is required, to its required keys.
 void add_rule(Json& schema, const Rule& rule, void* defaults) {
   Json property = type_schema(rule);
   property["description"] = description(rule);
@@ -95,7 +95,7 @@ void add_rule(Json& schema, const Rule& rule, void* defaults) {
   if (rule.need == Need::required) schema["required"].push_back(rule.key);
 }
 
-/// The schema of a table with its common rules and those of `variant`; null: only the common rules.
+/// The schema of a table with its common rules and the rules of `variant`. If `variant` is null: only the common rules.
 Json variant_schema(const Table& table, const Variant* variant) {
   Json schema = {{"type", "object"}, {"description", table.documentation}, {"properties", Json::object()}};
   const auto defaults = table.make();
@@ -116,7 +116,7 @@ bool allow_same_values(Json one, Json other) {
   return one == other;
 }
 
-/// The schema that holds if the selector selects this variant.
+/// A schema that a table fulfils if its selector selects this variant.
 Json condition(const Table& table, const Variant& variant) {
   Json when = {{"properties", {{table.selector, {{"enum", {variant.name}}}}}}};
   // If the selector is absent, the default variant applies.
@@ -126,9 +126,9 @@ Json condition(const Table& table, const Variant& variant) {
   return when;
 }
 
-// The schema of a table. Its properties are those of all variants, so that editors can complete
-// them. For each variant, a condition gives the allowed keys, so that editors show which key is
-// wrong. With oneOf instead, editors would only show that the table is wrong.
+// The schema of a table. Its properties are those of all variants, so that editors can complete them. For each variant,
+// a condition gives the allowed keys, so that editors show which key is wrong. If the schema used oneOf, editors would
+// only show that the table is wrong.
 Json table_schema(const Table& table) {
   Json schema = variant_schema(table, nullptr);
   if (table.variants.empty()) return schema;

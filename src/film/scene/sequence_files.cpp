@@ -10,8 +10,8 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// A sort key that orders names by their numbers. In the key, numbers have no leading zeros, and
-/// before each number is a character for the count of its digits.
+/// A sort key that orders names by the numbers in them. In the key, numbers have no leading zeros, and a character
+/// before each number stands for the count of its digits.
 std::string sort_key(const std::string& name) {
   std::string key;
   for (std::size_t i = 0; i < name.size();) {

@@ -8,6 +8,7 @@
 
 namespace weft::scene {
 
+/// Axis of a file that points up. `as_file`: as the file states it.
 enum class FileUp { as_file, x, y, z };
 
 struct Sphere {
@@ -15,19 +16,19 @@ struct Sphere {
 };
 struct BoxShape {
   Vec3 size{1, 1, 1};
-  double bevel = 0;
+  double bevel = 0;  ///< radius of the rounded edges
 };
-/// Its axis is the up axis. Its origin is at half the height, its base at −height / 2.
+/// A cone whose axis is the up axis. Its origin is at half the height, its base at −height / 2.
 struct Cone {
   double radius = 0.5, height = 1;
 };
 struct Torus {
-  double radius = 0.5, tube_radius = 0.15;
+  double radius = 0.5, tube_radius = 0.15;  ///< radius: from the centre to the middle of the tube
 };
 struct Cylinder {
   double radius = 0.5, height = 1;
 };
-/// Half of a tube, open upward, with its length along x. `radius`: of the inner side.
+/// Half of a tube, open at the top, with its length along x. `radius`: inner radius.
 struct HalfPipe {
   double radius = 1, length = 2, thickness = 0.05;
 };

@@ -12,8 +12,8 @@ const std::vector<double>& numbers_of(const Value& value) {
 
 }  // namespace
 
-// In these functions, adding 0.0 turns −0 into 0: the text "-0" would be read back as the integer
-// 0, another value.
+// These functions add 0.0 to convert −0 to 0, because reading the text "-0" would give the integer 0, which is another
+// value.
 Value to_value(double number) {
   return std::vector<double>{number + 0.0};
 }
@@ -76,8 +76,7 @@ void assign(Vec3& target, const Value& value) {
 void assign(Quat& target, const Value& value) {
   const std::vector<double>& wxyz = numbers_of(value);
   target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  // If its length is 1 up to rounding, keep the quaternion unchanged: writing and reading it again
-  // then changes no bit.
+  // A quaternion whose length is 1 up to rounding stays unchanged, so that writing and reading it again changes no bit.
   if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
 }
 

@@ -1,6 +1,5 @@
-// Builds tables of rules. Each rule (row) binds a key to the struct member that it fills. Code that
-// does not depend on the type of the struct is in table_builder.cpp, so that it is compiled only
-// once.
+// Builds tables of rules. Each rule (row) binds a key to the struct member that it fills. Code that does not depend on
+// the type of the struct is in table_builder.cpp, so that it is compiled only once.
 #pragma once
 
 #include <functional>
@@ -32,8 +31,7 @@ Value to_value(const std::optional<T>& value) {
   return value ? to_value(*value) : Value{};
 }
 
-// These functions convert a Value to a struct member. Reader has checked type, range and number of
-// components.
+// These functions convert a Value to a struct member. Reader has already checked type, range and number of components.
 void assign(double& target, const Value& value);
 void assign(int& target, const Value& value);
 void assign(bool& target, const Value& value);
@@ -49,7 +47,7 @@ void assign(std::optional<T>& target, const Value& value) {
   assign(target.emplace(), value);
 }
 
-/// Names of choices or of components.
+/// Names of choices or components.
 struct Words {
   Words(std::initializer_list<std::string_view> words);
   Words(const std::vector<std::string>& words);
@@ -75,7 +73,7 @@ class RowBuilder {
   void add_table(std::string_view key, Type type, const Table& inner);
   void set_components(const Words& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
-  /// Binds one array of two numbers to two members: to the second if `second`, else to the first.
+  /// Binds one array of two numbers to two members. `second`: whether the second member is read or written.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
   /// Binds a choice. The functions read and write the index of the chosen word in `choices`.
@@ -88,8 +86,8 @@ class RowBuilder {
   Table table_;
 };
 
-/// Builds the table that describes struct S. An argument `member` is a pointer to a member of S, or
-/// a function that returns a reference to a member of its argument S&.
+/// Builds the table that describes struct S. An argument `member` is a pointer to a member of S, or a function that
+/// takes S& and returns a reference to a member.
 template <class S>
 class TableBuilder : public RowBuilder {
  public:
@@ -252,7 +250,7 @@ class TableBuilder : public RowBuilder {
     table_.selector = last().key;
     return *this;
   }
-  /// `when` (S&): whether the effective scene may contain the key.
+  /// `when` (S&): whether the effective scene contains the key if it has a value.
   template <class When>
   TableBuilder& written_if(When when) {
     write_if([when](void* s) { return when(*static_cast<S*>(s)); });

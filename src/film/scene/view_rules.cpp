@@ -6,9 +6,9 @@
 namespace weft::scene {
 namespace {
 
-// Appends entry i of `keys`, filled with its defaults, for a camera or light. Entry 0 exists
-// already: its defaults are the values given directly in the table of the camera or light. The
-// defaults of each later entry are the values of the entry before.
+// Appends entry i of `keys` of a camera or light, with its defaults. Entry 0 already exists; its defaults are the
+// values that the table of the camera or light gives directly. The defaults of each later entry are the values of the
+// entry before.
 template <class S>
 void copy_key_before(S& owner, std::size_t i) {
   if (i == 0) return;
@@ -23,7 +23,7 @@ template <class S>
 bool stands_still(S& owner) {
   return owner.keys.size() == 1;
 }
-/// Access to a member of the first key frame.
+/// Returns a function that returns a member of the first key frame.
 template <class Key, class Field>
 auto own(Field Key::*field) {
   return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
@@ -33,9 +33,8 @@ const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
 
-/// Adds the row of the focal length, after that of the field of view. `stands(s)`: whether the
-/// effective scene may contain the focal length in the table of `s`. `otherwise`: documentation of
-/// the default.
+/// Adds the row of the focal length; call it after the row of the field of view. `stands(s)`: whether the effective
+/// scene may contain the focal length in the table of `s`. `otherwise`: documentation of the default.
 template <class S, class Member, class Stands>
 void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
   rows.number("focal_length", member, kFocalLength, "mm",
@@ -78,7 +77,7 @@ const Table& camera_key_rules() {
   return kTable;
 }
 
-/// Adds the keys of a placed camera, still or with key frames.
+/// Adds the keys of a placed camera, with or without key frames.
 void placed_camera_rows(TableBuilder<Camera>& rows) {
   rows.vector("position", own(&CameraKey::position), kXyz, kPositionRange, "m", "position of the camera")
       .need(Need::here_or_in_first_key)
@@ -125,7 +124,7 @@ void smoothing_row(TableBuilder<Camera>& rows) {
               "time over which the motion of the camera is smoothed; 0: no smoothing");
 }
 
-/// Adds the keys of computed cameras whose direction from the subject the scene gives.
+/// Adds the keys of those computed cameras for which the scene gives the direction from the subject.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
               "direction of the camera as seen from the subject, around the up axis from the front to the right: with "
@@ -153,7 +152,7 @@ void file_rows(TableBuilder<Camera>& rows) {
               "factor on the lengths of the file, which glTF gives in metres");
 }
 
-/// Rules of a key frame of a light. `rows`: adds the keys that only suns have, or only spots.
+/// Rules of a key frame of a light. `rows`: adds the keys that only suns have, or those that only spots have.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
       .number("time", &LightKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
