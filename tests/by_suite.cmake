@@ -1,10 +1,11 @@
-# Read by ctest, after `test_files` is set to what gtest_discover_tests() writes. With WEFT_BY_SUITE in the environment
-# the tests of a suite are one test of ctest, in one process: starting a program of tests costs up to 0.2 CPU s, a fifth
-# of all that `tests/run` takes. What is skipped then counts as passed; the log names it.
+# ctest reads this file. `test_files`: the files that gtest_discover_tests() writes. If the environment contains
+# WEFT_BY_SUITE, all tests of a suite are one test of ctest, in one process. Reason: to start a test program takes up to
+# 0.2 s of CPU time; for single tests, this would be a fifth of the time of `tests/run`. Skipped tests then count as
+# passed; the log names them.
 foreach(include IN LISTS test_files)
   string(REPLACE "_include.cmake" "_tests.cmake" file "${include}")
   if(NOT EXISTS "${file}" AND file MATCHES "_slow\\[[0-9]+\\]_tests\\.cmake$")
-    continue()  # tests/run builds slow programs only if it is asked for them
+    continue()  # tests/run builds slow programs only if its arguments select tests
   endif()
   if(NOT EXISTS "${file}" OR NOT DEFINED ENV{WEFT_BY_SUITE})
     include("${include}")

@@ -1,6 +1,6 @@
-# Writes the header OUTPUT. It defines NAME, an array of EmbeddedFile with the text of every file below FOLDER. Thus the
-# program does not read these files when it runs. Call:
-# cmake -DFOLDER=... -DOUTPUT=... -DNAME=kEmbeddedShaders -P embed_files.cmake
+# Writes the header OUTPUT, which defines NAME: an array of EmbeddedFile with the text of each file below FOLDER. Thus
+# the program contains these files, and does not read them when it runs. Call:
+#   cmake -DFOLDER=... -DOUTPUT=... -DNAME=kEmbeddedShaders -P embed_files.cmake
 file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*)
 set(entries "")
 foreach(file IN LISTS files)

@@ -2,9 +2,9 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-# Adds a shared library. Links the objects of modules instead of the modules, because the modules would add image
-# libraries. If a symbol is missing, the linker reports it. A program links only one of the two libraries: both have the
-# physics.
+# Adds a shared library. Links the object files of modules instead of the modules, because these would also link image
+# libraries. If a symbol is missing, the linker reports it. A program must link only one of both libraries, because both
+# contain the physics.
 function(weft_shared_library target name)
   cmake_parse_arguments(PARSE_ARGV 2 library "" "" "MODULES;SOURCES;LINKS")
   set(objects "")
@@ -36,7 +36,7 @@ install(TARGETS weft_shared weft_physics_shared EXPORT Weft LIBRARY DESTINATION 
 install(DIRECTORY api/physics_library/include/weft api/library/include/weft DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Weft)
 install(EXPORT Weft FILE WeftConfig.cmake NAMESPACE Weft:: DESTINATION ${config_folder})
-# With Weft_DIR, programs find the library in the build folder, too.
+# If Weft_DIR is the build folder, other programs find the library there without an installation.
 export(EXPORT Weft FILE ${PROJECT_BINARY_DIR}/WeftConfig.cmake NAMESPACE Weft::)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/WeftConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/WeftConfigVersion.cmake DESTINATION ${config_folder})
@@ -49,10 +49,11 @@ if(WEFT_PYTHON)
 endif()
 
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
-# The program writes its own manual page, completions and schema.
+# The installation runs the program to write its manual page, completions and schema (install_output).
 install(TARGETS weft weft_tools_program RUNTIME)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Installs the output of `weft` with the further arguments as `file`, relative to the prefix.
 function(install_output file)
   cmake_path(GET file PARENT_PATH folder)
   install(CODE "
@@ -68,7 +69,7 @@ install_output(${CMAKE_INSTALL_DATADIR}/bash-completion/completions/weft complet
 install_output(${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions/_weft completion zsh)
 install_output(${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d/weft.fish completion fish)
 
-# A Debian package: ninja package
+# Settings of the Debian package: ninja package
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_PACKAGE_CONTACT "Weft")
@@ -77,15 +78,15 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1, libosmesa6 | libgl1-mesa-dri")  # opened at run time
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1, libosmesa6 | libgl1-mesa-dri")  # weft opens them at run time
 if(WEFT_PYTHON)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3, python3-numpy")
 endif()
 include(CPack)
 
-# An archive that needs nothing from the machine that it runs on: ninja bundle
+# An archive that uses no libraries of the machine on which it runs: ninja bundle
 add_executable(weft_start EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/.packaging/start.c)
-target_compile_options(weft_start PRIVATE -march=x86-64 -Wall -Wextra)  # runs on older CPUs, too
+target_compile_options(weft_start PRIVATE -march=x86-64 -Wall -Wextra)  # it also runs on older CPUs
 target_link_options(weft_start PRIVATE -static)
 add_custom_target(bundle
                   COMMAND ${PROJECT_SOURCE_DIR}/.packaging/bundle.sh ${CMAKE_BINARY_DIR} $<TARGET_FILE:weft_start>
