@@ -1,10 +1,11 @@
-# What `weft` and `tests/run` share: packages, lock and build. Sourced, with $root naming the top of the source tree.
-# Whatever is said goes to stderr: stdout belongs to the program.
+# Functions that `weft` and `tests/run` share: packages, lock and build. These scripts source this file; $root must be
+# the top folder of the source tree. All messages go to stderr, because stdout is for the output of the program.
 
 say() { echo "weft: $*" >&2; }
 die() { status=$1; shift; say "$*"; exit "$status"; }
 
-# use_preset NAME: chooses the build folder of a preset, and waits until nobody else builds there. Unlock: exec 9>&-
+# use_preset NAME: selects the build folder of a preset, waits until no other process builds there, and locks it. To
+# unlock: exec 9>&-
 use_preset() {
   preset=$1
   folder=$root/build
@@ -14,12 +15,13 @@ use_preset() {
   flock -n 9 || { say "waiting for another build in $folder"; flock 9; }
 }
 
-# quietly COMMAND...: its output goes to a log, which is shown only if it fails.
+# quietly COMMAND...: runs the command with its output in a log file. Prints this log only if the command fails.
 quietly() {
   "$@" </dev/null >"$folder/launch.log" 2>&1 || { cat "$folder/launch.log" >&2; return 1; }
 }
 
-# choose CHOICE...: of each A|B|C the first that apt knows; what stands for it may be several packages, joined by commas.
+# choose CHOICE...: prints, for each choice A|B|C, the first alternative that apt knows, else the last one. An
+# alternative may be several packages, separated by commas.
 choose() {
   for choices; do
     while [ "${choices#*|}" != "$choices" ] && ! apt-cache show "${choices%%[|,]*}" >/dev/null 2>&1; do
@@ -29,8 +31,8 @@ choose() {
   done
 }
 
-# need_packages KIND...: installs the packages of these kinds in .packages that are missing. Apt does not inherit the
-# lock: the daemons that a package may start would hold it for ever.
+# need_packages KIND...: installs missing packages of these kinds (first column of .packages). Apt must not inherit the
+# lock of use_preset, because daemons that a package starts would keep it.
 need_packages() {
   command -v dpkg-query >/dev/null || return 0  # not Debian: CMake will name what it cannot find
   missing=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' | awk -v kinds=" $* " '
@@ -44,7 +46,7 @@ need_packages() {
       printf " %s", $2
     }' - "$root/.packages")
   [ -n "$missing" ] || return 0
-  # shellcheck disable=SC2046,SC2086 # one word for each package
+  # shellcheck disable=SC2046,SC2086 # one word per package
   [ "$(id -u)" = 0 ] || die 2 "Debian packages are missing; install them and call again:
   sudo apt-get update && sudo apt-get install --no-install-recommends "$(choose $missing)
   export DEBIAN_FRONTEND=noninteractive
@@ -54,8 +56,8 @@ need_packages() {
     die 2 "apt-get could not install" $missing
 }
 
-# configure [-DNAME=VALUE...]: runs CMake where that was not done yet, where the tree has moved since, or where an
-# option has another value. Ninja itself sees changes of the CMake files. Only who asks for the tests gets them.
+# configure [-DNAME=VALUE...]: runs CMake if it has not run yet, if the source tree has moved, or if an option has
+# another value. (Ninja detects changes of CMake files itself.) Builds have no tests unless an option asks for them.
 configure() {
   cache=$folder/CMakeCache.txt
   if [ ! -f "$folder/build.ninja" ] || ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$cache"; then
@@ -68,7 +70,8 @@ configure() {
   quietly cmake -S "$root" --preset "$preset" "$@" || die 1 "the build could not be configured"
 }
 
-# report_progress: says every 15 s how much of ninja's output is there; returns ninja's exit status, the last line.
+# report_progress: reads the output of ninja, and prints every 15 s how many files are built. Returns the exit status of
+# ninja, which the last line contains.
 report_progress() {
   due=15
   while read -r count seconds rest; do
@@ -84,7 +87,8 @@ report_progress() {
   done
 }
 
-# build TARGET...: with as many compilers at once as there are processors and 1.5 GB of free memory for each.
+# build TARGET...: builds the targets. Runs one compiler per processor, but only as many as have 1.5 GB of free memory
+# each.
 build() {
   jobs=$(awk -v jobs="$(nproc)" '/^MemAvailable:/ { fit = int($2 / 1500000) }
                                  END { print fit < 1 ? 1 : fit < jobs ? fit : jobs }' /proc/meminfo)

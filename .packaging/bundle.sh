@@ -1,9 +1,10 @@
 #!/bin/sh
-# Makes weft-x86_64.tar.zst: the program with everything that it needs, its loader and C library among it, so that it runs
-# on any Linux and from any folder. Called by `ninja bundle`.
+# Makes weft-x86_64.tar.zst: the program with all its libraries, also its loader and the C library, so that it runs on
+# any Linux system and from any folder. `ninja bundle` calls this script.
 #
-# bundle.sh BUILD START OUTPUT [osmesa|egl]   START: the built start.c; the last: where OpenGL is taken from [osmesa, else
-#                                             egl]; ZSTD_CLEVEL in the environment: how hard to compress [19]
+# bundle.sh BUILD START OUTPUT [osmesa|egl]   START: program compiled from start.c. Last argument: source of OpenGL
+#                                             (default: osmesa, or egl if it is absent). ZSTD_CLEVEL in the
+#                                             environment: compression level (default: 19)
 set -eu
 build=$1 start=$2 output=$3 opengl=${4:-any}
 PATH=$PATH:/usr/sbin:/sbin
@@ -19,7 +20,8 @@ tree=$(mktemp -d "$output/.bundle.XXXXXX")
 trap 'rm -rf "$tree"' EXIT
 top=$tree/weft
 
-# The programs. What bin/ has starts them with the loader and the libraries in lib/.
+# The programs are in libexec/. bin/ has a copy of START for each of them, which starts it with the loader and the
+# libraries of lib/.
 cmake --install "$build" --prefix "$top" --component program --strip >/dev/null
 mkdir "$top/libexec" "$top/lib"
 mv "$top"/bin/* "$top/libexec/"
@@ -28,10 +30,11 @@ for program in "$top"/libexec/*; do
 done
 strip "$top"/bin/*
 
-# The place of a library in this system, by the name that programs open it with; nothing where there is none.
+# Prints the path of a library in this system. Argument: the name by which programs open it. Prints nothing if it is
+# absent.
 place_of() { ldconfig -p | awk -v name="$1" '$1 == name && /x86-64/ { print $NF; exit }'; }
 
-# OpenGL is opened at run time: no program names it.
+# OpenGL libraries are opened at run time, so they are not among the libraries that programs name.
 osmesa=$(place_of libOSMesa.so.8) egl=$(place_of libEGL.so.1) mesa=$(place_of libEGL_mesa.so.0)
 case $opengl in
   any) [ -z "$osmesa" ] && opengl=egl || opengl=osmesa ;;
@@ -41,7 +44,7 @@ case $opengl in
     opened=$osmesa ;;
   egl) [ -n "$egl" ] && [ -n "$mesa" ] || die "no OpenGL is found: apt-get install libosmesa6, or libegl1 libgl1-mesa-dri"
     opened="$egl $mesa"
-    # Mesa opens it in turn, before version 24.3; it is told where by render/gl/context.cpp.
+    # Before version 24.3, Mesa itself opens this driver. render/gl/context.cpp sets its path.
     driver=${mesa%/*}/dri/swrast_dri.so
     if [ -e "$driver" ]; then
       mkdir "$top/lib/dri"
@@ -52,9 +55,9 @@ case $opengl in
   *) die "expected osmesa or egl, got $opengl" ;;
 esac
 
-# `weft` never uses what libav can do with other codecs, protocols and devices, and LLVM with proofs and XML: these libraries
-# would be half of the archive. The ones named stay: besides x264 and dav1d (AV1) the base of them all, and gme and openmpt,
-# which libav asks about each file that it opens.
+# Whether a library is left out. libav needs many libraries for other codecs, protocols and devices, and LLVM for proofs
+# and XML. `weft` never uses these, and they would be half of the archive. The libraries named here are not left out:
+# x264, dav1d (AV1), basic libraries, and gme and openmpt, which libav calls for each file that it opens.
 is_left_out() { # USER LIBRARY
   case $1 in
     libav* | libsw*)
@@ -67,8 +70,8 @@ is_left_out() { # USER LIBRARY
   esac
 }
 
-# All libraries that others name, from the programs on.
-# shellcheck disable=SC2086 # one word for each library
+# Finds all libraries that the programs need, directly or through other libraries.
+# shellcheck disable=SC2086 # one word per library
 ldd "$top"/libexec/* $opened >"$tree/places"
 ! grep 'not found' "$tree/places" >&2 || die "the program needs libraries that are not installed here"
 : >"$tree/taken"
@@ -99,7 +102,7 @@ sort -u "$tree/left_out" | grep -vxF -f "$tree/taken" | while read -r library; d
   mv "$tree/stand_in" "$top/lib/${library##*/}"
 done
 
-# Nothing is taken from this system, and all that is looked up is found.
+# Checks that the programs find all their libraries in the archive, and use none of this system.
 for file in "$top"/libexec/* $opened; do
   case $file in
     */dri/*) file=$top/lib/dri/${file##*/} ;;
@@ -111,7 +114,7 @@ for file in "$top"/libexec/* $opened; do
 done
 LD_BIND_NOW=1 "$top/bin/weft" doctor >"$tree/doctor" 2>&1 || die "the archive does not work: $(cat "$tree/doctor")"
 
-# Whose they are: packages with their versions and licenses.
+# Lists the packages of the libraries with their versions, and copies their licenses.
 if command -v dpkg-query >/dev/null; then
   mkdir -p "$top/share/doc/weft/licenses"
   xargs readlink -f <"$tree/taken" | sed 'p; s,^/usr,,' | xargs dpkg-query -S 2>/dev/null | sed 's/:.*//' | sort -u |
@@ -121,7 +124,7 @@ if command -v dpkg-query >/dev/null; then
     done >"$top/share/doc/weft/packages.txt"
 fi
 
-# The same bytes from the same files, names for any tar.
+# Equal files give an archive with equal bytes. The format ustar is readable by any tar.
 archive=weft-x86_64.tar.zst
 tar -C "$tree" --format=ustar --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner -cf - weft |
   zstd -q -f -T0 "-${ZSTD_CLEVEL:-19}" -o "$tree/$archive"

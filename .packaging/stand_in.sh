@@ -1,14 +1,15 @@
 #!/bin/sh
-# Makes a library that stands in for one which the archive leaves out: its functions do nothing and return 0, its data is 0.
-# It has what others take from it, so that the loader is content.
+# Makes a library that replaces one that the archive leaves out. It has all symbols that other libraries need from the
+# original, because the loader requires them. Its functions do nothing and return 0; its data are 0.
 #
-# stand_in.sh LIBRARY OUTPUT USER...   USER: the libraries of the archive that name LIBRARY
+# stand_in.sh LIBRARY OUTPUT USER...   USER: libraries of the archive, which may need LIBRARY
 set -eu
 library=$1 output=$2
 shift 2
 export LC_ALL=C
 
-# Lines "name version kind bytes" of what LIBRARY has and the others ask for; version - where there is none.
+# Writes a line "name version kind bytes" for each symbol that LIBRARY defines and a USER needs; version - if there is
+# none.
 {
   nm -D --undefined-only --with-symbol-versions "$@" | awk '{ sub(/@+/, "@", $NF); print "asked", $NF }'
   nm -D -S --defined-only --with-symbol-versions "$library" | awk '

@@ -1,5 +1,6 @@
-/* bin/weft and bin/weft-tools of the archive: starts libexec/<same name> with the loader and the libraries in lib, beside
- * bin. Linked statically, as the kernel takes the path of a loader only as an absolute one, which no archive can know. */
+/* The programs bin/weft and bin/weft-tools of the archive. They start libexec/<same name> with the loader and the
+ * libraries in lib, a folder beside bin. They are linked statically: the kernel needs the absolute path of a loader,
+ * which is not known before the archive is unpacked. */
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -32,9 +33,9 @@ int main(int argc, char **argv) {
   char *loader = join(folder, "lib/ld-linux-x86-64.so.2");
   char *image = join(folder, program);
 
-  /* --argv0: the program learns from it where it was started (core/installation.cpp). Nothing goes through the environment,
-   * which other programs would inherit. */
-  /* $ORIGIN, as the loader takes a colon in the name of a folder as the end of it. */
+  /* --argv0 passes the path of this program to the started program (core/installation.cpp). There is no environment
+   * variable for this path, because child processes would inherit it. */
+  /* $ORIGIN stands for the folder of the program. The loader would take a colon in a written path for a separator. */
   char *options[] = {loader, "--inhibit-cache", "--library-path", "$ORIGIN/../lib", "--argv0", self, image};
   const size_t count = sizeof options / sizeof *options, given = argc > 1 ? (size_t)argc - 1 : 0;
   char **arguments = calloc(count + given + 1, sizeof *arguments);
