@@ -88,7 +88,8 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
-/// Reads the scene that the options name, else the built-in scene `text` as file `name`. `more`: additional overrides.
+/// Reads the scene that the options name. If they name none, reads the built-in scene `text`; messages call it `name`.
+/// `more`: additional overrides.
 scene::Scene scene_of(const BenchOptions& options, const char* text, const char* name,
                       const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides = options.overrides;
@@ -131,7 +132,7 @@ class RunProgress {
   RemainingTime remaining_{{kUnits, 0, 0}};
 };
 
-// The factors that are not 1, for example "friction 2, step 0.5".
+// Lists the factors that are not 1, for example "friction 2, step 0.5".
 std::string describe(const bench::Factors& factors) {
   std::string text;
   for (std::size_t a = 0; a < bench::kVariedValues; ++a)

@@ -7,20 +7,19 @@
 
 namespace weft::cli {
 
-/// Returns the selected frames; all frames of the scene if `selection` has no bounds and no step.
-/// Verifies each frame, so that the command finds a damaged frame before it writes anything. If
-/// frames are missing or broken, throws Error(frames_missing) with their numbers. With `partial`,
-/// warns instead, and returns the frames before the first missing or broken frame; if this frame is
-/// the first selected one, throws nevertheless. Throws Error(usage) if the selection is empty or
-/// exceeds the scene.
+/// Returns the selected frames: all frames of the scene if `selection` has no bounds and no step. Verifies each frame,
+/// so that the command finds a damaged frame before it writes anything. If frames are missing or broken, throws
+/// Error(frames_missing) with their numbers. With `partial`, warns instead, and returns the frames before the first
+/// missing or broken one; throws only if no selected frame is before it. Throws Error(usage) if the selection is empty
+/// or exceeds the scene.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
 /// Verifies the frame before the first of `frames`, which motion blur and motion layers need; frame numbers below 0 do
 /// not exist. Throws Error(frames_missing) if it is missing or broken.
 void check_frame_before(const cache::Reader& reader, const FrameRange& frames);
 
-/// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights). Leaves
-/// out broken frames, with a warning, as well as missing ones.
+/// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights). Skips
+/// missing frames, and broken ones with a warning.
 void show_frames(const cache::Reader& reader, render::CameraPath& camera);
 
 }  // namespace weft::cli

@@ -39,7 +39,7 @@ fs::path effective_scene_file(const fs::path& picture, const std::string& scene)
 }
 
 std::string join_some(const std::vector<std::string>& lines) {
-  constexpr std::size_t kMaxListedChanges = 4;  // since all changes are in one line, after the figures
+  constexpr std::size_t kMaxListedChanges = 4;  // since one line holds the figures and all changes
   if (lines.size() <= kMaxListedChanges) return fmt::format("{}", fmt::join(lines, "; "));
   return fmt::format("{}; and {} more", fmt::join(lines.begin(), lines.begin() + kMaxListedChanges, "; "),
                      lines.size() - kMaxListedChanges);

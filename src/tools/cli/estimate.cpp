@@ -38,7 +38,7 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
   const auto enough = [&] {
     return estimate.tried > 0 && (wall.seconds() > seconds || estimate.tried >= kMaxTrialFrames);
   };
-  // run_preroll() calls the function before each frame, so no frame has been simulated at the first call.
+  // run_preroll() calls its argument before each frame, so no frame has been simulated at the first call.
   int asked = -1;
   const bool shown = simulation.run_preroll([&] {
     estimate.tried = ++asked;

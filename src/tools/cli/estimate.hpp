@@ -10,6 +10,7 @@
 
 namespace weft::cli {
 
+/// What a trial has measured, and how many frames and pictures the whole run has.
 struct Estimate {
   int tried = 0;             ///< frames simulated for the estimate; 0 only if the run simulates none
   double setup = 0;          ///< set-up before the first frame [CPU s]

@@ -34,7 +34,7 @@ bool places_cameras(exporter::Format format) {
          format == exporter::Format::blender;
 }
 
-/// All cameras of a scene, the camera of the pictures first. If the scene has no camera, the computed one.
+/// All cameras of a scene, the camera of the pictures first. A scene without cameras gets the computed one.
 class Cameras {
  public:
   Cameras(const cache::Reader& reader, const frame::FrameSnapshot& first) {

@@ -46,7 +46,7 @@ Failure describe_failure(const std::exception_ptr& exception) {
   } catch (const std::bad_alloc&) {
     return {ExitCode::internal, "out of memory; a smaller scene or picture may fit"};
   } catch (const std::filesystem::filesystem_error& error) {
-    // A path that no check has refused before. Possible causes: no such folder, name too long, no permission.
+    // No earlier check refused this path. Possible causes: no such folder, name too long, no permission.
     const bool too_long = error.code() == std::errc::filename_too_long;
     return {too_long ? ExitCode::usage : ExitCode::output_failed,
             fmt::format("{}: cannot be used: {}", error.path1().string().substr(0, 200), error.code().message())};

@@ -28,9 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Factors from the time and memory measured in a trial to those that tasks request. Frames with
-// contact take longer than the first frames. A task near its time limit stops and is queued again
-// (scripts/task.sh); a task that exceeds its memory is killed.
+// Factors on the time and memory that a trial has used; the products are what tasks request. Frames with contact take
+// longer than the first frames. A task near its time limit stops and is queued again (scripts/task.sh); a task that
+// exceeds its memory is killed.
 constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
 constexpr int kMinTaskMinutes = 10, kExtraMemory = 256;  // [min], [MB]
 
@@ -89,7 +89,7 @@ State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
   const std::string scene = value_or(run, "scene", std::string());
   const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
   const bool simulated = value_or(stats, "exit_code", -1) == 0;
-  const fs::path video = folder / (scene + ".mp4");  // may be that of a former scene
+  const fs::path video = folder / (scene + ".mp4");  // may show an earlier version of the scene
   if (simulated && fs::is_regular_file(video) && scene_hash_of(video) == value_or(stats, "scene_hash", std::string()))
     return {"done", true};
   const auto progress = [&](std::size_t count, const char* all, const char* done) {
@@ -238,8 +238,8 @@ class Farm {
     return code == "0" || !fs::exists(file, none);
   }
 
-  /// Looks for pictures that are not of the present scene, such as after a change of a colour: drawing tasks replace no
-  /// files, and would all fail. Throws Error(output_failed) if there are some; a dry run only warns.
+  /// Throws Error(output_failed) if pictures show another version of the scene, for example before a change of a
+  /// colour; a dry run only warns. Drawing tasks do not replace files, so all of them would fail.
   void check_pictures() const {
     std::vector<std::string> folders;
     for (const std::size_t i : plan_.submitted) {
@@ -277,7 +277,7 @@ class Farm {
       SceneOptions scene = options_.sweep.pictures;
       scene.scene = options_.sweep.scene;
       scene.overrides = plan_.jobs[i].overrides();
-      // If this run has no such camera, its tasks report it; other runs may have it.
+      // The camera may be missing in this run: then its tasks report it, since other runs may have the camera.
       const std::string camera = std::exchange(scene.camera, {});
       const scene::Scene loaded = load_scene(scene);
       render::Settings settings = render_settings(loaded, scene);
@@ -307,8 +307,8 @@ class Farm {
     }
   }
 
-  /// Writes the scripts, and prints them in a dry run. Submitted tasks read the scripts when they start: a dry run does
-  /// not replace those of tasks that may still wait.
+  /// Writes the scripts, and prints them in a dry run. Tasks read the scripts when they start, so a dry run writes none
+  /// while submitted tasks may still wait.
   void write() {
     const bool only_prints = options_.dry_run && may_have_jobs();
     if (program_) plan_.archive = program_->fingerprint();

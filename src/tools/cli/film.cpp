@@ -76,8 +76,8 @@ class Film {
     }
   }
 
-  /// Makes frames, and hands the frames to draw to the drawing thread. With `only_show`, passes all frames to the
-  /// camera instead.
+  /// Makes frames, and passes those that are to be drawn to the drawing thread. If `only_show` is true, passes all
+  /// frames to the camera instead.
   void make_frames(FrameSource& source, bool only_show) {
     const int last = only_show ? made_.last() : wanted_.last();
     // Makes the first frame even after a stop request, so that the run has a picture.
@@ -105,7 +105,7 @@ class Film {
     if (parts_.store) parts_.store->keep_last_state();
   }
 
-  /// Hands a frame to the drawing thread, with the previous wanted frame if the painter needs it. Returns false if the
+  /// Passes a frame to the drawing thread, with the previous wanted frame if the painter needs it. Returns false if the
   /// drawing thread has ended.
   bool push_to_drawing(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
     const int frame = snapshot->frame - wanted_.step;
@@ -114,8 +114,8 @@ class Film {
     return snapshots_.push({snapshot, before_});
   }
 
-  /// Makes all frames and passes them to the camera. Then reads the wanted frames from the store, and hands them to the
-  /// drawing thread. If making frames fails, hands over the frames made so far.
+  /// Makes all frames and passes them to the camera. Then reads the wanted frames from the store, and passes them to
+  /// the drawing thread. If making frames fails, passes on the frames made so far.
   void make_then_push(FrameSource& source) {
     std::exception_ptr failure;
     try {

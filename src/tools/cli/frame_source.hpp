@@ -54,6 +54,7 @@ class SceneSource : public FrameSource {
   int next_ = 0;
 };
 
+/// Selected frames of a cache.
 class CacheSource : public FrameSource {
  public:
   CacheSource(const cache::Reader& reader, const FrameRange& frames)

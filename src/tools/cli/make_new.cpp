@@ -29,9 +29,8 @@ std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
 }
 
-// What to write so that a template of several files is added to a folder without replacing files. An existing
-// .gitignore gets the missing lines; if a README.md exists, the new one is named PICTURES.md; other existing files
-// stay.
+// Changes that add a template of several files to a folder without replacing a file. An existing .gitignore gets the
+// missing lines; if a README.md exists, the new one is named PICTURES.md; other existing files stay.
 struct Added {
   std::vector<std::pair<fs::path, std::string>> files;  // paths and contents
   std::vector<std::string> kept;                        // existing files that stay

@@ -42,9 +42,9 @@ void add_backend(CLI::App& command, render::Backend& backend);
 void add_picture(CLI::App& command, SceneOptions& options);
 /// Adds --threads, --progress, --overwrite.
 void add_process(CLI::App& command, SceneOptions& options);
-/// Adds --fps, add_overrides(), add_picture() and add_process().
+/// Adds --fps and the options of --set, add_picture() and add_process().
 void add_scene_changes(CLI::App& command, SceneOptions& options);
-/// Adds the scene argument, and add_scene_changes().
+/// Adds the scene argument and the options of add_scene_changes().
 void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file");
 void add_output(CLI::App& command, RunOptions& options);
 void add_video(CLI::App& command, VideoOptions& options);

@@ -92,13 +92,13 @@ BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options
 }
 
 SweepOptions checked(SweepOptions sweep) {
-  // A sweep without changes is allowed with --report, since a farm may run a single unchanged scene.
+  // With --report, a sweep needs no changes, since a farm may run a single unchanged scene.
   if (sweep.axes.empty() && sweep.list.empty() && !sweep.gather)
     throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
   return sweep;
 }
 
-// Refuses options that each drawing would refuse.
+// Refuses options that the drawing command would refuse each time.
 WatchOptions checked(WatchOptions watch) {
   const std::vector<std::string>& words = watch.passed_on;
   const auto given = [&](const char* name) { return std::ranges::find(words, name) != words.end(); };

@@ -18,7 +18,7 @@ constexpr std::string_view kFrame = "{frame";
   throw Error(ExitCode::usage, "-o: expected one {{frame}} or {{frame:05}} in the name of the pictures, got {}", text);
 }
 
-// Number of digits in the text between the braces: "frame", "frame:5" or "frame:05".
+// Parses the minimum number of digits from the text between the braces: "frame", "frame:5" or "frame:05".
 int parse_digits(std::string_view field, std::string_view text) {
   if (field == "frame") return 1;
   if (field.substr(0, 6) != "frame:") bad_pattern(text);

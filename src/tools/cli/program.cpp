@@ -78,7 +78,7 @@ void check_working_folder() {
     throw Error(ExitCode::usage, "the working folder cannot be used: {}; go to one that exists", error.message());
 }
 
-// Replaces this process by weft-tools, which is beside weft. Throws Error(usage) if weft-tools cannot be started.
+// Replaces this process by weft-tools in the folder of weft. Throws Error(usage) if weft-tools cannot be started.
 ExitCode become_tools(const Command& /*command*/, char** argv) {
   const std::filesystem::path tools = own_program().replace_filename(kToolsName);
   ::execv(tools.c_str(), argv);

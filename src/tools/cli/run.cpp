@@ -253,7 +253,7 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   report_.frames = std::move(result.frames);
   report_.written = result.written;
   report_.gl = result.painter;
-  // An unfinished video has no frames that count. Pictures count, since each written one is complete.
+  // The frames of an unfinished video do not count as written. Pictures count, since each written picture is complete.
   if (plan.target.kind == Kind::video && !result.finished_output) {
     report_.written = 0;
     for (FrameRecord& record : report_.frames) record.written = false;
@@ -337,8 +337,8 @@ void Session::try_side_file(const Write& write) {
   }
 }
 
-// Says which reports a command with --resume does not make because its output is complete already. Statistics of the
-// same scene count as made: the run that completed the output has written them.
+// Prints which reports a command with --resume does not make because its output is complete already. Does not list
+// statistics of the same scene: the run that completed the output has written them.
 void note_missing_reports(const FilmPlan& plan, const RunOptions& options) {
   std::vector<std::string> missing;
   const std::string hash = fmt::format("{:016x}", plan.scene.scene_hash);
@@ -353,8 +353,9 @@ void note_missing_reports(const FilmPlan& plan, const RunOptions& options) {
                         fmt::join(missing, ", ")));
 }
 
-// A hidden folder beside the output: `output/.falling_band.weft-cache`. For pictures, the folder is named after the
-// scene, so that runs of different scenes can write to one folder of pictures at the same time.
+// Path of the cache that a run keeps while it works, a hidden folder beside the output:
+// `output/.falling_band.weft-cache`. For pictures, the folder is named after the scene, so that runs of different
+// scenes can write to one folder of pictures at the same time.
 fs::path working_cache(const OutputTarget& target, const std::string& scene) {
   const fs::path file = target.file(0);
   const std::string name = target.kind == Kind::video ? file.stem().string() : scene;

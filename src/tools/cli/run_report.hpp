@@ -55,6 +55,7 @@ struct RunReport {
   std::optional<run_error::ErrorEstimate> error;  ///< if requested
 };
 
+/// Times of the stages, sums over the frames.
 struct StageTotals {
   /// `collide`, `forces`, `preconditioner` and `linear` are parts of `simulate`.
   StageTime simulate, collide, forces, preconditioner, linear;
@@ -63,11 +64,12 @@ struct StageTotals {
 
 StageTotals total_times(const std::vector<FrameRecord>& frames);
 
+/// Counts and errors of the time steps, sums over the frames.
 struct StepTotals {
   long long accepted = 0, rejected = 0;
   long long inexact = 0;      ///< accepted steps whose error exceeds the tolerance
-  double error_estimate = 0;  ///< estimated error of the time steps, sum over the frames [m]
-  double solver_error = 0;    ///< error due to residuals of the solver, sum over the frames [m]
+  double error_estimate = 0;  ///< estimated error of the time steps [m]
+  double solver_error = 0;    ///< error due to residuals of the solver [m]
 };
 
 StepTotals total_steps(const std::vector<FrameRecord>& frames);

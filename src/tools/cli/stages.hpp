@@ -32,7 +32,7 @@ class FramePainter {
   virtual void set_camera_path(render::CameraPath) {}
   /// `before`: the previous frame to draw, for motion blur and layers; null if it does not exist or is not needed.
   virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
-  virtual StageTime last_time() const = 0;
+  virtual StageTime last_time() const = 0;  ///< time that the last draw() took
   virtual std::string description() const = 0;
 };
 

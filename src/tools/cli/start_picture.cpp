@@ -57,8 +57,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
   return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
 }
 
-// Of 32 cameras around a place, the camera that shows most of the place. The factor kMinVisibilityGain prefers the
-// first cameras, which look from the front and from above.
+// Tries 32 cameras around a place, and returns the one that shows most of it. The factor kMinVisibilityGain prefers the
+// first cameras, which view the place from the front and from above.
 frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                                    double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);

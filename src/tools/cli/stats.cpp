@@ -27,7 +27,7 @@ const char* kind_name(frame::ObjectKind kind) {
   return "unknown";
 }
 
-// null if the value is infinite or NaN, which JSON does not have.
+// Returns null if the value is infinite or NaN, which JSON does not have.
 Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
 }

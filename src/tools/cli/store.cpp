@@ -108,8 +108,8 @@ void Store::note_outputs(std::set<std::string> outputs) const {
   }
 }
 
-// Ends storing. Keeps the stored frames if --resume can use them: if the output fails for the same reason, they are the
-// only result.
+// Ends storing. Keeps the stored frames if --resume can use them: if the output then fails too, for example because the
+// disk is full, these frames are the only result.
 void Store::give_up(const std::string& reason) {
   log::warn(reason + "; the run continues, but if it is interrupted, frames from here on must be simulated again");
   writer_.reset();

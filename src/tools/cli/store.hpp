@@ -22,14 +22,15 @@ struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
   bool fresh = false;  ///< not in the cache yet, or stored there with looks that have changed since
-  const production::SceneSimulation* simulation = nullptr;  ///< in the state of this frame; null if `snapshot` was read
+  const production::SceneSimulation* simulation = nullptr;  ///< the simulation, which is in the state of this frame;
+                                                            ///< null if `snapshot` was read
 };
 
 class Store {
  public:
   enum class Need {
     required,  ///< a storage failure ends the run
-    helpful,   ///< if storing fails or the disk is nearly full, warns and stops storing; the run continues
+    helpful,   ///< if storing fails or the disk is nearly full, the store warns and stops; the run continues
   };
 
   /// Locks `folder` against other writers. Throws Error(output_failed).
@@ -56,7 +57,7 @@ class Store {
   std::set<std::string> outputs() const;
   /// Whether a file is the effective scene of the resumed run, unchanged since that run wrote it.
   bool holds_scene(const std::filesystem::path& file) const;
-  /// Adds these outputs to outputs(), in a file of the cache.
+  /// Adds `outputs` to those that outputs() returns, in a file of the cache.
   void note_outputs(std::set<std::string> outputs) const;
 
   /// The cache of the earlier run; call it only if resumes().

@@ -92,9 +92,9 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   }
 }
 
-/// Number of columns of the sheet. Seeks the smallest k for which the first n runs, 2 <= n <= kMaxSheetColumns, have
-/// the same values of the first k keys, and run n + 1 has not. A row then has n pictures, along which the other keys
-/// vary. Otherwise the sheet is about square, with at most kMaxSheetColumns columns.
+/// Number of columns of the sheet: the number n of leading runs that have the same values of the first k keys, with the
+/// smallest k for which 2 <= n <= kMaxSheetColumns. Only the other keys vary along a row. If there is no such k, the
+/// sheet is about square, with at most kMaxSheetColumns columns.
 int columns_of(const std::vector<SweepResult>& results) {
   const Changes& first = results.front().run.difference;
   for (std::size_t keys = 1; keys < first.size(); ++keys) {
@@ -151,7 +151,7 @@ void write_sweep_sheet(const std::filesystem::path& file, const std::vector<Swee
   for (const SweepResult& result : results) found.push_back(picture_of(result.video, frame));
   const auto some = std::ranges::find_if(found, [](const auto& picture) { return picture.has_value(); });
   if (some == found.end()) {
-    std::error_code ignored;  // an earlier sweep may have left a sheet, which would pass for that of these runs
+    std::error_code ignored;  // a sheet of an earlier sweep could be mistaken for that of these runs
     std::filesystem::remove(file, ignored);
     return;
   }

@@ -82,8 +82,8 @@ class Watch {
  private:
   bool changed() const { return stamps_of(files_) != drawn_; }
 
-  /// Draws in a separate process, which reports its own errors. Kills this process if a file changes or a stop is
-  /// requested. Returns the exit code of the process; if it was killed here, ExitCode::interrupted.
+  /// Draws in a child process, which reports its own errors. Kills the child if a file changes or a stop is requested.
+  /// Returns the exit code of the child, or ExitCode::interrupted if it was killed here.
   ExitCode draw() const {
     std::vector<std::string> words{own_program().string(),
                                    options_.film ? "run" : "thumbnail",

@@ -23,7 +23,7 @@ struct Drawn {
   std::set<std::filesystem::path> own;  ///< files of this film that may be replaced
 };
 
-/// Checks each picture. For a video, Drawn::frames is empty unless the video is complete.
+/// Finds complete pictures of the film. For a video, Drawn::frames is empty unless the video is complete.
 Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
                  const cache::Manifest& scene, const std::filesystem::path& meshes,
                  const std::vector<std::string>& objects);

@@ -1,7 +1,7 @@
 # The rest is the same for all farms. Usage: task.sh unpack | simulate RUN | draw RUN PART | join RUN | report
 #
-# A complete task ends at once, and a stopped one resumes. A task may run twice at the same time, since each file gets
-# its name when it is complete. Without RUN or PART, the index in the job array of Slurm is used.
+# A complete task ends at once, and a stopped one resumes. Each output file gets its final name when it is complete, so
+# a task may run twice at the same time. Without RUN or PART, the index in the job array of Slurm is used.
 pause=${WEFT_PAUSE:-10} # the pause before retry n is n times this [s]
 stopped= child=
 
