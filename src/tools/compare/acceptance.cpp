@@ -160,7 +160,7 @@ bool Acceptance::carry_out() const {
     old_hash = short_hash(reference);
     difference = describe(result);
   }
-  check_writable(reference);  // before the log, which must name no reference that was not replaced
+  check_writable(reference);  // before the log is written: it must not name a reference that was not replaced
   const fs::path name = reference.lexically_proximate(folder);
   add_line(log, fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", now(), cell(name.generic_string()), old_hash,
                             short_hash_of(bytes), cell(difference), cell(reason), cell(user)));

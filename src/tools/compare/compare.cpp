@@ -57,7 +57,7 @@ bool has_default_budget(const Limits& limits) {
   return limits.pixel_budget == Limits{}.pixel_budget;
 }
 
-// `factor` multiplies the limits on pixels and on mean FLIP, but not that on spots.
+// `factor` multiplies the limits on the number of pixels and on mean FLIP, but not `Limits::spot`.
 bool is_within(const Figures& figures, const Limits& limits, double factor) {
   return counted_pixels(figures, limits) <= factor * allowed_pixels(figures, limits) &&
          figures.flip <= factor * for_size(limits, figures).flip && figures.spot <= limits.spot;
@@ -81,8 +81,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
     result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
     if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
-    // FLIP filters the images, so a difference near the border of the mask also changes the FLIP map outside of the
-    // mask.
+    // FLIP filters the images, so a difference inside the mask near its border also changes the FLIP map outside of it.
     for (std::size_t i = 0; i < mask->values.size(); ++i)
       if (mask->values[i] == 0) result.flip.values[i] = 0;
     read_flip(result);
@@ -134,8 +133,8 @@ Verdict verdict(const Figures& figures, const Limits& limits) {
 }
 
 bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits) {
-  // Measured in videos of 96x64 pixels in which a square appears for one or two frames: spill reached 1.3 times the
-  // limits, and 0.29 times the mean FLIP of the changed frame.
+  // Measured in videos of 96x64 pixels in which a square appears for one or two frames: the figures of spill reached
+  // 1.3 times the limits, and its mean FLIP 0.29 times that of the changed frame.
   constexpr std::size_t kFrames = 12;
   constexpr double kOverLimit = 2, kMaxFlipRatio = 1.0 / 3;
   if (!is_within(frames[k], limits, kOverLimit)) return false;

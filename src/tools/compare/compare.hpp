@@ -60,6 +60,7 @@ enum class Verdict {
   differs,  ///< exceeds a limit
 };
 
+/// All results for one pair of images.
 struct Comparison {
   Figures figures;
   Plane<float> flip;  ///< per pixel, 0 (looks the same) to 1
@@ -80,6 +81,7 @@ double counted_pixels(const Figures& figures, const Limits& limits);
 /// Number of pixels that may differ by more than the tolerance; can be fractional.
 double allowed_pixels(const Figures& figures, const Limits& limits);
 
+/// Whether the figures are within all limits.
 Verdict verdict(const Figures& figures, const Limits& limits);
 
 /// Whether frame k of a lossy video is spill: the frame differs only because the encoder predicted it from a changed

@@ -21,8 +21,8 @@ std::string size_problem(int width, int height, int test_width, int test_height)
   return fmt::format("{}x{} pixels, the reference has {}x{}", test_width, test_height, width, height);
 }
 
-// Reads a mask; pixels whose mean of the channels is at least 128 are white. Throws
-// Error(asset_unreadable), also if the mask has another size or no white pixel.
+// Reads a mask. A pixel is white if the mean of its channels is at least 128. Throws Error(asset_unreadable) if the
+// file cannot be read, has another size or has no white pixel.
 Mask read_mask(const std::filesystem::path& file, int width, int height) {
   const image::Image picture = image::read_png(file);
   if (picture.width != width || picture.height != height) {

@@ -52,8 +52,8 @@ struct Sensitivity {
 constexpr std::array kSensitivities{Sensitivity{1, 0.0047, 0, 1e-5}, Sensitivity{1, 0.0053, 0, 1e-5},
                                     Sensitivity{34.1, 0.04, 13.5, 0.025}};
 
-// Samples exp(-pi² x² / b) at distances x of whole pixels [degrees]. The radius is the paper's: three sigmas of the
-// widest kernel.
+// Samples exp(-pi² x² / b) at whole pixels; x is their distance in degrees. The radius is the paper's: three times the
+// standard deviation of the widest kernel.
 std::vector<float> gaussian(double b) {
   constexpr double kPiSq = std::numbers::pi * std::numbers::pi;
   const int radius = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPiSq)) * kPixelsPerDegree));

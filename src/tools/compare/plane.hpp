@@ -10,7 +10,7 @@
 
 namespace weft::compare {
 
-/// Row-major, top row first.
+/// Values of type T, row-major, top row first.
 template <class T>
 struct Plane {
   int width = 0, height = 0;  ///< pixels

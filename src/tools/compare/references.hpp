@@ -25,7 +25,7 @@ std::string machine_class(const std::string& gl);
 /// version of Mesa, or if the file cannot be read.
 std::string machine_class_of(const std::filesystem::path& file);
 
-/// The reference of this name that is used for the machine class `machine`; none if no file exists, or only heat maps.
+/// The reference of this name for the machine class `machine`; none if there is no file, or only a heat map.
 std::optional<std::filesystem::path> find_reference(const std::filesystem::path& folder, const std::string& name,
                                                     const std::string& machine);
 
