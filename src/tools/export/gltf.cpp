@@ -222,7 +222,7 @@ json GltfFile::texture(const Materials& materials, const Material& material, std
   return number_of("textures", {{"source", image}, {"sampler", number_of("samplers", sampler)}});
 }
 
-// One primitive per look; all share vertices and therefore morph targets.
+// One primitive per look. All primitives share the vertices of the object, and therefore its morph targets.
 json GltfFile::primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
                           const Materials& materials) {
   json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
@@ -311,8 +311,8 @@ void GltfFile::add_views(const std::vector<View>& views) {
     const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
     Eigen::Vector4f turn =
         Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
-    // q and -q are the same rotation. The one nearer to the previous frame makes readers interpolate along the shorter
-    // arc.
+    // q and -q are the same rotation. The one nearer to the previous frame is written, so that readers interpolate
+    // along the shorter arc.
     if (!camera.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(camera.turns.end() - 4))) < 0)
       turn = -turn;
     for (int axis = 0; axis < 3; ++axis) camera.positions.push_back(static_cast<float>(position[axis]));

@@ -38,7 +38,8 @@ std::uint8_t byte_of(double share) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
 }
 
-// Combines a texel with the surface's colour in linear space, as the renderer does.
+// Combines a texel with the surface's colour in linear space, as the renderer does. `laid`: receives red, green, blue
+// and alpha.
 void blend_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
   const double opacity = texel[3] / 255.0;
   for (int c = 0; c < 3; ++c) {

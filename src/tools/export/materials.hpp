@@ -55,6 +55,7 @@ struct Materials {
   std::size_t of_triangle(const frame::Surface& surface, std::size_t triangle) const;
 };
 
+/// The materials of both the surface and its parts.
 Materials materials_of(const frame::Surface& surface);
 
 /// Triangles with the same look.

@@ -21,7 +21,7 @@ namespace {
 // Largest specular exponent: readers such as Blender compute the roughness as 1 - sqrt(Ns / 1000).
 constexpr double kMaxSpecularExponent = 1000;
 
-// A face, whose corners refer to corners of triangles.
+// A face, with its corners as corners of triangles.
 struct Face {
   std::size_t material = 0;                                  // index of the first material with the same look
   std::vector<std::pair<std::size_t, std::size_t>> corners;  // triangle, and corner in it

@@ -23,7 +23,7 @@ struct CutSurface {
   bool is_cut(std::size_t vertices) const { return vertex_of.size() > vertices; }
 };
 
-/// Cuts a surface, which has `vertices` vertices.
+/// Cuts a surface with `vertices` vertices.
 CutSurface cut_at_seams(const frame::Surface& surface, const Materials& materials, std::size_t vertices);
 
 }  // namespace weft::exporter

@@ -21,8 +21,8 @@
 namespace weft::exporter {
 namespace {
 
-// Film width of a 35 mm camera: 36 mm. USD gives it in tenths of the stage's unit, which is 1 m.
-// Only the ratio of film width to focal length matters.
+// Film width of a 35 mm camera: 36 mm. USD states it in tenths of the stage's unit, which is 1 m here, so the value is
+// 0.36. Only the ratio of film width to focal length matters.
 constexpr double kFilmWidth = 0.36;
 
 // A valid name of a primitive: letters, digits and underscores, no leading digit.
