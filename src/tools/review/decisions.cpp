@@ -70,8 +70,8 @@ const Decisions::File& Decisions::read(const fs::path& folder) {
 }
 
 Json Decisions::of(RunFiles& run) {
-  // The folders above the run up to `run.folder`, each with the path from it to the run. For the run "stiff/band":
-  // stiff/ with "band", then `run.folder` with "stiff/band".
+  // The folders above the run up to `run.folder`, each with the path from this folder to the run. For the run
+  // "stiff/band", these are stiff/ with "band", and `run.folder` with "stiff/band".
   const fs::path name = run.key;
   std::vector<std::pair<fs::path, std::string>> places;
   // Pictures such as band/00000.png are the run "band". A page that was made for the folder band/ alone calls this run

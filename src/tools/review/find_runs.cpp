@@ -25,7 +25,7 @@ bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-// The path without ".", or "." alone if nothing else is left. Keeps "..", since the folder before it may be a link.
+// Removes each "." from the path; "." alone stays. Keeps "..", since the folder before it may be a link.
 fs::path without_dots(const fs::path& path) {
   fs::path plain;
   for (const fs::path& part : path)
@@ -242,8 +242,8 @@ class Search {
     return true;
   }
 
-  // Whether these pictures are in a subfolder of a sweep's run that has a video. A farm draws the pictures of a run
-  // there, and joins them to the video.
+  // Whether these pictures lie in a subfolder of a sweep's run that has a video: a farm draws the pictures of a run
+  // there, and joins them to this video.
   bool are_in_a_video(const fs::path& prefix) const {
     const fs::path run = prefix.parent_path().parent_path();
     return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {

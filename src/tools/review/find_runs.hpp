@@ -38,7 +38,7 @@ inline constexpr const char* kSweepName = "sweep.json";
 /// not a folder or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
-/// Name of a folder: "p" for the folders p, p/ and, if it is the working folder, for "."
+/// Name of a folder: "p" for p and p/, and for "." if p is the working folder.
 std::string folder_name(const std::filesystem::path& folder);
 
 /// Returns whether `run.stats_json` has the form of statistics of a run. If so, removes the values that the page cannot

@@ -72,8 +72,8 @@ void write_file_list(const fs::path& folder) {
     throw Error(ExitCode::output_failed, "{}: cannot be written", (folder / kFileList).string());
 }
 
-// Exchanges both folders, atomically if the file system supports it. Otherwise there is no page for a moment, but never
-// an incomplete one.
+// Exchanges both folders. The exchange is atomic if the file system supports it. Otherwise there is no page for a
+// moment, but never an incomplete one.
 bool exchange(const fs::path& fresh, const fs::path& former) {
   if (::renameat2(AT_FDCWD, fresh.c_str(), AT_FDCWD, former.c_str(), RENAME_EXCHANGE) == 0) return true;
   if (errno != EINVAL && errno != ENOSYS) return false;

@@ -83,14 +83,15 @@ Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
   return effective;
 }
 
-/// Frames of a scene, from `begin` to before `end`.
+/// Frames of a scene: begin, begin + step, ... below `end`.
 struct Frames {
   long long begin = 0, end = 0, step = 1;
 
   bool contains(long long frame) const { return frame >= begin && frame < end && (frame - begin) % step == 0; }
 };
 
-/// The frames that a video shows, by its metadata, such as 0:19:2; nullopt if they do not say it, or cannot be read.
+/// Reads from its metadata which frames a video shows, such as 0:19:2; nullopt if the metadata do not name them, or if
+/// the file cannot be read.
 std::optional<Frames> frames_of(const std::filesystem::path& file) {
   try {
     const video::Decoder decoder(file);
@@ -156,7 +157,7 @@ PictureTimes picture_times(const RunFiles& run) {
   if (!run.pictures.empty()) {
     for (const auto& picture : run.pictures) shown.push_back(picture_number(picture));
   } else if (!run.stats.empty()) {
-    // The statistics may be those of `weft simulate`, and the video that of a part of its frames, as in a farm.
+    // The statistics may be those of `weft simulate`, while the video shows only a part of these frames, as in a farm.
     const std::optional<Frames> drawn = run.video.empty() ? std::nullopt : frames_of(run.video);
     for (const Json& frame : run.stats_json["frames"]) {
       if (frame.value("written", Json(true)) == true) {
@@ -192,7 +193,8 @@ Json scene_values(const std::string& toml, const std::string& file) {
 
 namespace {
 
-/// Names the first picture that is not PictureTimes::step after the one before; empty if there is none.
+/// Names the first picture whose number is not PictureTimes::step above that of the picture before it; empty if there
+/// is none.
 std::string gap_in_pictures(const RunFiles& run) {
   const long long step = picture_times(run).step;
   for (std::size_t k = 1; k < run.pictures.size(); ++k) {

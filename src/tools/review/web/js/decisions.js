@@ -41,7 +41,7 @@
         if (!known || entry.date > known.date) own = { ...own, [home]: { ...own[home], [key]: entry } };
       }
   };
-  // `partOf` returns what changes of the entry that it is given.
+  // Changes the entry of a run. `partOf(entry)` returns the members that change.
   const change = (run, partOf) => {
     takeStored();
     const entry = entryOf(run);

@@ -20,7 +20,7 @@
     return { value: pair[name], frame: pair.verdict === "same" ? undefined : run.frameOf(pair.picture) };
   };
   const last = (name) => (run) => ({ value: run.digest[name]?.last });
-  // Undefined without simulated frames, since all totals are 0 then.
+  // Undefined if no frame was simulated, since all totals are 0 then.
   const total = (name) => (run) => ({ value: run.digest.frame ? run.totals[name] : undefined });
   const perFrame = (name) => (run) => {
     const frames = (run.digest.frame?.count ?? 0) - 1; // frame 0 is the initial state; it costs no time
