@@ -19,31 +19,32 @@ using scene::Integrator;
 
 // Fixed steps, relative to the scene's.
 constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
-// Ratio of the shortest measured step to the step of the references. Without contact, a second-order reference has 1/64
-// of the error at the shortest measured step. With contact, so short a step would be useless, because chaotic
-// divergence exceeds the step error.
+// The step of the references is the shortest measured step divided by this number. Without contact, a second-order
+// reference then has 1/64 of the error at the shortest measured step. With contact, a divisor of 8 would not help:
+// chaotic divergence exceeds the error of the step.
 constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
-// Values of time.tolerance fall from kLargestTolerance [m] by half a decade each. They end after
-// kTolerances values (with contact, kTolerancesWithContact), or earlier if a run fails or takes
-// more steps than a run with the shortest fixed step.
+// The values of time.tolerance begin at kLargestTolerance [m]; each is 1/√10 of the value before. There are kTolerances
+// values (with contact, kTolerancesWithContact); fewer if a run fails or takes more steps than a run with the shortest
+// fixed step.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
-// newton_tolerance falls by decades from the scene's value down to this minimum. If the scene's value is smaller, all
-// runs have it.
+// The runs of a step divide newton_tolerance by ten each time, from the scene's value down to this minimum. If the
+// scene's value is smaller, all runs have the scene's.
 constexpr double kMinNewtonTolerance = 1e-8, kDecade = 0.1;
-// newton_tolerance of the runs of Axis::mesh, relative to the scene's.
+// newton_tolerance of the runs of Axis::mesh, relative to the scene's: their error must be that of the mesh.
 constexpr double kMeshNewtonRatio = 1e-2;
-// See Run::step_decides.
+// A tenfold newton_tolerance matters little if it changes the result by at most this fraction of the error due to the
+// step; see Run::step_decides and tighten().
 constexpr double kMaxSolverChangeRatio = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
-// Additional start_noise of each start, compared with the start before [m].
+// Each start has this much more start_noise than the start before [m].
 constexpr double kStartShift = 1e-6;
 // If there is only one start and its run takes less CPU time than this [s], it is repeated, and the smaller time
 // counts.
 constexpr double kShortRun = 0.3;
-// A run fails if it takes too many steps. With fixed steps, the limit is kMaxStepRatio max(n, expected number), where n
-// is the number of steps with the shortest fixed step. With time.tolerance, it is min(kMaxStepRatio n, number of steps
+// A run fails if it takes too many steps. Let n be the number of steps with the shortest fixed step. With fixed steps,
+// the limit is kMaxStepRatio max(n, expected number); with time.tolerance, it is min(kMaxStepRatio n, number of steps
 // of the reference).
 constexpr int kMaxStepRatio = 3;
 
@@ -56,7 +57,7 @@ struct Sample {
   Work work;           // see Run::work
 };
 
-// `ratio` times a newton_tolerance, if that is not below kMinNewtonTolerance. Never larger than `tolerance`.
+// The tolerance multiplied by `ratio`, but at least kMinNewtonTolerance and at most `tolerance`.
 double tighter_newton_tolerance(double tolerance, double ratio) {
   return std::min(tolerance, std::max(kMinNewtonTolerance, ratio * tolerance));
 }
@@ -65,7 +66,7 @@ Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_
   return a.contact ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
 }
 
-// See Run::spread.
+// Largest difference between a start and the median of all starts or, without contact, the first start (Run::spread).
 Errors spread_of(const Sample& sample) {
   Errors spread{};
   for (const Trajectory& start : sample.starts) {
@@ -89,15 +90,17 @@ class Campaign {
   Setting as_in_scene(Integrator integrator, double step) const {
     return {integrator, step, {}, scene_.solver.newton_tolerance, scene_.solver.linear_tolerance};
   }
-  // The longest step that divides a frame evenly and is at most `step`, as the simulation chooses it [s].
+  // The longest step that divides a frame evenly and is at most `step` [s]; the simulation chooses its steps in the
+  // same way.
   double even_step(double step) const {
     return 1 / (scene_.time.fps * std::max(1.0, std::ceil(1 / (scene_.time.fps * step) - 1e-9)));
   }
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
-  // Assumed factor by which the error falls if the step is divided by `shorter`. Uses half of the order (with contact,
-  // 0.5), because waves and contact lower the observed order; the full order would understate the uncertainty.
+  // Assumed factor by which the error falls if the step is divided by `shorter`. The exponent is half of the order
+  // (with contact, 0.5), because waves and contact lower the observed order; the full order would understate the
+  // uncertainty.
   double error_ratio(Integrator integrator, double shorter) const {
     const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
     return std::pow(shorter, 0.5 * order);
@@ -173,7 +176,7 @@ scene::Scene Campaign::scene_with(const Setting& setting) const {
 }
 
 // Expected number of steps, times the number of particles relative to the scene. If the setting has a tolerance t, the
-// step is assumed to be kSteps[0] times the scene's at t = kLargestTolerance, and to scale as t^(1/2) for Euler and
+// assumed step is kSteps[0] times the scene's at t = kLargestTolerance, and proportional to t^(1/2) for Euler and to
 // t^(1/3) for the others.
 double Campaign::work_of(const Setting& setting) const {
   const double root = setting.integrator == Integrator::implicit_euler ? 2 : 3;
@@ -254,7 +257,7 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
     Run tighter{.setting = twice};
     tighter.setting.newton_tolerance = tighter_newton_tolerance(twice.newton_tolerance, kDecade);
     const SamplePtr sample = run(tighter, coarse);
-    // Accept a failure only if an earlier division has given a change to return.
+    // A failed run is accepted only after an earlier division has given a change to return.
     if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
     if (!sample) return change;
     change = tighter.errors;
@@ -319,9 +322,8 @@ bool Campaign::decides(const Run& run, const Run& tighter) const {
   return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.uncertainty_of(tighter, q));
 }
 
-// Runs this fixed step with newton_tolerance falling from the scene's value until
-// Run::step_decides, but not below kMinNewtonTolerance. Stops if a run fails. Returns the run with
-// step_decides; nullptr if there is none.
+// Runs one fixed step. Divides newton_tolerance by ten for each run, from the scene's value until Run::step_decides,
+// but not below kMinNewtonTolerance. Stops if a run fails. Returns the run with step_decides; nullptr if there is none.
 Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
@@ -400,8 +402,8 @@ void Campaign::measure_linear() {
   }
 }
 
-// Runs meshes from fine to coarse, and compares each with the mesh that has twice the cells along each side, if that
-// mesh was run. Lists the results from coarse to fine.
+// Runs meshes from fine to coarse. Compares each with the mesh that has twice the cells along each side, if that mesh
+// was run. Lists the results from coarse to fine.
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // twice a key is exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
@@ -421,7 +423,7 @@ void Campaign::measure_meshes() {
     by_refinement[refinement] =
         run(tried, against,
             against ? run_error::matching_particles_in_refined(scene_with(tried.setting)) : std::vector<std::size_t>{});
-    // Do not list a mesh that only serves for comparison, unless its run fails.
+    // Omits a mesh that was run only for comparison, unless its run fails.
     const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
     if (extra && !tried.failed()) continue;
     if (!against && !tried.failed()) tried.failure = "nothing finer to compare with";

@@ -30,7 +30,7 @@ struct Setting {
 
 /// The parameter that varies in a series of runs. Along a series, the error should fall.
 enum class Axis {
-  grid,       ///< fixed steps; for each, newton_tolerance falls tenfold per run until Run::step_decides or 1e-8
+  grid,       ///< fixed steps; for each, runs divide newton_tolerance by ten until Run::step_decides or 1e-8
   tolerance,  ///< time.tolerance varies, with the solver settings of the scene
   linear,     ///< solver.linear_tolerance varies, at the scene's step
   mesh,       ///< the number of cells varies; error: difference to the run with twice the cells along each side
@@ -98,6 +98,7 @@ struct CrossCheck {
   Errors uncertainty{};
 };
 
+/// All runs of a measurement, and the references to which their errors refer.
 struct Accuracy {
   bool contact = false;         ///< whether surfaces can touch in the scene; see production::can_collide()
   int starts = 1;               ///< number of starts of each setting; see Run
@@ -147,15 +148,15 @@ using EachRun = std::function<void(const Run& run, double done)>;
 /// Raises `uncertainty` to at least CrossCheck::difference − CrossCheck::uncertainty of each cross check.
 void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks);
 
-/// Runs the scene some hundred times. Computes two independent references: with midpoint and BDF2;
-/// with contact, with BDF2 and Euler, because midpoint does not damp contact. Their step is an
-/// eighth (with contact, half) of the shortest step of Axis::grid.
-/// The newton_tolerance of a reference is chosen at twice its step. It is divided by ten until a
-/// division changes the result by at most a tenth of the change expected from halving the step, or
-/// by at most the spread over the starts, or until it is 1e-8, or until a run fails.
-/// Of the two candidates, the one with the smaller uncertainty in deciding_quantity() becomes the
-/// reference. Throws Error(simulation_failed) if both fail, and Error(usage) if the plan does not
-/// suit the scene.
+/// Runs the scene some hundred times. Computes two independent references: with midpoint and BDF2; with contact, with
+/// BDF2 and Euler, because midpoint does not damp contact. Their step is an eighth (with contact, half) of the shortest
+/// step of Axis::grid. Of the two, the one with the smaller uncertainty in deciding_quantity() becomes the reference.
+///
+/// The newton_tolerance of a reference is chosen at twice its step. It is divided by ten until a division changes the
+/// result by at most a tenth of the change expected from halving the step, or by at most the spread over the starts.
+/// Division also ends at 1e-8, or if a run fails.
+///
+/// Throws Error(simulation_failed) if both references fail, and Error(usage) if the plan does not suit the scene.
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

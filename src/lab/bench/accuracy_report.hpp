@@ -24,20 +24,20 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy);
 /// Errors against the step; errors due to the solver against newton_tolerance; errors of the meshes against CPU time.
 std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 
-/// The cheapest run of Axis::grid or Axis::tolerance that certainly reaches a target: its error plus uncertainty is at
-/// most `target`, and the same holds for all finer runs of its axis and integrator that have not failed. nullptr if
-/// there is none.
+/// The cheapest run of Axis::grid or Axis::tolerance that certainly reaches a target. Such a run, and all finer runs of
+/// its axis and integrator that have not failed, have an error plus uncertainty of at most `target`. nullptr if there
+/// is none.
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
-/// The Pareto front of Axis::grid and Axis::tolerance, cheapest first: the runs for which no other run is cheaper and
-/// has a smaller error plus uncertainty.
+/// The Pareto front of Axis::grid and Axis::tolerance, cheapest first: the runs for which no other run is both cheaper
+/// and, counting error plus uncertainty, more exact.
 std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);
 
 /// One line: which setting to use, its cost, and the cost of the scene's setting. The target is an error of 1 % of the
 /// cloth's size.
 std::string recommendation(const Accuracy& accuracy);
 
-/// Three sentences: the cheapest setting for each of several target errors, the factor of CPU time for a tenth of the
-/// error, and the errors due to step, solver and mesh. Empty if nothing moves.
+/// Three sentences: the cheapest setting for each of several target errors; the factor on the CPU time for a tenth of
+/// the error; the errors due to step, solver and mesh. Empty if nothing moves.
 std::string conclusion(const Accuracy& accuracy);
 
 /// The report, which begins with the recommendation. `work_plot`, `settings_plot`: names of the plots' files, in the

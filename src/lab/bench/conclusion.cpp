@@ -19,11 +19,11 @@ constexpr double kTargetErrorRatio = 0.01;
 constexpr double kEqualRatio = 1.1;
 // Target errors of conclusion() [m].
 constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
-// Maximum uncertainty of the reference, relative to a target, with which the target can be verified.
+// A target can be verified if the uncertainty of the reference is at most this fraction of the target.
 constexpr double kMaxUncertaintyRatio = 0.3;
 // If all errors are below this value, nothing moves [m].
 constexpr double kNegligibleMotion = 1e-12;
-// Maximum number of runs of a series, the finest ones, to which cost_of_a_digit() is fitted.
+// cost_of_a_digit() is fitted to at most this number of runs of a series, the finest ones.
 constexpr std::size_t kMaxFittedRuns = 4;
 
 bool is_candidate(const Run& run) {
@@ -156,7 +156,7 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
 }
 
 // Errors due to step, solver and mesh with the settings of the scene. If the scene has time.tolerance, the error due to
-// the solver is not known separately.
+// the step includes that due to the solver.
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {
@@ -223,9 +223,8 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
 
 namespace {
 
-// Of the runs that reach the target in at most kEqualRatio times `cpu_s`, the one with the smallest error. Prefers a
-// run with the scene's own newton_tolerance if its error is less than kEqualRatio times the error of runs with other
-// values.
+// Of the runs that reach the target in at most kEqualRatio times `cpu_s`, the one with the smallest bound_of(). Bounds
+// of runs without the scene's own newton_tolerance count as kEqualRatio times as large, to prefer the scene's own.
 const Run* most_exact_at_cost(const Accuracy& accuracy, Quantity quantity, double target, double cpu_s) {
   const Run* best = nullptr;
   double least = std::numeric_limits<double>::infinity();

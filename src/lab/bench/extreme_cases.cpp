@@ -117,7 +117,7 @@ std::vector<ExtremeCase> make_cases() {
                  "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\n"),
       25,
       // Energy that the pin can add [J]: ½ m v² of the whole sheet at the speed of the pin, times three, because
-      // stretched threads accelerate the sheet further.
+      // stretched threads can accelerate the sheet beyond that speed.
       3 * 0.5 * 0.05 * 250 * 250);
   add("no_stiffness", "no stiffness at all",
       hanging("material = { stretch = 0, shear = 0, bend = 0, stretch_viscosity = 0, shear_viscosity = 0, "

@@ -107,8 +107,8 @@ scene::Scene scene_of(const Specimen& specimen, const scene::Material& material,
 }
 
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved) {
-  // newton_tolerance. Measured for wool, cotton, jersey and faille: a third of this value changes the drape coefficient
-  // by up to 0.003; half of the step changes it by 0.004 to 0.01.
+  // Value of newton_tolerance. Measured for wool, cotton, jersey and faille: a third of this value changes the drape
+  // coefficient by up to 0.003; half of the time step changes it by 0.004 to 0.01.
   constexpr double kExact = 0.01;
   scene.time = {.duration = 1.5, .fps = 10, .step = 0.01};
   scene.contact.self = true;

@@ -33,6 +33,7 @@ scene::Scene scene_of(const Specimen& specimen, const scene::Material& material,
 /// cloth [m].
 std::vector<scene::Pin> pins_at(const std::vector<Vec3>& x, const std::vector<std::size_t>& held);
 
+/// Result of the drape test.
 struct Drape {
   double coefficient = 0;     ///< area of the overhang as seen from above / area of the flat overhang
   double strain = 0;          ///< largest strain along weft or warp in the last frame
@@ -40,8 +41,8 @@ struct Drape {
   double cpu_s = 0;
 };
 
-/// Accuracy of the solver. The accuracy affects the drape, because bending friction holds cloth in the shape in which
-/// it first comes to rest. `exactly`: newton_tolerance is 0.01; a third of this value was measured to change the drape
+/// Accuracy of the solver. It affects the drape, because bending friction holds cloth in the shape in which it first
+/// comes to rest. `exactly`: newton_tolerance is 0.01; a third of this value was measured to change the drape
 /// coefficient by at most 0.003. `with_default_tolerance`: newton_tolerance is that of `scene`.
 enum class Solved { exactly, with_default_tolerance };
 

@@ -14,6 +14,7 @@ namespace weft::bench {
 /// Loads at which extension is measured [N/m]: three of the FAST system, and one of the KES system.
 inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
 
+/// Results of all tests of one fabric.
 struct FabricRun {
   scene::Fabric fabric;
   /// Drape coefficients of two specimens. `drape`: solved exactly; `drape_in_scenes`: with the default tolerance
@@ -39,8 +40,8 @@ Table fabrics_table(const std::vector<FabricRun>& runs);
 std::string fabrics_svg(const std::vector<FabricRun>& runs);
 /// The report. `plot`: name of the file with the plot, in the folder of the report.
 std::string fabrics_markdown(const std::vector<FabricRun>& runs, const std::string& plot);
-/// One sentence: how many of the fabrics with a published drape coefficient are within 10 % of the
-/// nearest published value, and how many of those whose bending stiffness is also published.
+/// One sentence with two counts of fabrics whose drape coefficient is within 10 % of the nearest published value: of
+/// all fabrics with a published drape, and of those with a published bending stiffness too.
 std::string conclusion(const std::vector<FabricRun>& runs);
 
 }  // namespace weft::bench

@@ -33,6 +33,7 @@ class Tally {
   std::array<int, kVerdicts> of_{};
 };
 
+/// The stability map as a table.
 Table map_table(const std::vector<MapCell>& cells);
 /// The stability map as SVG, with one panel per integrator. Stiffness increases upward, the time
 /// step to the right. The colour of a cell is its verdict; the number in it is that of Newton

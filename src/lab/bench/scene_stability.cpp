@@ -66,7 +66,7 @@ bool scale_mesh(scene::Scene& scene, double factor) {
   return true;
 }
 
-// Whether the factor changes the simulation. For example, no factor does if all values of this parameter are 0.
+// Whether the factor changes the simulation. For example, if all values of this parameter are 0, no factor changes it.
 bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   scene::Scene varied = scene;
   Factors factors{1, 1, 1, 1, 1, 1};
@@ -90,8 +90,8 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
       varied = scene;  // a factor of 0 has set all coefficients of `varied` to 0
       return std::ranges::any_of(frictions(varied), [](const double* value) { return *value != 0; }) &&
              (scene.contact.self || scene.contact.obstacles);
-    // The simulation takes no step longer than a frame. Each factor above 1 is twice the factor before. If half of a
-    // factor gives a step of at least a frame already, the factor itself changes nothing more.
+    // The simulation takes no step longer than a frame. Each factor above 1 is twice the factor before it. If half of a
+    // factor already gives a step of at least a frame, the factor gives the same simulation as its half.
     case VariedParameter::step:
       return scene.time.tolerance || scene.time.step * (factor > 1 ? 0.5 * factor : factor) < 1 / scene.time.fps;
     case VariedParameter::mesh:

@@ -58,6 +58,7 @@ struct Trial {
   bool breaks() const { return verdict != TrialVerdict::holds && verdict != TrialVerdict::impossible; }
 };
 
+/// Results of all trials.
 struct SceneStability {
   int frames = 0;             ///< number of frames after the start
   Trial as_is;                ///< the unchanged scene

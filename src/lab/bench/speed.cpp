@@ -13,21 +13,22 @@
 namespace weft::bench {
 namespace {
 
-// Minimum numbers of bytes that one linear iteration moves, in single precision. Full block: nine numbers and a column
-// index. Isotropic block: one number and a column index. Particle: its preconditioner block (three padded vectors), and
-// padded vectors of conjugate gradients: direction p, product q, solution x, residual r, preconditioned residual z.
-// These operations move 2 + 6 + 2 + 3 vectors: the product reads p and writes q; the update reads p and q, and reads
-// and writes x and r; the preconditioner reads r and writes z; the new direction reads z, and reads and writes p.
+// Lower bounds on the bytes that one linear iteration moves, in single precision. A full block has nine numbers and a
+// column index; an isotropic block, one number and a column index. A particle has its preconditioner block (three
+// padded vectors) and the padded vectors of conjugate gradients: direction p, product q, solution x, residual r,
+// preconditioned residual z. These vectors are moved 2 + 6 + 2 + 3 times: the product reads p and writes q; the update
+// reads p and q, and reads and writes x and r; the preconditioner reads r and writes z; the new direction reads z, and
+// reads and writes p.
 constexpr double kPaddedVec3Bytes = 16;
 constexpr double kFullBlock = 9 * 4 + 4, kIsotropicBlock = 4 + 4,
                  kParticle = 3 * kPaddedVec3Bytes + (2 + 6 + 2 + 3) * kPaddedVec3Bytes;
-// The same for one Newton iteration. The linearisation clears the matrix and writes it in double precision, then reads
-// it and writes a copy in single precision. Each of three evaluations (linearisation, line search, residual after the
-// line search) moves positions, velocities and forces. Data of the elements are not counted.
+// The same for one Newton iteration. The linearisation clears the matrix and writes it in double precision; then it
+// reads the matrix and writes a copy in single precision. Each of three evaluations (linearisation, line search,
+// residual after the line search) moves positions, velocities and forces. Data of the elements are not counted.
 constexpr double kFullBlockAssembled = 9 * (8 + 8 + 8 + 4), kIsotropicBlockAssembled = 8 + 8 + 8 + 4,
                  kParticleEvaluated = 3 * 3 * 24;
 
-// Typical exponents with which cost grows with the number of particles and with 1 / step, and typical speed-up per
+// Typical exponents of the cost as a power of the number of particles and of 1 / step, and typical speed-up per
 // additional thread. Used only to predict run times.
 constexpr double kUsualExponent = 1.3, kUsualStepExponent = 0.6, kUsualGainOfAThread = 0.4;
 
@@ -159,8 +160,8 @@ double memory_bound_s(const SpeedRun& run) {
 double read_bandwidth(double bytes) {
   constexpr double kMinTimedSeconds = 0.05;  // shorter timings are too noisy
   const std::vector<std::uint64_t> numbers(static_cast<std::size_t>(bytes / sizeof(std::uint64_t)) + 1, 1);
-  // Each thread reads its own range again and again without waiting for other threads, so synchronisation is not
-  // measured.
+  // Each thread reads its own range again and again. Threads do not wait for each other, so the time contains no
+  // synchronisation.
   const auto threads = static_cast<std::size_t>(thread_count());
   const std::size_t share = (numbers.size() + threads - 1) / threads;
   const auto read = [&](int times) {
@@ -176,7 +177,7 @@ double read_bandwidth(double bytes) {
   };
   int times = 1;
   while (read(times) < kMinTimedSeconds) times *= 2;
-  // Take the fastest of three measurements, because other processes can only slow them down.
+  // Takes the fastest of three measurements, because other processes can only slow them down.
   double best = 0;
   for (int k = 0; k < 3; ++k)
     best = std::max(best, times * static_cast<double>(numbers.size() * sizeof numbers[0]) / read(times));

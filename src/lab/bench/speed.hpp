@@ -34,6 +34,7 @@ struct SpeedSetting {
   double step = 1;  ///< time.step or time.tolerance, relative to the scene
 };
 
+/// Cost of one run.
 struct SpeedRun {
   SpeedSetting setting;
   std::string failure = {};  ///< why the run gave no measurement; empty if it did
@@ -55,11 +56,11 @@ struct SpeedRun {
   /// Sum over all stages.
   StageTime all() const;
   double bytes_a_particle() const;
-  /// Fraction of the wall time outside of parallel loops of the simulation; drawing counts as
-  /// outside. Only for runs with one thread.
+  /// Fraction of the wall time that the run spends outside of parallel loops of the simulation, drawing included. Only
+  /// for runs with one thread.
   double serial_fraction() const;
-  /// Speed-up with LoopCounts::kThreads[number] threads if starting and synchronising threads took
-  /// no time, and all chunks of a loop took equal times. Only for runs with one thread.
+  /// Upper bound on the speed-up with LoopCounts::kThreads[number] threads: starting and synchronising threads takes no
+  /// time, and all chunks of a loop take equal times. Only for runs with one thread.
   double largest_gain(std::size_t number) const;
 };
 

@@ -129,7 +129,7 @@ std::string how_far_from_the_bound(const std::vector<const SpeedRun*>& sizes) {
       100 * bound / takes);
 }
 
-// Appends to `text`, in parentheses, the exponent() of a value that grows from `was` in the row above to `is`.
+// Appends the exponent() of a value in parentheses to `text`. `was`: value in the row above; `is`: value in this row.
 std::string with_exponent(std::string text, const SpeedRun* before, const SpeedRun& run, double was, double is) {
   if (const auto power = before ? exponent(*before, run, was, is) : std::nullopt)
     text += fmt::format(" ({:.2f})", *power);

@@ -11,8 +11,8 @@
 namespace weft::bench {
 namespace {
 
-// Allowed increase of energy, besides EnergyLimit: kSolverEnergyRatio times the energies in play, for errors of the
-// solver, plus kEnergyRounding [J].
+// Increase of energy that is allowed in addition to EnergyLimit: kSolverEnergyRatio times the energies in play, for
+// errors of the solver, plus kEnergyRounding [J].
 constexpr double kSolverEnergyRatio = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
@@ -122,14 +122,14 @@ constexpr int kParticles = 11;
 scene::Scene swing(scene::Integrator integrator, double stiffness, double step) {
   scene::Scene scene;
   scene.name = "swing";
-  // One frame every 40 ms; if steps are longer, one frame per step.
+  // There is one frame every 40 ms; if steps are longer, one frame per step.
   scene.time = {.duration = 1000, .fps = 1 / std::max(step, 0.04), .step = step, .integrator = integrator};
   scene.contact.self = scene.contact.obstacles = false;
   scene::Cloth cloth;
   cloth.name = "sheet";
   cloth.size = {kWidth, kWidth};
   cloth.particles_weft = cloth.particles_warp = kParticles;
-  // Use no named fabric, so that the map does not change with new fabric data.
+  // No named fabric is used, so that new data of fabrics do not change the map.
   scene::Material& material = cloth.material;
   material.density = kDensity;
   material.stretch_weft = material.stretch_warp = stiffness;
@@ -159,7 +159,7 @@ double stiffest_period(double stiffness) {
 
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
-  // An instability shows within two swings.
+  // An instability becomes visible within two swings.
   constexpr double kSwings = 2;
   constexpr int kDecades = 10, kMaxMapSteps = 25'000;
   std::vector<MapCell> cells;

@@ -10,11 +10,11 @@
 namespace weft::bench {
 
 enum class Verdict {
-  solved,     ///< ran to the end, finite, with at most the allowed energy
-  refused,    ///< ended with an error
-  warned,     ///< ran to the end, finite, with more energy than allowed; some frame has a warning
-  unbounded,  ///< like `warned`, but no frame has a warning
-  not_finite,
+  solved,      ///< ran to the end, finite, with at most the allowed energy
+  refused,     ///< ended with an error
+  warned,      ///< ran to the end, finite, with more energy than allowed; some frame has a warning
+  unbounded,   ///< like `warned`, but no frame has a warning
+  not_finite,  ///< a position or the energy is not finite
 };
 inline constexpr std::size_t kVerdicts = 5;
 std::string_view describe(Verdict verdict);
