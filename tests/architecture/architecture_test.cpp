@@ -1,4 +1,5 @@
-// Checks the source tree against the design. Small made-up trees first show that each check detects its violations.
+// Checks the source tree against the design. The first tests use small made-up trees, to show that each check detects
+// violations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ const fs::path kRoot = WEFT_SOURCE_DIR;
 // Tables and generated code may exceed the limit.
 const std::vector<std::string> kMayBeLong = {};
 
-/// A source tree on disk that contains only the files of a test and is deleted with it.
+/// A source tree on disk that contains only the files of a test, and is deleted after the test.
 class MadeTree : public support::TestFolder {
  protected:
   void SetUp() override {
@@ -87,7 +88,8 @@ TEST_F(MadeTree, FolderThatIsNoModuleIsReported) {
   EXPECT_EQ(wrong_declarations(folder_), "src/CMakeLists.txt: src/utils is not declared\n");
 }
 
-// A physics that includes a film, and a film of a room that may not use the other.
+// The module forces of the room physics includes a header of the room film, which physics does not use; the room film
+// uses physics.
 TEST_F(MadeTree, ModuleOfARoomUsesOnlyRoomsThatItsOwnUses) {
   const std::string physics =
       "weft_module(core)\nweft_module(mesh)\nweft_room(physics)\nweft_module(forces USES mesh)\n";
@@ -136,7 +138,8 @@ TEST(Architecture, NoFileIsLongerThan500Lines) {
   EXPECT_EQ(long_files(kRoot, 500, kMayBeLong), "");
 }
 
-// Only core parses text and opens files from outside, with limits, because parsers recurse and streams wait for pipes.
+// Only core parses text and opens files from outside, with limits, because parsers are recursive and opening a named
+// pipe waits for a writer.
 // The forbidden words are assembled here, so that this file does not contain them.
 TEST(Architecture, TextAndFilesFromOutsideAreReadByCoreAlone) {
   std::string found;

@@ -51,7 +51,7 @@ std::vector<fs::path> written_files(const fs::path& root, const std::vector<std:
 const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp", "embedded_cli.hpp",
                                                  "embedded_templates.hpp", "embedded_export.hpp"};
 
-// Headers that are installed are in a folder of this name of their module.
+// Part of the path of installed headers: each module has them in a folder of this name.
 const std::string kInterface = "/include/weft/";
 
 const std::vector<std::string> kCodeFolders = {"src", "shaders", "tests"};
@@ -105,7 +105,7 @@ std::vector<Declaration> read_declarations(const fs::path& root) {
   return declarations;
 }
 
-// The module that a file below src/ belongs to, by its folder; empty if none.
+// The module that a file below src/ belongs to, by its folder; empty if the file is in no module.
 std::string module_of(const fs::path& file, const std::vector<Module>& modules) {
   for (const Module& module : modules)
     if (file.generic_string().starts_with(module.folder().generic_string() + "/")) return module.name;
@@ -179,14 +179,14 @@ std::string wrong_includes(const fs::path& root) {
 std::string wrong_declarations(const fs::path& root) {
   const std::string prefix = "src/CMakeLists.txt: ";
   std::string wrong;
-  std::map<std::string, std::set<std::string>> rooms{{"", {""}}};  // of each room: those whose modules it may use
+  std::map<std::string, std::set<std::string>> rooms{{"", {""}}};  // for each room, the rooms whose modules it may use
   for (const Room& room : read_rooms(root)) {
     for (const std::string& used : room.uses)
       if (!rooms.contains(used)) wrong += prefix + room.name + " uses " + used + ", which is not declared before it\n";
     rooms[room.name] = {room.uses.begin(), room.uses.end()};
     rooms[room.name].insert({"", room.name});
   }
-  std::map<std::string, std::string> room_of;  // of each module declared so far
+  std::map<std::string, std::string> room_of;  // for each module declared so far
   std::set<std::string> folders;
   for (const Module& module : read_modules(root)) {
     for (const std::string& used : module.uses) {

@@ -7,35 +7,38 @@
 
 namespace weft::architecture {
 
-/// A room as src/CMakeLists.txt declares it: `weft_room(name DOES "..." USES ...)`. The modules that follow are its
-/// own.
+/// A room as src/CMakeLists.txt declares it: `weft_room(name DOES "..." USES ...)`. All modules declared after it, up
+/// to the next room, belong to it.
 struct Room {
   std::string name, does;
-  std::vector<std::string> uses;  ///< other rooms whose modules its own may use
+  std::vector<std::string> uses;  ///< rooms whose modules the modules of this room may use
 };
 
 /// A module as src/CMakeLists.txt declares it: `weft_module(name DOES "..." USES ... LINKS ...)`.
 struct Module {
   std::string name, does;
-  std::vector<std::string> uses;  ///< in addition to core, which all may use
-  std::string room;               ///< empty: none
+  std::vector<std::string> uses;  ///< modules that it may use in addition to core
+  std::string room;               ///< its room; empty: none
 
-  /// Below src/.
+  /// Folder of the module, relative to src/.
   std::filesystem::path folder() const { return std::filesystem::path(room) / name; }
 };
 
-// Both in the order of the file. They throw std::runtime_error if the file cannot be read.
+// Rooms and modules in the order of the file. Both functions throw std::runtime_error if the file cannot be read.
 std::vector<Room> read_rooms(const std::filesystem::path& root);
 std::vector<Module> read_modules(const std::filesystem::path& root);
 
-// Each check returns a line for each violation, "file:line: what is wrong" (paths relative to root), or nothing.
+// Each check returns a line for each violation, "file:line: what is wrong" (paths relative to root); an empty text if
+// there is none.
 
-/// Includes of src/ that name a module which is neither in USES nor core, or a file that does not exist. <weft/...>
-/// belongs to the module whose include/ has it; headers there include only each other and the standard library.
+/// Includes of src/ that name a file that does not exist, or a module that is neither core nor in USES. A header
+/// <weft/...> belongs to the module in whose folder include/ it is; such headers include only each other and the
+/// standard library.
 std::string wrong_includes(const std::filesystem::path& root);
 
-/// Names in USES that are not declared earlier in the file (which also excludes cycles), modules that use one of a room
-/// that theirs does not use, folders of src/ that are not declared, and modules without a folder.
+/// Four kinds of violations: names in USES that are not declared earlier in the file (this also excludes cycles);
+/// modules that use a module of a room that their own room does not use; folders of src/ that are not declared; modules
+/// without a folder.
 std::string wrong_declarations(const std::filesystem::path& root);
 
 /// Source files longer than `limit` lines, except those listed (tables and generated code, relative to root). A listed
