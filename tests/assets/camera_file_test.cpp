@@ -18,7 +18,8 @@ namespace {
 
 class CameraFile : public support::TestFolder {
  protected:
-  /// A rig turns by 90 degrees to the left about y in two seconds. The camera on it is 3 m out along z and 1 m up.
+  /// A rig turns by 90 degrees to the left about y in two seconds. The camera on the rig is 3 m from it along z and 1 m
+  /// above it.
   nlohmann::json document_ = nlohmann::json::parse(gltf_camera());
 
   LoadedCamera load(const std::string& object = "") {
@@ -37,7 +38,7 @@ class CameraFile : public support::TestFolder {
   }
 };
 
-// Single precision, for positions of some metres.
+// Tolerance for positions of some metres in single precision [m].
 constexpr double kSingle = 1e-6;
 
 TEST_F(CameraFile, GoesAroundWithTheRigThatItIsOn) {

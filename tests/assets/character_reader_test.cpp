@@ -1,4 +1,4 @@
-// Scenes as assimp returns them, made by hand and damaged in one part after another.
+// Scenes as assimp returns them. They are made by hand, and each test damages one part.
 #include "film/assets/character_reader.hpp"
 
 #include <assimp/GltfMaterial.h>
@@ -93,7 +93,7 @@ class Scenes : public testing::Test {
     std::copy(meshes.begin(), meshes.end(), at.mMeshes);
   }
 
-  /// Converts to bytes and back, as between processes.
+  /// Converts to bytes and back, as when the data pass from one process to another.
   ReadCharacter read() {
     ReadCharacter read = to_character(scene_, {});
     return character_from_bytes(to_bytes(read));
@@ -126,14 +126,15 @@ TEST_F(Scenes, BecomeNodesBonesOneMeshAndClips) {
   ASSERT_EQ(body.nodes.size(), 4u);
   EXPECT_EQ(body.nodes[2].name, "knee");
   EXPECT_EQ(body.nodes[2].parent, 0);
-  // The leg, and the mesh without bones once for each node that shows it: 4 + 3 + 3 vertices, each with its weights.
+  // The leg, and the mesh without bones once for each of its two nodes: 4 + 3 + 3 vertices, each with its weights.
   EXPECT_EQ(body.mesh.positions.size(), 10u);
   EXPECT_EQ(body.mesh.topology.triangles.size(), 4u);
   EXPECT_EQ(body.bones.size(), 4u);
   ASSERT_EQ(body.clips.size(), 1u);
   EXPECT_EQ(body.clips[0].duration, 2);
   EXPECT_EQ(body.clips[0].channels[0].position.times, (std::vector<double>{0, 2}));
-  // In the middle of the clip the knee is 1.5 m up. It moves vertex 1 with weight 1/2 and vertex 3 with weight 1.
+  // In the middle of the clip, the knee is 1.5 m above its position at rest. It moves vertex 1 with weight 1/2 and
+  // vertex 3 with weight 1.
   std::vector<Vec3> x(10);
   character::skin(body, character::pose_at(body, body.clips[0], 1), x);
   EXPECT_EQ(x[1], Vec3(1, 0, 0.75));
@@ -195,7 +196,8 @@ TEST_F(Scenes, WithABindPoseElsewhereStandWhereTheirMostImportantBoneHoldsThem) 
   EXPECT_EQ(x[3], Vec3(2, 0, 0)) << "held by the knee alone, which has not moved";
 }
 
-// In FBX and glTF, the node of a mesh can have the name of a bone; assimp names bones and channels by nodes.
+// In FBX and glTF, the node of a mesh can have the name of a bone. assimp refers to bones and channels by the names of
+// nodes, so such names are ambiguous.
 TEST_F(Scenes, WithMeshesThatHaveTheNameOfABoneAreHeldByTheBone) {
   box_node_->mName = "knee";
   std::swap(root_->mChildren[1], root_->mChildren[2]);
@@ -289,8 +291,8 @@ TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {
   EXPECT_EQ(warning(), "clip \"walk\": 1 channel left out, which name no part of the file: \"tail\"");
 }
 
-// If the transform of an FBX node is in parts, assimp makes a chain of nodes; the last one has the name in the file. A
-// clip that animates this node contains the whole transform.
+// If an FBX file stores the transform of a node in parts, assimp makes a chain of nodes, and gives the last one the
+// name in the file. The clip of this test animates this last node with the whole transform.
 TEST_F(Scenes, OfFbxWithTransformsInPartsPlayClipsThatHaveThemWhole) {
   auto* helper = node("knee_$AssimpFbx$_Translation");
   helper->mTransformation.a4 = 7;
@@ -352,7 +354,7 @@ TEST_F(Scenes, WithMorphTargetsAreBlendedByTheirChannels) {
   character::skin(body, character::pose_at(body, body.clips[0], 0.5), x);
   EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 0, 0.5)), x.end()) << "at the root";
   EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 5, 0.5)), x.end()) << "at the crate";
-  // assimp 5.2 puts the targets of FBX to 1.
+  // assimp 5.2 sets the weights of FBX targets to 1.
   target->mWeight = 1;
   EXPECT_EQ(read().character.morphs.at(0).weight, 1);
   scene_.mMetaData = aiMetadata::Alloc(1);
@@ -395,7 +397,7 @@ TEST_F(Scenes, ColorsAndPicturesComeWithTheirPlacesForEachTriangle) {
   EXPECT_TRUE(coloring.materials[1].cutout);
   EXPECT_EQ(coloring.materials[1].wrap_u, character::Material::Wrap::mirror);
   EXPECT_EQ(coloring.materials[1].wrap_v, character::Material::Wrap::repeat);
-  // The leg, then the crate at the root and at its own node.
+  // Triangles: the two of the leg, then the crate at the root and the crate at its own node.
   EXPECT_EQ(coloring.material_of_triangle, (std::vector<Index>{0, 0, 1, 1}));
   ASSERT_EQ(coloring.uv.size(), 4u);
   for (const std::size_t t : {2, 3})
@@ -469,7 +471,7 @@ TEST_F(Scenes, PicturesMayBeNamedPercentEncoded) {
   EXPECT_EQ(got.character.coloring.materials.at(0).picture, png);
 }
 
-// As in FBX avatars whose pictures are not embedded: one warning for all materials.
+// The pictures are not embedded, as in many FBX avatars: there is one warning for all materials.
 TEST_F(Scenes, PicturesThatAreNeitherNamedNorHeldAreToldOfOnce) {
   scene_.mNumMaterials = 5;
   scene_.mMaterials = new aiMaterial*[5];

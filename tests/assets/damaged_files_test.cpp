@@ -1,5 +1,4 @@
-// Truncated files and files with changed bytes: each is loaded, or refused with its name, whatever it contains. A
-// loaded mesh is valid.
+// Truncated files and files with changed bytes. Each file is either loaded as a valid mesh, or refused with its name.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -23,8 +22,8 @@ namespace fs = std::filesystem;
 struct Format {
   const char* extension;
   std::string (*make)();
-  int trials = 80;       ///< of changed bytes
-  std::size_t step = 7;  ///< from one truncated length to the next
+  int trials = 80;       ///< number of files with changed bytes
+  std::size_t step = 7;  ///< difference of consecutive truncated lengths [bytes]
 };
 
 class DamagedFiles : public testing::TestWithParam<Format> {
@@ -38,7 +37,7 @@ class DamagedFiles : public testing::TestWithParam<Format> {
   }
   ~DamagedFiles() override { fs::remove_all(folder_); }
 
-  /// Returns true if these bytes were accepted. Anything except a valid mesh or an asset error fails the test.
+  /// Returns true if these bytes are accepted. The test fails unless the result is a valid mesh or an asset error.
   bool try_to_load(const std::string& bytes) {
     std::ofstream(file_, std::ios::binary) << bytes;
     try {
@@ -73,7 +72,7 @@ TEST_P(DamagedFiles, WithBytesChangedAreLoadedOrRefused) {
     for (std::uint32_t k = 0; k < changes; ++k) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
     refused += try_to_load(bytes) ? 0 : 1;
   }
-  EXPECT_GT(refused, 0);  // otherwise no change was detected at all
+  EXPECT_GT(refused, 0);  // if no file was refused, no damage was detected
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,

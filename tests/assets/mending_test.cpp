@@ -44,7 +44,7 @@ Vec3 normal(const LoadedMesh& loaded, const mesh::Triangle& t) {
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
 }
 
-/// Expects each UV to equal the position of its corner.
+/// Expects each UV to equal the x and y of its corner.
 void expect_uv_of_places(const LoadedMesh& loaded) {
   for (std::size_t t = 0; t < loaded.uv.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
@@ -59,7 +59,7 @@ TEST(MendedSheet, IsLeftAsItIsWhereNothingIsWrong) {
   EXPECT_EQ(loaded.mesh.topology.triangles, triangles);
 }
 
-// They would be particles without mass.
+// Vertices without triangles would be particles without mass.
 TEST(MendedSheet, HasNoVerticesWithoutTriangles) {
   LoadedMesh loaded = strip(2);
   loaded.mesh.positions.emplace(loaded.mesh.positions.begin(), 7, 7, 7);
@@ -150,7 +150,7 @@ TEST(MendedSheet, KeepsALargeFlapALittleBeforeTheEdge) {
 
 TEST(MendedSheet, CannotFaceAlikeAllAroundAMoebiusStrip) {
   LoadedMesh loaded = strip(8);
-  // The ends are joined upside down.
+  // The ends of the strip are joined upside down, which makes a Möbius strip.
   for (mesh::Triangle& t : loaded.mesh.topology.triangles)
     for (Index& v : t) v = v == 16 ? 1 : v == 17 ? 0 : v;
   for (std::size_t v = 0; v < 16; ++v) {
@@ -168,7 +168,7 @@ TEST(MendedSheet, CannotFaceAlikeAllAroundAMoebiusStrip) {
 
 TEST(MendedSheet, LosesNeedlesAndTurnsTheEdgeOfWhatIsFlat) {
   LoadedMesh loaded = strip(4);
-  // A vertex close to another makes two needle triangles, one close to the middle of an edge makes a flat triangle.
+  // One vertex close to another makes two needle triangles; one close to the middle of an edge makes a flat triangle.
   std::vector<mesh::Triangle>& triangles = loaded.mesh.topology.triangles;
   const auto near_corner = static_cast<Index>(loaded.mesh.positions.size());
   loaded.mesh.positions.emplace_back(1.004, 0.003, 0);

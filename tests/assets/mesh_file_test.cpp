@@ -46,7 +46,7 @@ class MeshFiles : public testing::Test {
     return load_mesh(put(name, bytes), {scale}, "scenes/a.toml:12:8: obstacle.chair");
   }
 
-  /// The message after scene, file and `mesh file`, or "loaded".
+  /// The message after the names of scene, file and `mesh file`; "loaded" if there is no error.
   std::string refusal(const std::string& name, const std::string& bytes) const { return refusal_of(put(name, bytes)); }
 
   static std::string refusal_of(const fs::path& file) {
@@ -84,8 +84,8 @@ TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
   EXPECT_TRUE(cube.mesh.uv.empty());
 }
 
-// The data of a binary PLY file may begin with any byte, even with one that ends lines or separates words in the
-// header.
+// The data of a binary PLY file may begin with any byte, even with a line feed or a space, which end lines and words in
+// the header.
 TEST_F(MeshFiles, OfOurOwnAreReadWhateverByteTheirDataBeginWith) {
   for (const unsigned char first : {9, 10, 13, 32})
     for (const unsigned char second : {10, 13, 32}) {
@@ -107,7 +107,8 @@ TEST_F(MeshFiles, KeepTheOrderInWhichFacesNameVertices) {
   EXPECT_TRUE(loaded.mesh.topology.quads.empty());
 }
 
-// The second triangle repeats two positions of the first; joined vertices take the largest value.
+// The second triangle repeats two positions of the first; where vertices are joined, the joined vertex takes the
+// largest value of each colour channel.
 TEST_F(MeshFiles, KeepColoursAndGroupsOfVerticesThatTheyJoin) {
   const LoadedMesh colored = load("colors.obj",
                                   "v 0 0 0 0.25 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nv 1 0 0 1 0 0\nv 0 1 0 0 0 0\n"
@@ -137,7 +138,7 @@ TEST_F(MeshFiles, OfTrianglesAndQuadsBecomeTriangles) {
 }
 
 TEST_F(MeshFiles, WithLargerPolygonsAreTriangulatedInsideThem) {
-  // An L of six corners, area 3.
+  // An L-shaped polygon of six corners, with area 3.
   const LoadedMesh loaded = load("l.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n");
   EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4u);
   EXPECT_EQ(mesh::surface_area(loaded.mesh.topology.triangles, loaded.mesh.positions), 3);
@@ -163,7 +164,7 @@ TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
   EXPECT_TRUE(support::watertight(inspected(loaded)));
   EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
   const Box3 box = mesh::bounding_box(loaded.mesh.positions);
-  // The file has y up and z from 1 to 2.
+  // In the file, y is up, and z is from 1 to 2.
   EXPECT_EQ(Vec3(box.min()), Vec3(0, -2, 0));
   EXPECT_EQ(Vec3(box.max()), Vec3(1, -1, 1));
 }
@@ -224,7 +225,7 @@ TEST_F(MeshFiles, OfASequenceAreTurnedAsTheyStateElseFromY) {
 }
 
 TEST_F(MeshFiles, OfASequenceMayHavePolygonsWhoseShapeChanges) {
-  const auto hexagon = [](int dented) {  // that corner lies near the middle
+  const auto hexagon = [](int dented) {  // the corner `dented` lies near the middle
     std::string obj;
     for (int k = 0; k < 6; ++k) {
       const double angle = k * std::numbers::pi / 3, radius = k == dented ? 0.1 : 1;
@@ -239,7 +240,7 @@ TEST_F(MeshFiles, OfASequenceMayHavePolygonsWhoseShapeChanges) {
 }
 
 TEST_F(MeshFiles, OfASequenceKeepTrianglesThatHaveAnAreaInAnyFile) {
-  const auto fold = [](double y) {  // its second triangle unfolds; its third never does
+  const auto fold = [](double y) {  // the second triangle unfolds in the sequence; the third never has an area
     return fmt::format("v 0 0 0\nv 1 0 0\nv 0.5 1 0\nv 0.5 {} 0\nv 2 0 0\nf 1 2 3\nf 2 1 4\nf 1 2 5\n", y);
   };
   const std::vector<std::filesystem::path> files{put("0.obj", fold(0)), put("1.obj", fold(-1)), put("2.obj", fold(0))};
@@ -293,7 +294,7 @@ TEST_F(MeshFiles, OfGltfWithExtensionsThatTheyRequireAreRefusedUnlessTheyAreOfLo
     EXPECT_EQ(refusal("looks.gltf", with(name)), "loaded") << name;
 }
 
-// As gltfpack and glTF-Transform write them.
+// gltfpack and glTF-Transform write such files.
 TEST_F(MeshFiles, OfGltfWithIntegersForFloatsAreConverted) {
   const LoadedMesh loaded = load("a.gltf", gltf_tetrahedron_of_integers());
   EXPECT_TRUE(support::watertight(inspected(loaded)));

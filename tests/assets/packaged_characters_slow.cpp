@@ -1,4 +1,4 @@
-// Real files from the Debian package assimp-testmodels.
+// Real character files from the Debian package assimp-testmodels.
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 
@@ -91,13 +91,13 @@ TEST_F(Packaged, FilesAreEachLoadedOrRefusedByName) {
   }
   RecordProperty("loaded", loaded);
   RecordProperty("refused", refused);
-  // Counts of version 5.2.5~ds0-1; other versions may differ.
+  // Measured with version 5.2.5~ds0-1 of the package; other versions may have other files.
   EXPECT_GE(loaded, 300);
   EXPECT_GE(animated, 50);
   EXPECT_GE(skinned, 6) << "with vertices that several bones hold";
 }
 
-/// An independent evaluation of assimp's scene: nodes are visited recursively, each vertex of each mesh separately.
+/// An independent evaluation of assimp's scene: it visits nodes recursively, and each vertex of each mesh separately.
 struct Evaluation {
   const aiScene& scene;
   const aiAnimation& clip;
@@ -120,7 +120,7 @@ struct Evaluation {
     const double f = key_fraction(keys, k, ticks);
     return (1 - f) * value(k) + f * value(k + 1);
   }
-  /// Rotation as a matrix, from the sines of the two fractions of the angle between two keys.
+  /// Rotation as a matrix, by spherical interpolation between two keys.
   Mat3 rotation_at(const aiQuatKey* keys, unsigned count) const {
     const std::size_t k = key_before(keys, count, ticks);
     const auto value = [&](std::size_t i) {
@@ -151,7 +151,7 @@ struct Evaluation {
   Eigen::Matrix4d local(const aiNode& node) const {
     for (unsigned c = 0; c < clip.mNumChannels; ++c) {
       const aiNodeAnim& channel = *clip.mChannels[c];
-      // If several nodes have one name, a channel moves the first.
+      // If several nodes have the same name, a channel moves the first of them.
       if (scene.mRootNode->FindNode(channel.mNodeName) != &node) continue;
       Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
       m.topLeftCorner<3, 3>() = rotation_at(channel.mRotationKeys, channel.mNumRotationKeys) *
@@ -206,10 +206,10 @@ struct Evaluation {
   }
 };
 
-/// Per vertex of `from`: the largest distance, over all poses, to the vertex of `to` that stays closest. Returns the
-/// maximum over all vertices.
+/// For each vertex of `from`, the distance to the closest vertex of `to`, taken as the largest distance over all poses.
+/// Returns the maximum over all vertices.
 double max_distance(const std::vector<std::vector<Vec3>>& from, const std::vector<std::vector<Vec3>>& to) {
-  // Sorted by x in the first pose, so that only nearby vertices are compared.
+  // Vertices of `to` by their x in the first pose, so that only nearby vertices are compared.
   std::multimap<double, std::size_t> along_x;
   for (std::size_t v = 0; v < to[0].size(); ++v) along_x.emplace(to[0][v].x(), v);
   constexpr double kNear = 1e-3;

@@ -28,13 +28,14 @@ constexpr double kKeyTime = 0.1;  // [s]
 struct Bone {
   std::string name;
   int parent = -1;
-  Vec3 offset;      // from the parent, with arms stretched out, y up, facing z [cm]
+  Vec3 offset;      // from the parent in the pose with arms stretched out, y up, body facing z [cm]
   Vec3 axis;        // of its rotation
   double from = 0;  // range of the angle [degrees]
   double to = 0;
 };
 
-/// A body with long shins and short arms, who swings arms and legs, turns and nods; joint names of CMU.
+/// A body with long shins and short arms that swings its arms and legs, turns and nods. Joints have the names of the
+/// CMU recordings.
 std::vector<Bone> somebody() {
   std::vector<Bone> bones = {{"Hips", -1, {0, 95, 0}, {0, 1, 0}, -20, 20},
                              {"LowerBack", 0, {0, 8, -1}, {1, 0, 0}, 5, -3},
@@ -63,10 +64,11 @@ Quat turn_of(const Bone& bone, int key) {
   return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, bone.axis.normalized()));
 }
 
-/// Translation channels of the joints below the root: none, or three beside those of rotation, of zero or of offsets.
+/// Translation channels of the joints below the root: none; three zeros; or three that repeat the offset of the joint.
 enum class Translations { none, of_zero, of_offsets };
 
-/// BVH text with joint j turned by zero[j] in the world when all angles are zero; children are sorted by `order`.
+/// Writes BVH text. With all angles at zero, joint j is rotated by zero[j] in the world; children are sorted by
+/// `order`.
 std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& zero, const std::vector<double>& order,
                       Translations translations = Translations::none) {
   std::string text = "HIERARCHY\n", channels;
@@ -153,7 +155,8 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
   }
 }
 
-// MakeHuman writes translations that are added to the offsets; recordings write translations that replace them.
+// MakeHuman writes translations that are added to the offsets of joints; recordings write translations that replace the
+// offsets.
 TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
   const std::vector<Bone> bones = somebody();
   const std::vector<double> order(bones.size(), 0);
@@ -196,7 +199,7 @@ TEST_F(RetargetedBvh, NeedsNoNames) {
   const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
   double max_distance = 0;
   for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
-  EXPECT_LT(max_distance, 1e-4);  // as above
+  EXPECT_LT(max_distance, 1e-4);  // single precision, as in the first test
 }
 
 TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) {
@@ -210,8 +213,8 @@ TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) 
     for (const Bone& bone : bones)
       turned.push_back(bone.parent < 0 ? turn_of(bone, key) : turned[bone.parent] * turn_of(bone, key));
     const auto posture = skeleton.at(character::pose_at(body_, result_.clip, key * kKeyTime));
-    // Turns the motion from y up to z up, and its left to that of the body, +x. The left of the motion is the mean
-    // direction across hips and shoulders at the start.
+    // Rotates the motion so that up is z instead of y, and its left is that of the body, +x. The left of the motion is
+    // the mean direction across hips and shoulders at the start.
     const Quat up(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()));
     const Quat hips = turn_of(bones[0], 0), chest = hips * turn_of(bones[1], 0) * turn_of(bones[2], 0);
     const Vec3 left_first = up * Vec3(hips * Vec3::UnitX() + chest * Vec3::UnitX());

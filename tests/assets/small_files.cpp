@@ -63,7 +63,7 @@ std::string tetrahedron_buffer() {
   return buffer;
 }
 
-/// `uri`: JSON member that locates the buffer.
+/// glTF text of the tetrahedron. `uri`: JSON member that locates the buffer.
 std::string tetrahedron_json(const std::string& uri) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"mesh":0,"scale":[1,1,-1],"translation":[0,0,2]}],
@@ -100,14 +100,14 @@ std::string gltf_tetrahedron_of_integers(const std::string& of_primitive, const 
   for (const auto& corner : kCorners) {
     const bool replaced = &corner == &kCorners.back();
     for (const float x : corner) append(buffer, static_cast<std::int16_t>(replaced ? -1 : 32767 * x));
-    buffer.append(2, '\0');  // to the stride of 8
+    buffer.append(2, '\0');  // padding to the stride of 8 bytes
   }
   for (const auto& face : kFaces) append(buffer, face);
   for (const auto& corner : kCorners)
     for (const float x : {corner[0], corner[1], 0.0F, 0.0F}) append(buffer, static_cast<std::uint8_t>(255 * x));
-  append(buffer, std::uint32_t{3});  // which the sparse part replaces
+  append(buffer, std::uint32_t{3});  // index that the sparse part replaces
   for (const float x : kCorners.back()) append(buffer, static_cast<std::int16_t>(32767 * x));
-  buffer.append(2, '\0');  // to a multiple of three
+  buffer.append(2, '\0');  // padding to a multiple of three bytes
   return R"({"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":2},"indices":1)" +
          of_primitive + R"(}]}],
@@ -151,7 +151,7 @@ std::string gltf_camera(bool integers) {
   for (const float time : {0.0F, 2.0F}) append(keys, time);
   for (const float part : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.70710678F, 0.0F, 0.70710678F})
     integers ? append(keys, static_cast<std::int16_t>(32767 * part)) : append(keys, part);
-  keys.resize(42, '\0');  // a multiple of three
+  keys.resize(42, '\0');  // padding to a multiple of three bytes
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"name":"rig","children":[1]},{"name":"eye","camera":0,"translation":[0,1,3]}],
 "cameras":[{"name":"lens","type":"perspective","perspective":{"yfov":0.5,"aspectRatio":1.6,"znear":0.1,"zfar":100}}],

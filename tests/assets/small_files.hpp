@@ -11,17 +11,17 @@ std::string obj_cube();
 /// A tetrahedron with its corners at the origin and on the unit axes, in ASCII.
 std::string ply_tetrahedron();
 
-/// The same as binary STL: every triangle has its own three vertices.
+/// The tetrahedron as binary STL: every triangle has its own three vertices.
 std::string stl_tetrahedron();
 
-/// The same as self-contained glTF; one node mirrors it with a scale of -1 along z and moves it up by 2.
+/// The tetrahedron as self-contained glTF; its node scales it by -1 along z (a mirror), and moves it up by 2.
 std::string gltf_tetrahedron();
-/// The same as binary glTF.
+/// The file of gltf_tetrahedron() as binary glTF.
 std::string glb_tetrahedron();
 
-/// The same, not mirrored, as glTF with integers for floats: positions as shorts, of which a sparse part replaces the
-/// last, and texture coordinates as bytes, equal to x and y. `of_primitive`,
-/// `of_file`: more members.
+/// The tetrahedron, not mirrored, as glTF with integers instead of floats: positions are shorts, of which a sparse part
+/// replaces the last; texture coordinates are bytes, equal to x and y. `of_primitive`, `of_file`: further JSON members
+/// of the primitive and of the file.
 std::string gltf_tetrahedron_of_integers(const std::string& of_primitive = {}, const std::string& of_file = {});
 
 /// Two triangles with the corners (0, 0, 0), (1, 0, 0) and (0, 1, 0), each bound to a skeleton of one joint called
