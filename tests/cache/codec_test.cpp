@@ -1,4 +1,4 @@
-// Frames to bytes and back, and the treatment of bytes that are not a frame.
+// Encodes frames to bytes and decodes them; tests bytes that are not a frame.
 #include "film/cache/codec.hpp"
 
 #include <gtest/gtest.h>
@@ -145,7 +145,7 @@ TEST(Codec, FramesComeBackBitForBit) {
   }
 }
 
-// Positions with the same bits as those of the surfaces are not stored.
+// The codec does not store positions with the same bits as those of the surfaces.
 TEST(Codec, WhatHasNotMovedTakesTwoBytes) {
   const Sample sample;
   frame::FrameSnapshot resting = *sample.snapshot(0);
@@ -205,7 +205,7 @@ TEST(Container, EveryTruncationAndEveryFlippedBitIsFound) {
   }
 }
 
-// Header and checksum are valid, the promised sizes are not.
+// Header and checksum are valid, but the size that the header states is wrong.
 TEST(Container, PromisedSizeIsNotBelieved) {
   for (const std::uint64_t size : {std::uint64_t{0}, std::uint64_t{4}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
     std::string bytes = pack({}, "12345");
@@ -240,8 +240,8 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
          [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
 }
 
-// Content changed with a valid checksum, as only a faulty writer could do: it is refused or read, never a crash
-// (the sanitizers run on this test).
+// Bytes of the content are changed, with a valid checksum: only a faulty writer could make such a file. The decoder
+// reads or refuses it and never crashes (the sanitizers run on this test).
 TEST(Codec, NoBytesCrashTheDecoder) {
   const Sample sample;
   const Surfaces surfaces = surfaces_of(*sample.snapshot(0));

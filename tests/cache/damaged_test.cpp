@@ -1,4 +1,4 @@
-// Caches with truncated files and changed bytes: each is refused with the name of the file, or read unchanged.
+// Caches with truncated files and changed bytes: each file is read unchanged, or refused with its name.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -26,7 +26,8 @@ class DamagedCache : public support::TestFolder {
     writer.save_state(1, std::string(500, 's'));
   }
 
-  /// Reads everything that a reader offers. True if all was read, false if it was refused with the name of the file.
+  /// Reads everything that a reader offers. Returns true if it read everything, false if it refused with the name of
+  /// the broken file.
   bool read(const std::string& broken_file) const {
     try {
       const Reader reader(folder_ / "c");

@@ -1,4 +1,4 @@
-// The folder as writers leave it and readers find it.
+// The folder of a cache, with the files that writers leave in it.
 #include <gtest/gtest.h>
 
 #include "cache/sample.hpp"
@@ -219,7 +219,7 @@ TEST_F(CacheFolder, ClearingLeavesNothingOfIt) {
   EXPECT_FALSE(fs::exists(cache() / ".frame_00003.weft.weft-1234.tmp"));
 }
 
-// State after a kill during clearing: the manifest is gone, and no foreign file is there.
+// State after a kill during clearing: the manifest is removed, and there is no foreign file.
 TEST_F(CacheFolder, ThatWasClearedInPartIsClearedToTheEnd) {
   fill(3);
   fs::remove(cache() / kSceneFile);
