@@ -28,8 +28,8 @@ Character two_legs() {
                 {"right_end", 3, at(0, 0, -0.9)}};
   for (Index n = 0; n < 5; ++n)
     body.bones.push_back({n, Affine(global_transforms(body, rest_pose(body))[n].inverse())});
-  // A vertex beside the left leg; one between the legs, with equal weights of both; one below the left end node, which
-  // alone moves it.
+  // Three vertices: one beside the left leg; one between the legs, with equal weights of both; one below the left end
+  // node, which alone moves it.
   body.mesh.positions = {{0.15, 0, 0.6}, {0, 0, 0.8}, {0.1, 0.05, 0.05}};
   body.first_influence = {0, 1, 3, 4};
   body.influences = {{1, 1}, {1, 0.5}, {3, 0.5}, {2, 1}};
@@ -44,7 +44,7 @@ TEST(Dressing, FindsEachVertexOnItsBonesAndBetweenLegsWhereTheyPart) {
   EXPECT_LT((places[2] - body.mesh.positions[2]).norm(), 1e-12) << "an end goes on through what it holds";
 }
 
-// Each mesh of a file has bones of its own at the same nodes.
+// Several meshes of one file may have bones at the same nodes.
 TEST(Dressing, BonesOfAnotherMeshAtTheSameNodesChangeNothing) {
   Character body = two_legs();
   const std::vector<Vec3> places = growth_start_positions(body, rest_pose(body));
@@ -139,8 +139,8 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   std::vector<Vec3> after = before;
   clearance().move_skin(pose, after);
   EXPECT_GT(crossings(before), 100u);
-  // Measured: 546 before, 464 after. Bent fingers have many small triangles, and if only one of two limbs detects the
-  // other, only half of the clearance is made.
+  // Measured: 546 before, 464 after. Bent fingers have many small triangles; and where only one of two limbs detects
+  // the other, only half of the clearance is made.
   EXPECT_LT(crossings(after), 9 * crossings(before) / 10);
   // Least distance from the skin of the left forearm to that of the trunk, between vertices.
   double least = 1;
@@ -149,7 +149,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   const Posture posture = Skeleton({body_, joints_}).at(pose);
   for (std::size_t v = 0; v < after.size(); ++v) {
     moved += after[v] != before[v] ? 1 : 0;
-    // The head is far from the arms, but dents spread a little in each round: measured 0.2 mm.
+    // The head is far from the arms, but displacements spread a little in each round: measured 0.2 mm.
     if (after[v].z() > 1.5) {
       EXPECT_LT((after[v] - before[v]).norm(), 1e-3) << "head";
     }
@@ -161,7 +161,7 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   EXPECT_GT(least, 0.6 * kRoom);  // 5.1 mm, between fingers and thighs
 }
 
-// A crease is a fold in the skin of one body: making clearance does not open it and adds no crossings.
+// A crease is a fold in the skin of one body. The clearance does not open it, and adds no crossings.
 TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   Pose pose = rest_pose(body_);
   const Index thigh = joints_[joint_index(Joint::left_upper_leg)];
@@ -177,7 +177,8 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   EXPECT_LE(moved.distance, 0.032 + 1e-9) << "twice the room";
 }
 
-// Clearance is only made up to that of the rest pose, which is less than the 10 cm asked for, e.g. between the legs.
+// The clearance is at most that of the rest pose, which is below the requested 10 cm in places, for example between the
+// legs.
 TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
@@ -195,7 +196,7 @@ TEST_F(RoomOfAMannequin, LeavesSkinWithoutClothToTheBit) {
   EXPECT_EQ(after, before);
 }
 
-// Cloth covers only the left of the trunk: the left arm comes down on cloth, the right one on skin.
+// Cloth covers only the left of the trunk: the left arm comes down on cloth, the right arm on skin.
 TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   const std::vector<Vec3> before = skinned(pose);
@@ -219,8 +220,8 @@ TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   EXPECT_TRUE((moved.limb == "trunk") != (moved.away_from == "trunk")) << moved.limb << ", " << moved.away_from;
 }
 
-/// A wall at z = 0, which belongs to the trunk, and above it a leg with a tip at either end, each inside a ring of six
-/// vertices. The lines of all its skin start at its middle.
+/// The trunk is a wall at z = 0. Above it is a leg with a tip at either end; each tip is inside a ring of six vertices.
+/// The bone lines of all vertices of the leg start at its middle.
 Character leg_above_wall() {
   const auto at = [](double z) { return Affine(Eigen::Translation3d(0, 0, z)); };
   Character body;
@@ -247,8 +248,8 @@ Character leg_above_wall() {
   return body;
 }
 
-// Cloth is around the lower tip of the leg: its ring moves back from the trunk, the tip itself only follows, but moves
-// farther, as it is farther from the bone.
+// Cloth is around the lower tip of the leg, so its ring moves away from the trunk. The tip only follows the ring, but
+// moves farther, because it is farther from the bone.
 TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
   const Character body = leg_above_wall();
   std::vector<Index> joints(kJointCount, -1);
@@ -265,7 +266,7 @@ TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
   EXPECT_EQ(moved.away_from, "trunk");
 }
 
-// If a limb is deep inside another, e.g. a thigh in the belly, it must not shrink to a thin peg.
+// Even if a limb is deep inside another, such as a thigh in the belly, it must not become very thin.
 TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   for (const bool right : {false, true}) {
@@ -318,7 +319,8 @@ TEST(TriangleGrids, FindTheFirstFrontThatBruteForceFinds) {
   for (std::size_t v = 0; v + 7 < x.size(); v += 7) {
     const Vec3 from = x[v] + Vec3(0.1, 0.02, 0.01), to = x[v + 7] - Vec3(0.1, 0.03, 0.02);
     const mesh::Entry entry = grid.find_first_crossing(from, to, [](Index t) { return t % 3 != 0; });
-    // Expected: the first crossing of the path with the front of a selected triangle, by barycentric coordinates.
+    // Expected result, by barycentric coordinates: the first crossing of the path with the front of a selected
+    // triangle.
     double first = 1;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       if (t % 3 == 0) continue;

@@ -10,7 +10,8 @@
 namespace weft::character {
 namespace {
 
-/// A leg of a body that faces -y: thigh and shin of 0.4 m, bent by 2 · 0.2 radians, the ankle 8 cm above the sole.
+/// A leg of a body that faces -y: thigh and shin of 0.4 m; the knee is bent by 0.4 rad; the ankle is 8 cm above the
+/// sole.
 Leg leg_at(const Vec3& hip) {
   Leg leg;
   leg.hip = hip;
@@ -30,7 +31,7 @@ struct Glide {
   Footsteps steps;
 };
 
-/// Hips that travel at 1 m/s; the feet move with them. `sunk`: depth below the floor [m]. The left foot is marked as
+/// Hips that move at 1 m/s; the feet move with them. `sunk`: depth below the floor [m]. The left foot is marked as
 /// standing from 0.3 to 0.6 s.
 Glide gliding(double sunk) {
   Glide walk;
@@ -86,11 +87,11 @@ TEST(Footing, ReachBringsTheAnkleThereAndBendsTheKneeForward) {
     for (const Vec3& ankle : {Vec3(0.1, -0.2, -0.6), Vec3(0, 0.3, -0.5), Vec3(-0.1, 0, -0.4)}) {
       const LegTurns turns = reach(leg, ankle);
       const Vec3 thigh = turns.upper * (leg.knee - leg.hip), shin = turns.lower * (leg.ankle - leg.knee);
-      // 1e-9 instead of rounding: the law of cosines is inverted by an arc cosine.
+      // Tolerance 1e-9, above rounding errors, because an arc cosine inverts the law of cosines.
       EXPECT_LT((leg.hip + thigh + shin - ankle).norm(), 1e-9);
       EXPECT_GT(thigh.cross(shin).x(), 0);
     }
-  // Out of reach: the leg points toward the target.
+  // If the target is out of reach, the leg points toward it.
   const LegTurns turns = reach(straight, Vec3(0, -2, 0));
   EXPECT_LT((turns.lower * Vec3(0, 0, -1) - Vec3(0, -1, 0)).norm(), 1e-6);
 }

@@ -28,8 +28,8 @@ std::size_t keys(const Clip& clip) {
   return clip.channels[0].rotation.times.size();
 }
 
-/// One stride of steady walking, between two strikes of the left heel, from the middle of a walk of 20 steps: neither
-/// its start nor its end affects the stride.
+/// One stride of steady walking, between two strikes of the left heel. It is cut from the middle of a walk of 20 steps,
+/// so that neither start nor end affects it.
 Clip make_stride(const Character& body, double speed) {
   const Physique physique = physique_of(body);
   const Pace pace = pace_of(speed, physique.height);
@@ -64,7 +64,7 @@ Vec3 mirrored(const Vec3& p) {
   return p.cwiseProduct(Vec3(-1, 1, 1));
 }
 
-/// Places of all joints at a key.
+/// Positions of all joints at a key.
 std::vector<Vec3> places(const Clip& clip, std::size_t key) {
   std::vector<Vec3> out;
   for (const Affine& joint : joints_at_key(mannequin(), clip, key)) out.emplace_back(joint.translation());
@@ -98,7 +98,7 @@ TEST(Gait, StrideIsPeriodicWithItsVelocity) {
     const auto p = [&](std::size_t k) { return places(clip, k); };
     for (std::size_t j = 0; j < kJointCount; ++j) {
       EXPECT_LT((p(last)[j] - p(0)[j] - stride).norm(), 1e-9) << name(static_cast<Joint>(j));
-      // Between the last key and the first, the velocity changes as little as between other keys.
+      // From the last key to the first of the next stride, the velocity changes as little as between other keys.
       jump = std::max(jump, (p(1)[j] - p(0)[j] - (p(last)[j] - p(last - 1)[j])).norm());
     }
     for (std::size_t k = 1; k < last; ++k) {
@@ -130,16 +130,17 @@ TEST(Gait, HasTheSpeedAskedForAndStepsOfConstantWalkRatio) {
     const Clip clip = make_stride(mannequin(), speed);
     const double travelled = places(clip, 0)[0].y() - places(clip, keys(clip) - 1)[0].y();
     EXPECT_NEAR(travelled / clip.duration, speed, 1e-9);
-    const double ratio = (travelled / 2) / (120 / clip.duration);  // m/(steps/min)
+    const double ratio = (travelled / 2) / (120 / clip.duration);  // walk ratio [m/(steps/min)]
     EXPECT_NEAR(ratio, 0.0065, 0.0005);
     if (first_ratio == 0) first_ratio = ratio;
     EXPECT_NEAR(ratio, first_ratio, 1e-12);
   }
 }
 
-/// `slip`: largest slip of any vertex while it is in contact, less than a millimetre above the floor. `lowest`: minimum
-/// height of all vertices. `period` [s]: duration of a stride that begins with a strike of the left foot; vertices
-/// count only while their foot stands. If it is 0, these times are unknown, and vertices that skim the floor count too.
+/// `slip`: largest slip [m] of any vertex while it is in contact, less than a millimetre above the floor. `lowest`:
+/// minimum height of all vertices [m]. `period` [s]: duration of a stride that begins with a strike of the left foot;
+/// vertices count only while their foot stands. If `period` is 0, these times are unknown, and vertices that pass close
+/// above the floor count too.
 struct FootAtRest {
   double slip = 0, lowest = 1;
 };
@@ -177,8 +178,8 @@ TEST(Gait, FeetNeitherSlideNorSink) {
   }
 }
 
-// Starts, turns and ends have small steps. Vertices that skim the floor while the foot is set down count too: measured
-// 5.1 mm at most; a standing foot slides by 1.7 mm.
+// Starts, turns and ends have small steps. Vertices that pass close above the floor while the foot is set down count
+// too: measured 5.1 mm at most; a standing foot slides by 1.7 mm.
 TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
   for (const double speed : kSpeeds) {
     Walk walk = at_speed(speed);

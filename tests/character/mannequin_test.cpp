@@ -20,7 +20,7 @@
 namespace weft::character {
 namespace {
 
-/// The default build with edges of this length [m]; each is made once.
+/// The default build with edges of this length [m]. Each build is made only once.
 const Character& standard(double edge_length = 0.02) {
   static std::map<double, Character> made;
   const auto found = made.find(edge_length);
@@ -30,7 +30,7 @@ const Character& standard(double edge_length = 0.02) {
   return made.emplace(edge_length, make_mannequin(build)).first->second;
 }
 
-/// Length [m] of the section of the mesh with a plane, counting only the part in which `take` is true.
+/// Length [m] of the intersection of the mesh with a plane; counts only points for which `take` returns true.
 double girth(const Character& body, const Vec3& at, const Vec3& normal, const std::function<bool(const Vec3&)>& take) {
   double length = 0;
   for (const auto& t : body.mesh.topology.triangles) {
@@ -98,7 +98,7 @@ TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
     EXPECT_NEAR(distance(Joint::left_upper_leg, Joint::left_lower_leg), 0.245, 0.001);
     EXPECT_NEAR(distance(Joint::left_lower_leg, Joint::left_foot), 0.246, 0.001);
 
-    // Tolerance of a hundredth of the height: triangles are inscribed, so the skin lies inside the surface.
+    // Tolerance: a hundredth of the height. Corners of the triangles lie on the surface, so the mesh is inside of it.
     const Box3 box = mesh::bounding_box(body.mesh.positions);
     EXPECT_NEAR(box.min().z() / h, 0, 0.001);
     EXPECT_NEAR(box.max().z() / h, 1, 0.003);
@@ -154,7 +154,7 @@ void expect_whole(const MannequinBuild& build) {
   expect_whole(make_mannequin(build));
 }
 
-// For any two of height, girth and masculinity, all four combinations of their extremes occur.
+// For any two of the three parameters (height, girth, masculinity), all four combinations of their extremes occur.
 TEST(Mannequin, IsWholeInExtremeBuilds) {
   for (const auto& [height, girth_of, masculinity] :
        {std::array{1.2, 0.9, 0.0}, std::array{1.95, 0.9, 1.0}, std::array{1.95, 1.3, 0.0}, std::array{1.2, 1.3, 1.0}})
@@ -169,8 +169,8 @@ TEST(SlowMannequin, IsWholeInEveryBuild) {
 }
 
 TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
-  // Head, hands and feet have shorter edges. With a requested length above 0.02 m these edges do not grow further.
-  // Measured: the mean edge is 0.60, 0.60 and 0.32 of the requested length.
+  // Head, hands and feet have shorter edges, which do not grow with a requested length above 0.02 m. Measured: the mean
+  // edge is 0.60, 0.60 and 0.32 of the requested length.
   for (const auto& [edge, share] : {std::pair(0.015, 0.60), std::pair(0.02, 0.60), std::pair(0.04, 0.32)}) {
     const Character& body = standard(edge);
     EXPECT_NEAR(mean_edge(body.mesh) / edge, share, 0.03) << edge;
@@ -178,7 +178,7 @@ TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
   }
 }
 
-/// Foremost point of the middle of the face at a height; both in centimetres for a body of 1.75 m.
+/// Foremost point of the middle of the face at the height `up`; both in centimetres, for a body of 1.75 m.
 double profile(const Character& body, double up) {
   double forward = -20;
   for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
@@ -190,8 +190,8 @@ double profile(const Character& body, double up) {
   return forward;
 }
 
-// Heights of the features [cm] come from the tables of the mannequin. Each feature stands out by more than the error
-// of a triangle.
+// Heights of the features [cm] are those in the tables of the mannequin. Each feature is larger than the error of the
+// triangles.
 TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   const Character& body = standard();
   const double root = profile(body, 164.5), tip = profile(body, 160.6), below = profile(body, 158.8),
@@ -215,13 +215,13 @@ TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   const auto at = mannequin_joints({});
   const Vec3 along = (at[index_of(Joint::left_hand)] - at[index_of(Joint::left_lower_arm)]).normalized();
   const Vec3 out(-along.z(), 0, along.x());
-  const auto back = [&](double forward) {  // of the hand, 12 cm below the wrist; 1 beside it
+  const auto back = [&](double forward) {  // height of the back of the hand, 12 cm below the wrist; 1 beside the hand
     const Vec3 middle = at[index_of(Joint::left_hand)] + 0.12 * along - 0.01 * forward * Vec3::UnitY();
     for (double height = 0.03; height > -0.06; height -= 1e-4)
       if (surface(middle + height * out) < 0) return height;
     return -0.06;
   };
-  // A ridge is counted where the back of the hand falls by half a millimetre after it has risen by that much.
+  // Counts a ridge where the back of the hand rises and then falls by at least half a millimetre.
   int ridges = 0;
   double high = 1, low = 1;
   for (double forward = -4; forward < 4; forward += 0.05) {
@@ -280,7 +280,7 @@ TEST(Mannequin, SkinWeightsAddUpAndAreSmoothAndMirrored) {
   for (std::size_t j = 0; j < kJointCount; ++j) EXPECT_GT(largest[j], 0.9) << name(static_cast<Joint>(j));
   for (std::size_t j = 5; j < 13; ++j) EXPECT_EQ(largest[j], largest[j + kSideJointCount]);
   // The shortest distance over which a weight rises from 0 to 1 is 4 cm, at the toes: its slope is at most 1.875 / 0.04
-  // per metre. Between the thighs the distance is a quarter of that, so edges there are skipped.
+  // per metre. Between the thighs, the distance is a quarter of that, so the test skips edges there.
   for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
     const auto [a, b] = std::pair(static_cast<std::size_t>(e.vertices[0]), static_cast<std::size_t>(e.vertices[1]));
     const double length = (body.mesh.positions[a] - body.mesh.positions[b]).norm();

@@ -1,4 +1,4 @@
-// Motions for bodies whose file mirrors the nodes of the skeleton, as programs with left-handed axes write them.
+// Motions for bodies whose file mirrors the nodes of the skeleton, as programs with left-handed axes write.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace weft::character {
 namespace {
 
-/// The same body in the world, with the axes of all nodes mirrored at x = 0 by a node above them.
+/// The same body in the world, but a node above all others mirrors their axes at x = 0.
 Character with_mirrored_nodes(const Character& body) {
   Affine mirror = Affine::Identity();
   mirror.linear() = Vec3(-1, 1, 1).asDiagonal();

@@ -11,8 +11,8 @@
 namespace weft::character {
 namespace {
 
-/// A body of sticks, z up, facing -y (left at +x), arms stretched out. Nodes are called j0, j1, ...; `parts` tells
-/// which joint each node is.
+/// A body of sticks, z up, facing -y (left at +x), with arms stretched out. Its nodes are named j0, j1, ...; `parts`
+/// lists which joint each node is.
 struct Sticks {
   Character body;
   std::vector<std::string> parts;
@@ -79,7 +79,7 @@ TEST(NamelessJoints, OfLongCollarbonesAndLargeHandsAreFound) {
   expect_all_found(somebody(false, false, 0.15, 0.3));
 }
 
-// Rigs with twist bones have a node in the middle of upper and lower arms and legs.
+// Rigs with twist bones have a node in the middle of upper arms, lower arms, thighs and shins.
 TEST(NamelessJoints, OfBonesInTwoHalvesAreTheirEnds) {
   const Sticks whole = somebody(false, true);
   Sticks s;

@@ -1,4 +1,4 @@
-// Parts of bodies: their skin, compared with the nearest bone of the mannequin and with a skeleton made here.
+// Parts of bodies: their skin is compared with the nearest bone of the mannequin, and with a skeleton made here.
 #include "film/character/parts.hpp"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(Parts, OfTheMannequinLieWhereTheyBelong) {
     Vec3 x = body.mesh.positions[v];
     x.x() = std::abs(x.x());
     in_hands += hands[v];
-    // Within 4 cm of a joint the skin may belong to either bone.
+    // Within 4 cm of a joint, skin may belong to either of the two bones.
     const Vec3 arm = joint(Joint::left_hand) - joint(Joint::left_lower_arm);
     const double beyond = (x - joint(Joint::left_hand)).dot(arm.normalized());
     EXPECT_TRUE(!hands[v] || beyond > -0.04) << x.transpose();
@@ -52,7 +52,7 @@ TEST(Parts, OfTheMannequinLieWhereTheyBelong) {
   EXPECT_FALSE(has_fingers(body, nodes)) << "they are one with the palm";
 }
 
-/// A hand of `fingers` bones below an arm, with a vertex on each.
+/// A hand of `fingers` bones below an arm. Each bone has one vertex, except the bone "ring".
 Character hand_with(int fingers) {
   Character body;
   body.nodes = {{"Hips", -1, {}}, {"LeftLowerArm", 0, {}}, {"LeftHand", 1, {}}, {"ring", 2, {}}};
@@ -94,7 +94,7 @@ TEST(Parts, BelongToWhateverHoldsHalf) {
   EXPECT_EQ(vertices_of(body, nodes, joints_of_part("LeftHand")), (VertexMask{0, 1, 0}));
 }
 
-// A follower far away made the body larger, and with it the skin that the next follower follows.
+// One follower must not change the skin that another one follows, even if it is far from the body, such as a balloon.
 TEST(Parts, FollowersFollowTheSameSkinWhateverElseFollows) {
   const Character body = make_mannequin({.edge_length = 0.05});
   const Pose rest = rest_pose(body);
@@ -125,7 +125,7 @@ TEST(Parts, LimbsAreArmsAndLegsAndTheRestIsTrunk) {
     const Limb expected = arms[v] != 0   ? left ? Limb::left_arm : Limb::right_arm
                           : legs[v] != 0 ? left ? Limb::left_leg : Limb::right_leg
                                          : Limb::trunk;
-    // In the crotch both legs share the skin equally.
+    // In the crotch, both legs have the same weight, so either result is right.
     const bool between = limbs[v] == Limb::trunk && legs[v] != 0 && std::abs(body.mesh.positions[v].x()) < 0.02;
     if (!between) {
       EXPECT_EQ(limbs[v], expected) << v << " at " << body.mesh.positions[v].transpose();

@@ -34,7 +34,7 @@ TEST(ClipTime, StandsThenGetsGoingSmoothlyThenRunsAtItsSpeed) {
   EXPECT_EQ(clip_time(timing, 1), 0.25);
   EXPECT_NEAR(clip_time(timing, 1.5), 0.25 + 1.5 * 0.25, 1e-15);
   EXPECT_NEAR(clip_time(timing, 3.5) - clip_time(timing, 1.5), 3, 1e-14);
-  // Velocity and acceleration are continuous: the velocity, by central differences, hardly changes across the ends of
+  // Velocity and acceleration are continuous: by central differences, the velocity hardly changes across the ends of
   // the blend.
   const auto velocity = [&](double t, double h) {
     return (clip_time(timing, t + h) - clip_time(timing, t - h)) / (2 * h);
@@ -71,8 +71,8 @@ TEST(Performance, WithACrossfadeDoesNotJump) {
   for (double t = 0; t < 8; t += kStep)
     largest =
         std::max(largest, (performance.at(t + kStep).nodes[0].position - performance.at(t).nodes[0].position).norm());
-  // The clip itself moves by 2.9 m/s at most. The fade closes the gap of 1 m in 0.4 s, with at most 1.5 times its mean
-  // speed.
+  // The clip alone moves by at most 2.9 m/s. The fade closes the gap of 1 m in 0.4 s; its largest speed is 1.5 times
+  // its mean speed.
   EXPECT_LT(largest, (2.9 + 1.5 / 0.4) * kStep);
 }
 
@@ -86,7 +86,7 @@ TEST(Performance, FromRestStandsInTheRestPoseAndStartsTheClipThere) {
       << "the clip, shifted from (5, 0) to the rest";
 }
 
-// Only the first node that travels went on; the others began each round where they had begun the first.
+// If a clip is repeated, all nodes that travel go on from where they are, not only the first one.
 TEST(Performance, TakesAlongAllNodesThatTravel) {
   Slider slider;
   slider.body.nodes = {{"scene", -1, Affine::Identity()}, {"hips", 0, Affine::Identity()}};
@@ -112,7 +112,7 @@ TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   const auto world = [&](double t) -> Vec3 {
     return global_transforms(slider.body, performance.at(t))[1].translation();
   };
-  // In the world, y of the clip is the height, which starts again in each repetition; -z of the clip is y.
+  // In the world, y of the clip is the height, which begins anew in each repetition; -z of the clip is y.
   EXPECT_LT((world(2.5) - (world(0.5) + Vec3(3, -1, 0))).norm(), 1e-12);
 }
 

@@ -19,7 +19,8 @@ Affine shift(double x, double y, double z) {
   return map;
 }
 
-/// An arm along x: shoulder at 0, elbow at 1, vertices at 0.5, 1 and 2. The middle one has equal weights.
+/// An arm along x: shoulder at 0, elbow at 1, vertices at 0.5, 1 and 2. The middle vertex has equal weights of both
+/// bones.
 Character arm() {
   Character arm;
   arm.nodes = {{"shoulder", -1, Affine::Identity()}, {"elbow", 0, shift(1, 0, 0)}};
@@ -49,7 +50,7 @@ TEST(Skin, FollowsItsBonesAndBlendsThem) {
   const auto x = vertices(body, pose);
   EXPECT_LT((x[0] - Vec3(0.5, 0, 0)).norm(), kRounding);
   EXPECT_LT((x[2] - Vec3(1, 1, 0)).norm(), kRounding);
-  // Halfway between (1, 0.1) and its image under the forearm, (0.9, 0).
+  // The middle of (1, 0.1) and its image under the forearm, (0.9, 0).
   EXPECT_LT((x[1] - Vec3(0.95, 0.05, 0)).norm(), kRounding);
 }
 

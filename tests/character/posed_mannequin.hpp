@@ -26,6 +26,7 @@ inline std::vector<Affine> joints_at_key(const Character& body, const Clip& clip
   return global;
 }
 
+/// Positions of all vertices by linear blend skinning. `global`: node-to-world transforms.
 inline std::vector<Vec3> skinned(const Character& body, const std::vector<Affine>& global) {
   std::vector<Vec3> out;
   for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
@@ -40,6 +41,7 @@ inline std::vector<Vec3> skinned(const Character& body, const std::vector<Affine
   return out;
 }
 
+/// Weight of a joint at a vertex; 0 if the joint does not move it.
 inline double weight_of(const Character& body, std::size_t vertex, Joint joint) {
   for (Index k = body.first_influence[vertex]; k < body.first_influence[vertex + 1]; ++k) {
     const Influence& i = body.influences[k];

@@ -14,14 +14,14 @@
 namespace weft::character {
 namespace {
 
-// About ten conversions of rotations to quaternions and back.
+// Error of about ten conversions between rotations and quaternions.
 constexpr double kRoundingOfTurns = 1e-12;
 
 Quat about(const Vec3& axis, double degrees) {
   return Quat(Eigen::AngleAxisd(degrees * kDegree, axis));
 }
 
-/// A body of sticks, z up, facing -y, so that its left is +x. At rest the axes of each node are turned by `frame`
+/// A body of sticks, z up, facing -y, so that its left is +x. At rest, the axes of each node are rotated by `frame`
 /// relative to the world.
 struct Builder {
   Character body;
@@ -42,7 +42,7 @@ struct Builder {
   }
 };
 
-/// `size`: factor of lengths; `arm`: angle of the left arm below horizontal at rest [degrees]; `facing`: turn about z.
+/// `size`: factor of lengths; `arm`: left arm below the horizontal, `facing`: rotation about z (angles in degrees).
 Character sticks(double size, double arm, double facing, const Quat& frame, bool biped = false) {
   Builder b{{}, frame, {}};
   const Quat turn = about(Vec3::UnitZ(), facing);
@@ -67,7 +67,7 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
   return b.body;
 }
 
-/// The elbow bends by 90° upward, and the hips move by `way`; both for a body that faces -y in the world.
+/// The elbow bends by 90° upward, and the hips move by `way`; directions are those of a body that faces -y.
 Clip waving(const Character& body, const Vec3& way) {
   const auto joints = find_joints(body);
   const auto node = [&](const char* joint) { return joints[joint_number(joint)]; };
@@ -109,7 +109,7 @@ Result retargeted(const Character& body, const Character& motion, const Clip& cl
   return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ()).clip};
 }
 
-/// Finds the joints of a body with uninformative bone lengths, so that only names count.
+/// Finds the joints of a body by their names alone: bone lengths carry no information.
 std::vector<Index> find_prefixed(Character body) {
   double length = 0.1;
   for (Node& node : body.nodes)
@@ -256,7 +256,7 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   EXPECT_EQ(found[joint_index(Joint::hips)], 0);
   EXPECT_EQ(found[joint_index(Joint::spine)], 2);
   EXPECT_EQ(found[joint_index(Joint::chest)], 4);
-  // As in Character Creator and Rigify: the legs are children of a pelvis beside the spine; no node is called hips.
+  // Rigs of Character Creator and Rigify: the legs are children of a pelvis beside the spine; no node is called hips.
   nodes.clear();
   const Index hip = add("CC_Base_Hip", add("root", -1)), pelvis = add("CC_Base_Pelvis", hip);
   last = add("CC_Base_Spine01", add("CC_Base_Waist", hip));
@@ -275,7 +275,7 @@ TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
     nodes.push_back({name, parent, Affine(Eigen::Translation3d(0, 0, 1))});
     return static_cast<Index>(nodes.size() - 1);
   };
-  // Limbs consist of two halves each.
+  // Each limb consists of two nodes, one for each half.
   Index last = add("DEF-spine", add("root", -1));
   for (const char* leg : {"DEF-thigh.L", "DEF-thigh.R"}) add(leg, last);
   for (const char* name : {"DEF-spine.001", "DEF-spine.002", "DEF-spine.003"}) last = add(name, last);
@@ -295,7 +295,7 @@ TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
   EXPECT_EQ(name_of(Joint::head), "DEF-spine.006");
   EXPECT_EQ(name_of(Joint::left_upper_arm), "DEF-upper_arm.L");
   EXPECT_EQ(name_of(Joint::right_lower_arm), "DEF-forearm.R");
-  // The arms are children of the neck.
+  // In this rig, the arms are children of the neck.
   nodes.clear();
   const Index pelvis = add("Bip01 Pelvis", add("Bip01", -1));
   last = add("Bip01 Spine", pelvis);
@@ -317,7 +317,7 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
     Character body = plain;
     for (Node& node : body.nodes) node.name = rig + node.name;
     EXPECT_EQ(find_joints(body), expected) << rig;
-    // A rig without skin precedes it.
+    // A rig without skin comes first in the list of nodes.
     const auto shift = static_cast<Index>(plain.nodes.size());
     for (Node& node : body.nodes) node.parent += node.parent < 0 ? 0 : shift;
     for (Bone& bone : body.bones) bone.node += shift;
@@ -330,7 +330,7 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
   }
 }
 
-// Every node name begins with the name of the rig, as in "EthanLeftArm", or ends with a suffix that a program adds.
+// All node names begin with the name of the rig, as in "EthanLeftArm", or end with a suffix that a program adds.
 TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
   const Character plain = make_mannequin({.edge_length = 0.1});
   const std::vector<Index> expected = find_joints(plain);
@@ -345,7 +345,7 @@ TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
 }
 
 TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons) {
-  // Bone names of available characters. Only the names are given, no hierarchy.
+  // Names of bones of published characters. Only names are given, no hierarchy.
   const std::vector<std::vector<std::string>> rigs = {
       {"CC_Base_Hip_02", "CC_Base_L_Upperarm_050", "CC_Base_L_Forearm_051", "CC_Base_R_Upperarm_078",
        "CC_Base_R_Forearm_079", "CC_Base_L_Thigh_04", "CC_Base_L_Calf_05", "CC_Base_R_Thigh_019", "CC_Base_R_Calf_020",
@@ -381,7 +381,7 @@ TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons)
   }
 }
 
-/// Local rotations that point upper and lower arms of a mannequin at rest in the given directions.
+/// A clip of local rotations with which upper and lower arms of a mannequin point in the given directions.
 Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>& directions) {
   Clip clip{"arms", 1, {}, {}};
   const auto joints = find_joints(body);
@@ -404,7 +404,7 @@ Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>&
   return clip;
 }
 
-// The forearms of the motion are longer. If each arm were retargeted alone, the hands would be 10 cm farther apart.
+// The body has shorter forearms. If each arm were retargeted alone, the hands would be 10 cm farther apart.
 TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
   const Character body = make_mannequin({.edge_length = 0.1});
   Character motion = body;
@@ -440,7 +440,7 @@ TEST(Retarget, DoubtsWhatNoBodyDoes) {
   EXPECT_EQ(result.warnings[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
 }
 
-// A horizontal trunk along -y, on four legs of 0.5 m.
+// The animal has a horizontal trunk along -y and four legs of 0.5 m.
 TEST(Retarget, NamesTheMotionOfAnAnimalWithFourLegs) {
   Builder b{{}, Quat::Identity(), {}};
   const Index hips = b.add("Hips", -1, {0, 0, 0.5});
@@ -476,7 +476,7 @@ TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {
   EXPECT_NE(warnings()[0].find("a knee bent by 60°"), std::string::npos) << warnings()[0];
 }
 
-// In the motion, the node of the hips is a control 0.4 m higher, above the start of the spine.
+// In the motion, the node of the hips is a control, 0.4 m above the start of the spine.
 TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   Character motion = make_mannequin({.edge_length = 0.1});
   const auto joints = find_joints(motion);
@@ -484,7 +484,7 @@ TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
   motion.nodes[joints[0]].local.pretranslate(Vec3(0, 0, 0.4));
   for (const Joint joint : {Joint::spine, Joint::left_upper_leg, Joint::right_upper_leg})
     motion.nodes[joints[joint_index(joint)]].local.pretranslate(Vec3(0, 0, -0.4));
-  Clip clip{"lean", 1, {}, {}};  // too far for a standing body
+  Clip clip{"lean", 1, {}, {}};  // leans farther than a standing body can
   Channel lean;
   lean.node = joints[0];
   lean.rotation = {{0, 1}, {about(Vec3::UnitX(), 30), about(Vec3::UnitX(), 30)}};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRoundingOfPlaces = 1e-12;
 
-/// Joint places of a body that faces -y, z up; arms of 0.3 and 0.25 m end at the given hands.
+/// Joint positions of a body that faces -y, z up. Its arms of 0.3 and 0.25 m end at the given hands.
 Places standing(const Vec3& left_hand, const Vec3& right_hand) {
   Places places;
   places.fill(Vec3::Zero());
@@ -86,7 +86,7 @@ TEST(Touching, WithoutAnElbowAnArmDoesNotMove) {
   EXPECT_GT(pull[1].norm(), 0.1);
 }
 
-// A hand that rests for a second follows the turning hips, and swings after that.
+// A hand that rests on the hips for a second follows their rotation; later the hand swings freely.
 TEST(Touching, HandsRestWhereTheyStayAgainstTheHips) {
   std::vector<Posture> postures;
   std::vector<double> times;

@@ -77,7 +77,7 @@ TEST_F(Travel, TakesTheWayOfTheClipOutFirst) {
     EXPECT_LT((hips(once.clip, t) - hips(twice.clip, t)).norm(), 0.05) << t;
 }
 
-// Rigs for animators have feet that are not below the hips. These stayed behind.
+// Rigs for animators have feet that are not descendants of the hips. They must travel with the hips.
 TEST_F(Travel, TakesAlongWhatTravelsBesideTheHips) {
   const Index hip_node = joints_[joint_index(Joint::hips)];
   Character body = body_;
@@ -97,7 +97,7 @@ TEST_F(Travel, TakesAlongWhatTravelsBesideTheHips) {
     }
 }
 
-// A clip on the spot moves a node of the head only. The head went without the body.
+// A clip on the spot moves only a node of the head. The hips must travel too, so that the head does not leave the body.
 TEST_F(Travel, MovesTheHipsIfOnlyNodesBelowThemTravel) {
   Clip standing_clip = walk_;
   for (Channel& channel : standing_clip.channels) {
@@ -122,7 +122,7 @@ TEST_F(Travel, GoesAheadWhereNoFeetTell) {
   EXPECT_EQ(traveled.feet, 0);
   const Vec3 displacement = hips(traveled.clip, standing_clip.duration) - hips(traveled.clip, 0);
   EXPECT_LT((displacement - 0.5 * standing_clip.duration * -Vec3::UnitY()).norm(),
-            1e-3);  // hips and shoulders are level within 0.01°
+            1e-3);  // not exact, because hips and shoulders are level only within 0.01°
 }
 
 }  // namespace
