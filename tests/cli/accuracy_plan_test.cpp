@@ -1,4 +1,5 @@
-// Error against run time: user options, first line of the report, check of the reference, results page.
+// Measurements of error against run time: options of the user, first line of the report, check of the reference, page
+// of results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,7 +82,7 @@ TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
 }
 
 TEST(AccuracyPlan, SolvesNothingLessExactlyThanTheScene) {
-  constexpr double kScene = 5e-9;  // below 1e-8, where the division by ten ends
+  constexpr double kScene = 5e-9;  // below 1e-8, at which the program ends dividing newton_tolerance by ten
   AccuracyPlan plan;
   plan.integrators = {Integrator::bdf2};
   plan.steps = {1};
@@ -208,7 +209,8 @@ TEST(Recommendation, IsTheMostExactOfThoseThatCostTheSame) {
   EXPECT_NE(recommendation(accuracy).find("`time.step = 0.01`"), std::string::npos) << recommendation(accuracy);
 }
 
-// At 25 frames a second with three steps a frame, 0.01333 s would be rounded to four steps.
+// With 25 frames a second and three steps a frame, a step printed as 0.01333 s would be too short: four steps would be
+// needed.
 TEST(Recommendation, RoundsStepsUp) {
   Accuracy accuracy = accuracy_of_one_metre();
   for (bench::Run& run : accuracy.runs) run.setting.step = 1.0 / 75;

@@ -1,4 +1,5 @@
-// Error against run time: shapes, comparisons, complete measurements on a small sheet, tables and plots.
+// Measurements of error against run time: shapes, comparisons, complete measurements of a small sheet, tables and
+// plots.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ using namespace run_error;
 using scene::Integrator;
 using Triangles = std::vector<mesh::Triangle>;
 
-// A rectangle of 0.6 m by 0.5 m in the xy plane, turned by `rotation`.
+// A rectangle of 0.6 m by 0.5 m in the xy plane, rotated by `rotation` and moved to `middle`.
 std::vector<Vec3> rectangle(const Quat& rotation, const Vec3& middle = Vec3::Zero()) {
   std::vector<Vec3> x{{-0.3, -0.25, 0}, {0.3, -0.25, 0}, {0.3, 0.25, 0}, {-0.3, 0.25, 0}};
   for (Vec3& point : x) point = middle + rotation * point;
@@ -113,7 +114,8 @@ TEST(Trajectories, MedianIsThatOfEachNumber) {
 }
 
 TEST(Trajectories, HoldTheNumbersOfAFlatSheetAtTheEnd) {
-  // All particles are pinned at a height of 2 m; one half of the sheet faces away from the camera above.
+  // All particles are pinned, with the middle of the sheet 2 m high; one half of the sheet faces away from the camera
+  // above.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.08\nintegrator = \"bdf2\"\n[contact]\nself = false\n[[cloth]]\nname = \"a\"\nsize = [0.6, "
       "0.5]\n"
@@ -159,7 +161,7 @@ TEST(Trajectories, MeshesFromElsewhereAreNotRefined) {
   }
 }
 
-// The swinging sheet, small and short.
+// The swinging sheet, with fewer particles and a shorter duration.
 scene::Scene small_sheet(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"cloth.sheet.particles=6", "time.duration=0.2"};
   overrides.insert(overrides.end(), more.begin(), more.end());
@@ -179,7 +181,8 @@ TEST(AccuracyOfASheet, ObservedOrdersAreThoseOfTheMethods) {
     EXPECT_DOUBLE_EQ(control_of(coarse), 2 * control_of(fine));
     for (Quantity q : {Quantity::position, Quantity::energy}) {
       ASSERT_TRUE(measured().resolved(fine, q));
-      // Measured: within 0.1. The rest is the next term of the error and the tenth that the solver tolerance allows.
+      // Measured: within 0.1. The difference is due to the next term of the error, and to the tenth of the error that
+      // the solver tolerance allows.
       EXPECT_NEAR(std::log2(error_of(coarse, q) / error_of(fine, q)), expected_order(fine), 0.25) << name_of(q);
     }
   }
@@ -218,8 +221,8 @@ TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
             at(accuracy.second.uncertainty(), Quantity::position));
   EXPECT_GE(at(accuracy.uncertainty, Quantity::position), at(accuracy.reference.uncertainty(), Quantity::position));
   EXPECT_GT(at(accuracy.difference, Quantity::position), 0);
-  // The reference is compared with a run of twice its step. Relative to the error of the finest run the difference is
-  // 1/16 − 1/64 = 3/64, and as much again comes from the solver.
+  // The reference is compared with a run of twice its step. Relative to the error of the finest run, the difference is
+  // 1/16 − 1/64 = 3/64. The solver adds about as much.
   EXPECT_LT(at(accuracy.uncertainty, Quantity::position),
             0.1 * error_of(*accuracy.decided(Integrator::implicit_midpoint).back(), Quantity::position));
 }
@@ -234,7 +237,8 @@ TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
   }
 }
 
-// The cheapest row with error and uncertainty within the target, if those of all finer rows are too.
+// Like cheapest(): the row with the least CPU time whose error plus uncertainty is within the target, if this is true
+// of all finer rows too.
 struct Row {
   std::string axis, integrator;
   double step, tolerance, newton, cpu, error, uncertainty;
@@ -321,7 +325,7 @@ TEST(AccuracyWhereNothingMoves, SaysSoWithoutInfinities) {
   const std::string text = accuracy_markdown("x", accuracy, "a", "b") + csv(accuracy_table(accuracy)) +
                            work_svg("x", accuracy) + settings_svg("x", accuracy);
   EXPECT_NE(text.find("Nothing moves"), std::string::npos);
-  // Rounding errors are not reported as ratios.
+  // Rounding errors do not appear as ratios.
   for (const bench::Run& run : accuracy.runs) EXPECT_LT(error_of(run, Quantity::energy), 1e-9);
   for (const char* word : {"inf", "nan"}) EXPECT_EQ(text.find(word), std::string::npos) << word;
 }
@@ -353,7 +357,7 @@ TEST(Conclusion, NamesTheCheapestSettingForEachAccuracyAndTheCostOfADigit) {
       << text;
   EXPECT_NE(text.find("0.001 m: implicit_midpoint, step 5 ms, newton_tolerance 0.1 (16 CPU s"), std::string::npos)
       << text;
-  // One more digit costs ten times the steps with Euler, √10 times with midpoint.
+  // One more digit needs ten times the steps with Euler, √10 times with midpoint.
   EXPECT_NE(text.find("implicit_euler 10.0 times and unknown, implicit_midpoint 3.2 times"), std::string::npos) << text;
 }
 
@@ -364,7 +368,7 @@ TEST(Conclusion, DoesNotPromiseWhatTheReferenceDoesNotKnow) {
   EXPECT_NE(text.find("0.0001 m: the reference is not known so exactly"), std::string::npos) << text;
   EXPECT_NE(text.find("1.7e-04 m, as exact as this report can show: implicit_midpoint, step 2.5 ms"), std::string::npos)
       << text;
-  // The tables mark it too.
+  // The tables mark this value as uncertain, too.
   const bench::Run& fine = *accuracy.series(Axis::grid, Integrator::implicit_midpoint).back();
   EXPECT_FALSE(accuracy.resolved(fine, Quantity::position));
   EXPECT_NE(accuracy_markdown("x", accuracy, "a", "b").find(fmt::format("~{:.1e}", fine.errors[0])), std::string::npos);

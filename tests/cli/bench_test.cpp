@@ -65,14 +65,14 @@ TEST(Stability, WhatCannotBeSolvedIsRefusedWithItsReason) {
 
 TEST(Stability, MoreEnergyThanDrivesItIsUnbounded) {
   const ExtremeCase& jump = case_named("pin_jumps");
-  // The stretch limit is off: the run would report it.
+  // The stretch limit is off; with it, the run would give a warning.
   const scene::Scene scene = support::scene_of_text(jump.text, {"cloth.sheet.material.max_stretch=0"});
   EXPECT_EQ(try_scene(scene, 10, {.driven = 1e-3}).verdict, Verdict::unbounded);
 }
 
 TEST(Stability, PeriodsAreThoseOfAPlateAndOfAChain) {
-  // Half a metre of cloth hangs from its edge: 2π √(2 L / 3 g). Masses of 0.2 kg/m² · (50 mm)² between springs of 1000
-  // N/m oscillate in opposite phase at 2 √(k / m).
+  // A plate half a metre long that hangs from its edge has the period 2π √(2 L / 3 g). Masses of 0.2 kg/m² · (50 mm)²
+  // between springs of 1000 N/m oscillate in opposite phase with the angular frequency 2 √(k / m).
   EXPECT_NEAR(swing_period(), 1.1582, 1e-4);
   EXPECT_NEAR(stiffest_period(1000), 2 * std::numbers::pi / (2 * std::sqrt(1000 / (0.2 * 0.05 * 0.05))), 1e-12);
 }

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Contacts, friction and heat from about frame 6 on; the camera is computed.
+// The cloth has contacts, friction and heat from about frame 6 on; the camera is computed.
 constexpr const char* kFallOnBall = R"(
 [time]
 duration = 0.8

@@ -22,13 +22,13 @@ class CachedRun : public support::TestFolder {
   Outcome weft(Arguments arguments) const;
   void expect_well(const Arguments& arguments) const;
 
-  /// Contents of the files below a folder whose names end so, by name. Working caches are left out.
+  /// Contents of the files below a folder whose names end with `ending`, by name. Working caches are left out.
   std::map<std::string, std::string> contents(const std::string& folder, const std::string& ending) const;
   /// Expects `count` files in both folders, with the same names and bytes.
   void expect_same(const std::string& a, const std::string& b, const std::string& ending, std::size_t count) const;
-  /// Checksums of the decoded frames, computed by another program.
+  /// Checksums of the decoded frames, computed by ffmpeg.
   std::string decoded(const std::string& video) const;
-  /// Hash of all that is drawn: positions, heat, cameras and lights of all frames of a cache.
+  /// Hash of everything that is drawn: positions, heat, cameras and lights of `count` frames of a cache.
   std::uint64_t hash_of_frames(const std::string& cache, int count) const;
 };
 

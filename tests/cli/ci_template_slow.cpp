@@ -1,5 +1,5 @@
-// The repository of `weft new --template ci`, made and used as its README describes: the script that its workflow runs
-// detects accidental changes.
+// The repository that `weft new --template ci` makes, used as its README describes. The script that its workflow runs
+// must detect accidental changes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -22,7 +22,7 @@ class CiRepository : public support::TestFolder {
     repo_ = folder_ / "repo";
   }
 
-  // Runs the same script as the workflow; returns its exit code.
+  // Runs the script of the workflow, and returns its exit code.
   int check(const std::string& options = "", const std::string& environment = "") {
     const std::string command = fmt::format("cd '{}' && {} WEFT='{}' sh pictures.sh {} >log 2>&1", repo_.string(),
                                             environment, WEFT_PROGRAM, options);
@@ -31,8 +31,8 @@ class CiRepository : public support::TestFolder {
     return WEXITSTATUS(status);
   }
 
-  // Applies a change, runs the check and undoes the change. Expects the exit code, all strings of `found` in the log,
-  // and the number of unchanged pictures.
+  // Applies a change, runs the check and undoes the change. Expects the exit code `code` and all strings of `found` in
+  // the log.
   void expect_caught(const char* what, const std::function<void()>& change, int code,
                      const std::vector<std::string>& found, const std::string& options = "",
                      const std::string& environment = "") {
@@ -71,7 +71,7 @@ class CiRepository : public support::TestFolder {
     image::write_png(repo_ / file, picture);
   }
 
-  // Writes the same picture with other bytes: 16 bits a channel, no metadata.
+  // Writes the same picture with other bytes: 16 bits per channel, no metadata.
   void compress_anew(const std::string& file) const {
     const std::string before = support::read_bytes(repo_ / file);
     const image::Image picture = image::read_png(repo_ / file);

@@ -1,4 +1,5 @@
-// Incomplete results are not output: missing and broken frames, pictures that are drawn later, parts of videos.
+// The program does not take incomplete results for output: missing and broken frames, pictures that are drawn later,
+// parts of videos.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -72,7 +73,7 @@ TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythi
   for (const char* output : {"p", "m", "s.json"}) EXPECT_FALSE(fs::exists(folder_ / output)) << output;
 }
 
-// The scene has no camera, so that the camera is computed from all frames of the cache.
+// The scene has no camera, so the program computes one from all frames of the cache.
 TEST_F(Completeness, BrokenFrameDoesNotKeepTheFramesBeforeItFromBeingUsed) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
   break_file("c/frame_00005.weft");
@@ -146,7 +147,7 @@ TEST_F(Completeness, LayersAreThoseOfOneRunAfterAResumeAndInParts) {
   const auto drawn = fs::last_write_time(folder_ / "p/00003.exr");
   expect_well({"render", "c", "-o", "p/{frame:05}.exr", "--frames", ":9", "--resume"});
   EXPECT_EQ(fs::last_write_time(folder_ / "p/00003.exr"), drawn);
-  expect_same("whole", "p", ".exr", 9);  // motion is relative to the previous frame, whichever command drew that one
+  expect_same("whole", "p", ".exr", 9);  // motion is relative to the previous frame, whichever command drew that frame
   support::write_bytes(folder_ / "p/00004.exr", support::read_bytes(folder_ / "p/00004.exr").substr(0, 2000));
   EXPECT_EQ(weft({"render", "c", "-o", "p/{frame:05}.exr", "--frames", ":9", "--resume"}).exit_code, 6);
 }
@@ -156,7 +157,7 @@ TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
   const Arguments render{"render", "c", "-o", kPicturesInP, "--frames", ":4", "--resume"};
   expect_well(render);
   const std::string third = support::read_bytes(folder_ / "p/00002.png");
-  // A picture of another frame under this name is not overwritten: it may be the only copy.
+  // A picture of another frame under this name is not overwritten, since it may be the only copy.
   fs::copy_file(folder_ / "p/00003.png", folder_ / "p/00002.png", fs::copy_options::overwrite_existing);
   const Outcome refused = weft(render);
   EXPECT_EQ(refused.exit_code, 6);
@@ -190,7 +191,7 @@ TEST_F(Completeness, RenderDoesNotTakeASharpThumbnailForAPictureWithMotionBlur) 
   EXPECT_TRUE(contains(refused.err, "p/00001.png: exists already")) << refused.err;
 }
 
-// The camera is computed: for the thumbnail from frames 0 and 1, for the film from all.
+// The camera is computed: for the thumbnail from frames 0 and 1, for the film from all frames.
 TEST_F(Completeness, RenderDoesNotTakeAThumbnailWithAnotherCameraForAPictureOfTheFilm) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"thumbnail", "s.toml", "--frame", "1", "-o", "p/00001.png"});
@@ -296,8 +297,8 @@ TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {
 TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   std::string pictures;
   const auto lines = [&](const std::string& video) {
-    // Takes the column of hashes only: times differ between a part and the whole. Columns: "0, pts, duration, size,
-    // hash".
+    // Takes only the column of hashes from lines "0, pts, duration, size, hash", since times differ between a part and
+    // the whole.
     std::string hashes;
     std::istringstream text(decoded(video));
     for (std::string line; std::getline(text, line);) hashes += line.substr(line.rfind(',')) + "\n";
@@ -313,7 +314,7 @@ TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   EXPECT_EQ(facts.frames, kFrames);
   EXPECT_NEAR(facts.duration, kFrames / 25.0, 1e-9);
   EXPECT_EQ(facts.metadata.at("frames"), "0:21");
-  // The joined video is accepted as complete.
+  // The program accepts the joined video as complete.
   EXPECT_EQ(weft({"render", "c", "-o", "joined.mp4", "--resume"}).err,
             "note: joined.mp4 is complete already: frames 0:21\n");
 }

@@ -1,4 +1,4 @@
-// diff and accept as their users call them: exit codes, messages, and the files that exist afterwards.
+// The commands diff and accept, as users call them: exit codes, messages, and the files that exist afterwards.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -102,11 +102,11 @@ TEST_F(Diff, HeatMapsOfAnEarlierCallInAFolderAreNoPicturesToCompare) {
   }
   expect({"diff", "ref/a.png", "out/a.png", "--heatmap", "both/maps/a.png"}, 7, "DIFFERS");
   expect({"diff", "both", "both", "--heatmap", "both/maps", "--overwrite"}, 8, "expected pictures or videos");
-  write("out/maps/a.png", 1);  // a picture, though where a heat map is to be
+  write("out/maps/a.png", 1);  // a picture where the command would write a heat map
   expect({"diff", "ref", "out", "--heatmap", "out/maps", "--overwrite"}, 2, "is a picture to test, which is read");
 }
 
-// The name of the heat map comes first, and its metadata name no class of machines.
+// The heat map is first by name, and its metadata name no machine class.
 TEST_F(Diff, HeatMapsTellNoClassOfMachinesAndBecomeNoReferences) {
   const auto draw = [&](const char* name) {
     image::Image image(32, 24);
@@ -179,7 +179,7 @@ TEST_F(Diff, FoldersAreComparedWithAllBelowThem) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "maps/front/deep/b.png"));
   std::filesystem::remove_all(folder_ / "out/back");
   expect({"diff", "ref", "out"}, 0, "3 of 3 match their references");
-  // The folder of a machine class (`default`) is no folder of pictures.
+  // The name of a machine class (`default`) is no part of the name of a picture.
   std::filesystem::rename(folder_ / "ref/front", folder_ / "front");
   std::filesystem::create_directories(folder_ / "ref/default");
   std::filesystem::rename(folder_ / "front", folder_ / "ref/default/front");

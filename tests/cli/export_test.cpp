@@ -47,8 +47,8 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   for (const auto& [name, bytes] : exported) EXPECT_EQ(without_uv(bytes), meshes.at(name)) << name;
   expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
   EXPECT_EQ(contents("obj", ".obj").size(), 3U * 4);
-  expect_exported(
-      {"c", "--format", "obj", "-o", "obj", "--frames", "3:4"});  // the material files exist already and are equal
+  expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "3:4"});  // the material files exist already, with
+                                                                              // the same content
   EXPECT_EQ(contents("obj", ".mtl").size(), 3U);
   expect_exported({"c", "--format", "pc2", "-o", "pc2"});
   EXPECT_EQ(contents("pc2", ".pc2").size(), 3U);
@@ -64,7 +64,7 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   EXPECT_EQ(contents("blender", ".py").size(), 1U);
 }
 
-// Export and import: a camera read from a glTF file equals the camera of the scene that wrote it, with either axis up.
+// A camera read from an exported glTF file equals the camera of the scene, with either axis up.
 TEST_F(ExportCommand, CamerasOfGltfFilesAreTakenByScenes) {
   const std::string film = R"([time]
 duration = 0.4

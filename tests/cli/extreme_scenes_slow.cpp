@@ -18,13 +18,13 @@ namespace fs = std::filesystem;
 
 struct Trial {
   std::string name, text;
-  int frames = 0;                      // maximum, including the start
+  int frames = 0;                      // maximum number of frames, including the start
   std::vector<std::string> overrides;  // KEY=VALUE
   bench::EnergyLimit limit;
   friend void PrintTo(const Trial& trial, std::ostream* out) { *out << trial.name; }
 };
 
-// The scenes of the list, shortened; and options that request too much.
+// The scenes of `weft bench stability`, shortened, and scenes whose options request too much.
 std::vector<Trial> trials() {
   std::vector<Trial> trials;
   std::string hanging;
@@ -75,13 +75,13 @@ TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
   const Trial& trial = GetParam();
   const bench::Outcome expected =
       bench::try_scene(support::scene_of_text(trial.text, trial.overrides), trial.frames - 1, trial.limit);
-  // Spurious energy appears in the report of `bench stability`, not in the exit code of a run.
+  // A run reports a spurious gain of energy as a warning, not by its exit code.
   ASSERT_NE(expected.verdict, bench::Verdict::not_finite);
   const bool refused = expected.verdict == bench::Verdict::refused;
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, refused ? 5 : 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  // The only temporary files are in the cache of a run that was long enough to save its state. The video contains every
+  // Temporary files are only in the cache of a run that was long enough to save its state. The video contains every
   // finished frame.
   std::set<std::string> left = tree();
   if (refused) std::erase_if(left, [](const std::string& name) { return name.starts_with("output/.s.weft-cache/"); });

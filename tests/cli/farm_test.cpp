@@ -1,4 +1,5 @@
-// weft farm without a scheduler: its scripts run one task after the other. tests/farm/farm_test.py uses a Slurm.
+// weft farm without a scheduler: the test runs the tasks of the scripts one after the other. tests/farm/farm_test.py
+// uses Slurm itself.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +23,7 @@ class Farms : public CachedRun {
     more.insert(more.begin(), "farm");
     return run_weft(more, folder_);
   }
-  /// Requests fewer frames than the scene has; the camera is computed from all frames of the scene.
+  /// Submits fewer frames than the scene has; the camera is computed from all frames of the scene.
   Outcome submit(const Arguments& more = {}) const {
     Arguments arguments{"submit",    "s.toml",   "-o",       "a b",    "--set",  kRadius, "--size", "64x36",
                         "--quality", "draft",    "--frames", "0:19:2", "--part", "4",     "--set",  "time.duration=0.8",
@@ -30,7 +31,7 @@ class Farms : public CachedRun {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return farm(arguments);
   }
-  /// Runs all tasks of `farm/tasks.tsv`, in order; returns the exit codes that are not 0.
+  /// Runs all tasks of `farm/tasks.tsv` in order, and returns the exit codes that are not 0.
   std::vector<int> do_tasks(const std::string& environment = "") const {
     std::vector<int> codes;
     std::ifstream in(folder_ / "a b/farm/tasks.tsv");
@@ -42,7 +43,7 @@ class Farms : public CachedRun {
     }
     return codes;
   }
-  /// Calls `weft farm` where the programs of Slurm are scripts that end with exit code 1.
+  /// Calls `weft farm` with scripts in place of Slurm's programs, which end with exit code 1.
   Outcome with_failing_slurm(const std::string& arguments) const {
     for (const char* program : {"sbatch", "squeue", "scancel"}) {
       support::write_bytes(folder_ / program, "#!/bin/sh\nexit 1\n");
@@ -98,8 +99,8 @@ TEST_F(Farms, SubmitOnlyTheReportIfOnlyTheReportFailed) {
   EXPECT_FALSE(contains(submit().err, "all runs are done"));
 }
 
-// The simulation goes on with another look, and writes statistics of the changed scene; pictures of the former scene
-// stay.
+// Another look does not change the simulation, which writes statistics of the changed scene; pictures of the earlier
+// scene stay.
 TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   ASSERT_EQ(submit().exit_code, 0);
   ASSERT_TRUE(do_tasks().empty()) << log("simulate_0");
@@ -122,7 +123,7 @@ TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   EXPECT_EQ(again.err.find("all runs are done"), std::string::npos) << again.err;
 }
 
-// A program that is killed once succeeds on the second try; one that finds a mistake is not tried again.
+// A program that was killed once succeeds on the second try. A program that finds a mistake is not tried again.
 TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   ASSERT_EQ(submit().exit_code, 0);
   support::write_bytes(folder_ / "killed",
@@ -145,7 +146,7 @@ TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   EXPECT_NE(status.out.find("simulate_0 ended with exit code 3"), std::string::npos) << status.out;
 }
 
-// The signal before the time limit arrives in the pause between two tries.
+// The signal before the time limit arrives during the pause between two tries.
 TEST_F(Farms, TasksThatAreToStopBeginNoOtherTry) {
   ASSERT_EQ(submit().exit_code, 0);
   support::write_bytes(folder_ / "failing", "#!/bin/sh\necho \"$1\"\nexit 6\n");
@@ -192,7 +193,8 @@ TEST_F(Farms, AreRememberedByADryRun) {
   EXPECT_EQ(support::read_bytes(folder_ / "a b/farm/jobs"), "7\tsimulate\n");
 }
 
-// Tasks that wait in the queue would do something else by other scripts. Slurm does not say whether there are any.
+// Tasks that wait in the queue would run other scripts than were submitted. Here, Slurm does not answer whether tasks
+// wait.
 TEST_F(Farms, ADryRunReplacesNoScriptsOfTasksThatMayWait) {
   const std::string command = "submit s.toml -o one --memory 100 --time 10 --dry-run";
   ASSERT_EQ(with_failing_slurm(command).exit_code, 0);
@@ -208,7 +210,7 @@ TEST_F(Farms, ADryRunReplacesNoScriptsOfTasksThatMayWait) {
   EXPECT_FALSE(fs::exists(folder_ / "one/step=0.01"));
 }
 
-// Some callers ignore SIGCHLD, which programs inherit; the exit codes of their child processes are lost then.
+// Some callers ignore SIGCHLD, and programs inherit this. Exit codes of child processes would then be lost.
 TEST_F(Farms, FailuresOfSlurmAreNoSuccessesAndNoEmptyQueue) {
   EXPECT_EQ(with_failing_slurm("submit s.toml -o one --memory 100 --time 10").exit_code, 6);
   support::write_bytes(folder_ / "one/farm/jobs", "7\tsimulate\n");

@@ -1,4 +1,4 @@
-// A film with made-up stages: what is kept and what is stopped if any stage fails.
+// A film with made-up stages: what the pipeline keeps and stops if a stage fails.
 #include "tools/cli/film.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kNever = std::numeric_limits<int>::max();
 
-// Records a run, and defines where it fails.
+// Defines where the stages of a film fail, and records what they do.
 struct Script {
   int simulation_fails_at = kNever, drawing_fails_at = kNever, writing_fails_at = kNever;
   bool painter_missing = false, source_missing = false, finish_fails = false;
@@ -197,7 +197,7 @@ TEST(Film, EndsWithTheLastWantedFrame) {
   EXPECT_EQ(script.simulated, up_to(9));
   script.simulated.clear();
   script.written.clear();
-  play(script, {0, 8, 4});  // frame 4 is the last requested one
+  play(script, {0, 8, 4});  // stop after frame 4, the last requested one
   EXPECT_EQ(script.simulated, up_to(5));
 }
 
@@ -237,7 +237,7 @@ TEST(Film, StopsAllStagesWhenTheOutputFails) {
 TEST(Film, TellsThatTheOutputCouldNotBeFinished) {
   Script script;
   script.finish_fails = true;
-  script.simulation_fails_at = 3;  // the failure of the output stage is the one reported
+  script.simulation_fails_at = 3;  // the reported failure is that of the output stage
   const FilmResult result = play(script, {0, 10, 1});
   EXPECT_FALSE(result.finished_output);
   EXPECT_EQ(describe_failure(result.failure).text, "no space for the index");

@@ -66,7 +66,7 @@ TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
   EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
 }
 
-// Computed cameras follow the cloth, so that every pixel would differ.
+// A computed camera follows the cloth, so a change of the cloth would change every pixel.
 TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);
   int scenes = 0;
@@ -79,7 +79,7 @@ TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   EXPECT_EQ(scenes, 2);
 }
 
-// `weft` builds the program of `simulate` and `render`, and that of `diff`, each when a command needs it.
+// `./weft` builds two programs: that of `simulate` and `render`, and that of `diff`, each when a command needs it.
 TEST_F(Helpers, WorkflowOfARepositoryBuildsBothProgramsWithTheCacheOfTheCompiler) {
   EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);
   const std::string workflow = support::read_bytes(folder_ / "repo/.github/workflows/pictures.yml");
@@ -143,7 +143,7 @@ TEST_F(Helpers, WatchOfAStillReplacesNoThumbnail) {
   EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
 }
 
-// `weft run` leaves its film under the usual name.
+// `weft run` writes its film under the default name, which the film of `weft watch` must not replace.
 TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
   const Arguments small{"--size", "64x36", "--quality", "draft", "--frames", "0:2"};
   Arguments run{"run", "s.toml"}, watch{"watch", "s.toml", "--film", "--times", "1"};
@@ -163,7 +163,7 @@ TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
   EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
 }
 
-// The reading end of descriptor 9 is closed before the first byte, as `weft man | head` closes it before the last.
+// The reading end of descriptor 9 is closed before the first byte; `weft man | head` closes it before the last one.
 TEST_F(Helpers, EndsQuietlyWhereNobodyReadsWhatItPrints) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
@@ -249,7 +249,7 @@ TEST_F(Helpers, CheckEstimatesWhatARunTakes) {
   EXPECT_NE(outcome.out.find("MB of memory, estimated from 10 frames"), std::string::npos) << outcome.out;
 }
 
-// Commands that keep nothing end at once.
+// Commands that keep no files end at once.
 TEST_F(Helpers, CheckThatIsTerminatedExitsWith75) {
   std::string text = support::read_bytes(folder_ / "s.toml");
   text.replace(text.find("step = 0.02"), 11, "step = 1e-7");  // millions of steps for the first frame of the estimate

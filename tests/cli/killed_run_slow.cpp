@@ -21,7 +21,7 @@ class KilledAnywhere : public CachedRun {
             "--size", "320x180", "--quality", "preview", "--progress", "none"};
   }
 
-  // Every file under a final name equals that of the uninterrupted run.
+  // Expects every file with a final name to equal that of an uninterrupted run.
   void expect_no_half_file(const std::map<std::string, std::string>& whole_meshes) const {
     if (fs::exists(folder_ / "a.mp4")) {
       EXPECT_EQ(decoded("a.mp4"), whole_video_);

@@ -1,5 +1,5 @@
-// Keys that the rules mark as not simulated: the simulation is bitwise independent of them, and a cached frame with a
-// new appearance equals the frame of the changed scene.
+// Keys that the rules mark as not simulated. The simulation must not depend on them in any bit, and a cached frame with
+// new looks must equal the frame of the changed scene.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ frame::SnapshotPtr third_frame(const scene::Scene& scene) {
   return simulation.snapshot();
 }
 
-/// Serialises all that is drawn of a frame.
+/// Bytes of everything that is drawn of a frame.
 std::string bytes_of(const frame::FrameSnapshot& snapshot) {
   const cache::Surfaces surfaces = cache::surfaces_of(snapshot);
   return cache::encode_surfaces(surfaces) + cache::encode_frame(snapshot, {}, surfaces);
@@ -119,7 +119,7 @@ void expect_not_simulated(const std::string& change, const scene::Scene& before,
       << change;
 }
 
-// What a character looks like decides how its surface is divided; the ball moves farther in a longer run.
+// The looks of a character determine how its surface is divided; in a longer run, the ball moves farther.
 TEST(Looks, OfACharacterAndOfALongerRunAreThoseOfAnUninterruptedRun) {
   const auto scene_with_model = [](const std::vector<std::string>& overrides) {
     scene::LoadResult loaded = scene::load_text(

@@ -1,4 +1,4 @@
-// Anything that ends a run, or may end it, is reported before the run.
+// Everything that ends a run, or may end it, is reported before the run starts.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

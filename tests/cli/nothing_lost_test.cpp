@@ -1,4 +1,4 @@
-// If files are in the way of a command, or are put there while it works, no foreign file is lost, nothing crashes or
+// Files lie in the way of a command, or are put there while it works. Then no foreign file is lost, nothing crashes or
 // hangs, and no input is reported as an internal error.
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -84,7 +84,7 @@ TEST_F(NothingLost, ARunThatIsGoneOnWithReplacesItsOwnOutputsOnly) {
     expect_kept(file);
     write(file, own);
   }
-  resumed.insert(resumed.end(), {"--set", "cloth.cloth.look.color=[1,0,0]"});  // then its effective scene differs
+  resumed.insert(resumed.end(), {"--set", "cloth.cloth.look.color=[1,0,0]"});  // changes the effective scene
   const Outcome outcome = run_weft(with(resumed), folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
 }
@@ -105,7 +105,7 @@ TEST_F(NothingLost, OverwriteRemovesOnlyWhatALongerRunHasWritten) {
   EXPECT_FALSE(fs::exists(folder_ / "m/cloth_00008.ply"));
 }
 
-// --frames ::2 selects a part of the film: the other frames are no leftovers.
+// --frames ::2 selects a part of the film, so the other frames may be the results of another run.
 TEST_F(NothingLost, EachSecondFrameWithOverwriteLeavesTheOthers) {
   ASSERT_EQ(run_weft(with({"run", "s.toml", "-o", "p/{frame:05}.png", "--meshes", "m", "--frames", "0:4"}), folder_)
                 .exit_code,
@@ -133,7 +133,7 @@ TEST_F(NothingLost, AFolderThatIsRemovedWhileARunWorksEndsTheRun) {
   }
 }
 
-// The lock file of the cache would get the number of the closed stream.
+// Without a check, the lock file of the cache would get the number of the closed stream.
 TEST_F(NothingLost, MessagesForAClosedStreamAreWrittenIntoNoFile) {
   const auto simulate = [&](const std::string& cache, const std::string& more) {
     return WEXITSTATUS(std::system(fmt::format("cd '{}' && '{}' simulate s.toml --frames :2 --cache {} {}",
@@ -155,7 +155,7 @@ class AnyInput : public NothingLost {
     image::write_png(folder_ / "a.png", image::Image(16, 16));
     expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":3"});
   }
-  /// Exit code 0 is success, 1 an internal error, more than 128 a crash.
+  /// Exit code 0 means success, 1 an internal error, more than 128 a crash; the test expects none of them.
   void expect_refused(const Arguments& arguments, const std::string& about = "") const {
     const Outcome outcome = run_weft(arguments, folder_);
     EXPECT_TRUE(outcome.exit_code > 1 && outcome.exit_code < 128)
@@ -329,7 +329,8 @@ TEST_F(AnyInput, DoctorWithoutAPlaceForTemporaryFilesSaysSo) {
       << outcome.out;
 }
 
-// The checksum is valid, the content is not: at one place after another, eight bytes become an extreme number.
+// The checksum is valid, but the content is not: the test replaces eight bytes by an extreme number, at one place after
+// another.
 TEST_F(AnyInput, AFrameWithWildContentUnderARightChecksumIsDrawnOrNamed) {
   const std::string whole = support::read_bytes(folder_ / "c/frame_00001.weft");
   const cache::Content content = cache::unpack(whole);

@@ -35,7 +35,8 @@ TEST(Options, MayStandInAnyOrderAndMixWithTheScene) {
   std::vector<Arguments> groups{{"a.toml"},        {"-o", "b.mp4"},      {"--frames", "2:9:3"}, {"--size", "64x36"},
                                 {"--set", "k=1"},  {"--quality=draft"},  {"--threads", "3"},    {"--overwrite"},
                                 {"--fps", "12.5"}, {"--backend", "egl"}, {"--set", "l=2"}};
-  // Every rotation, forward and backward: each option is once first, once last, and beside each kind of neighbour.
+  // Tries every rotation, forward and backward: each option is once first, once last, and beside each kind of
+  // neighbour.
   for (std::size_t shift = 0; shift < groups.size(); ++shift) {
     std::rotate(groups.begin(), groups.begin() + 1, groups.end());
     for (const bool backward : {false, true}) {

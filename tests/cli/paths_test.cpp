@@ -1,5 +1,5 @@
-// No file is ever lost. Every option of every command that names a path is pointed at an input, at another output, at
-// an existing file, at a link to one, and at a folder. WEFT_PATHS_TABLE=FILE writes the table as Markdown.
+// The test sets every option that names a path, of every command, to an input, another output, an existing file, a link
+// to a file, and a folder. No file may be lost. WEFT_PATHS_TABLE=FILE writes the results as a Markdown table.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -28,14 +28,15 @@ constexpr const char* kMesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 /// A command with one option that names a path, and its other outputs.
 struct Command {
   const char* name;
-  Arguments arguments;  ///< `@` stands for the path
+  Arguments arguments;  ///< arguments; `@` stands for the path
   const char* option;
-  const char* free;  ///< an acceptable path
+  const char* free;  ///< a path that the command accepts
   const char* input;
-  const char* other;            ///< another of its outputs; nullptr: it has none
+  const char* other;            ///< another output of the command; nullptr: it has none
   int exists_code = 6;          ///< exit code if the file exists
-  bool is_folder = false;       ///< the option names a folder
-  const char* clash = nullptr;  ///< in that folder, a file that would be written; nullptr: the folder itself is refused
+  bool is_folder = false;       ///< whether the option names a folder
+  const char* clash = nullptr;  ///< a file that the command would write into this folder; nullptr: it refuses the
+                                ///< folder itself
 };
 
 const Arguments kSmall{"--size", "32x32", "--quality", "draft", "--progress", "none"};
@@ -143,7 +144,8 @@ class Paths : public support::TestFolder {
     ASSERT_EQ(run_weft(simulate, folder_).exit_code, 0);
   }
 
-  /// Content of every file and link below the folder, by name. Empty folders do not count: they hold nothing to lose.
+  /// Content of every file and link below the folder, by name. Empty folders do not count, since they contain nothing
+  /// to lose.
   std::map<std::string, std::string> all() const {
     std::map<std::string, std::string> found;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -184,7 +186,7 @@ class Paths : public support::TestFolder {
                                                        command.option, kind, path, outcome.exit_code, left);
   }
 
-  /// Value of the option with which `file` would be written.
+  /// Value of the option that makes the command write into `folder`.
   static std::string given(const Command& command, const std::string& folder) {
     return std::string(command.free).find('{') == std::string::npos ? folder : folder + "/{frame}.png";
   }
@@ -201,7 +203,7 @@ TEST_P(PathOption, LosesNothing) {
   expect(overwriting, "input, with --overwrite", command.input, 2);
   const bool in_folder = command.clash != nullptr;
   const bool replaces = command.exists_code == 0;
-  // A path with "..", and paths through links to the input or to its folder.
+  // Paths to the input: with "..", through a link to it, and through a link to its folder.
   expect(command, "input, by a detour", "in/../" + std::string(command.input), 2);
   fs::create_directory_symlink(".", folder_ / "here");
   expect(command, "input, through a link", "here/" + std::string(command.input), 2);

@@ -1,4 +1,4 @@
-// Archives of the program for farms: what is accepted, what is refused, and tasks that unpack and run one.
+// Archives of the program for farms: which archives are accepted or refused, and tasks that unpack and run one.
 #include "tools/cli/program_archive.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The program as its users run it: exit codes, messages, and the files that exist afterwards.
+// The program as users run it: exit codes, messages, and the files that exist afterwards.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -62,7 +62,7 @@ class Program : public support::TestFolder {
     support::write_bytes(folder_ / "s.toml", kFallPastBall);
   }
 
-  // Small and quick settings, followed by the options `more`.
+  // Small and quick settings, followed by the options in `more`.
   Arguments run_arguments(const Arguments& more = {}) const {
     Arguments arguments{"run", "s.toml", "--size", "64x36", "--quality", "draft", "--progress", "none"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -347,10 +347,10 @@ TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
   EXPECT_TRUE(contains(bad.err, "sack.toml:20:8: hem.0.mass")) << bad.err;
   EXPECT_TRUE(contains(bad.err, "back.svg:2:2: path \"back\": ")) << bad.err;
   EXPECT_EQ(bad.out, "");
-  // If the panels can be drawn, the names of edges are checked too.
+  // If the panels can be drawn, the check covers the names of edges too.
   put(cloth, pattern, kDrawing);
   EXPECT_TRUE(contains(run_weft({"check", "dressed.toml"}, folder_).err, "sack.toml:13:5: seam.0.a: expected an edge"));
-  // A mistake in the drawing alone is an asset error; mistakes that appear only in sewing are reported too.
+  // A mistake in the drawing alone is an asset error. Mistakes that only sewing finds are reported too.
   put(cloth, kSack, damaged(kDrawing, "'back'", "'bck'"));
   EXPECT_EQ(run_weft({"check", "dressed.toml"}, folder_).exit_code, 4);
   put(cloth, damaged(kSack, "side = \"back\"", "rotation = 180"), kDrawing);
@@ -419,7 +419,7 @@ TEST_F(Program, DoctorTriesThisMachineAndLeavesNothingBehind) {
 }
 
 TEST_F(Program, FailedSimulationKeepsAllFramesBefore) {
-  // One Newton iteration and no smaller steps suffice in free fall, but not when the cloth touches the ball.
+  // One Newton iteration without shorter steps is enough in free fall, but not when the cloth touches the ball.
   const Outcome outcome = run({"-o", "a.mp4", "--stats", "s.json", "--set", "solver.newton_iterations=1", "--set",
                                "solver.halvings=0", "--set", "obstacle.ball.collide=true", "--set",
                                "solver.newton_tolerance=1e-9", "--set", "solver.linear_tolerance=1e-12"});
@@ -436,7 +436,7 @@ TEST_F(Program, FailedSimulationKeepsAllFramesBefore) {
 
 class Interrupted : public Program {
  protected:
-  // An hour of video, so that it cannot end by itself.
+  // Arguments for an hour of video, so that the run cannot end by itself.
   Arguments endless(const Arguments& more) const {
     Arguments arguments = run_arguments({"--set", "time.duration=3600", "--log-json", "-"});
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -477,12 +477,12 @@ TEST_F(Interrupted, ByCtrlCKeepsWholePictures) {
 }
 
 TEST_F(Interrupted, TwiceQuitsAtOnceAndRemovesWhatIsHalfWritten) {
-  // Ten million steps for the first frame: it cannot finish during the test.
+  // The first frame takes ten million steps, so it cannot be finished during the test.
   Subprocess weft(endless({"-o", "a.mp4", "--set", "time.step=1e-7", "--set", "time.fps=1"}), folder_);
   ASSERT_TRUE(weft.wait_for_output("\"frame\":0,"));
   weft.send(SIGINT);
   ASSERT_TRUE(weft.wait_for_output("finishing the current frame"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // repeats within a second count as one
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // signals within a second count as one
   weft.send(SIGINT);
   const Outcome outcome = weft.wait();
   EXPECT_EQ(outcome.exit_code, 75);

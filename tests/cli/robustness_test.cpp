@@ -1,4 +1,4 @@
-// Runs on unattended machines: full and read-only disks, kills, missing parts.
+// Runs on unattended machines: full and read-only disks, killed runs, missing parts.
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <signal.h>
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 class Robustness : public CachedRun {
  protected:
-  /// Expects every file under a final name to be complete; returns their number.
+  /// Expects every file with a final name to be complete. Returns the number of these files.
   int expect_whole_files() const {
     int count = 0;
     for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
@@ -82,7 +82,7 @@ TEST_F(Robustness, KilledAtAnyMomentNoFileUnderAFinalNameIsHalf) {
   }
 }
 
-/// A file system of 64 MB in memory, in a mount namespace of this process. It disappears with the process.
+/// A file system of 64 MB in memory, in a mount namespace of this process, with which it disappears.
 class SmallDisk : public Robustness {
  protected:
   void SetUp() override {

@@ -8,7 +8,7 @@
 namespace weft::cli {
 namespace {
 
-// The field of view of a lens depends on the sides of the picture, so the scene must have those of --size.
+// The field of view of a lens depends on the sides of the picture, so the scene must have the size that --size sets.
 TEST(SceneInput, HasTheSizeOfTheCommandLine) {
   SceneOptions options;
   options.scene = WEFT_SOURCE_DIR "/scenes/falling_band.toml";

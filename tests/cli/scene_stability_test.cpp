@@ -1,4 +1,5 @@
-// Stability limits of a user's scene: its own values are varied, and one sentence states the margin.
+// Stability limits of a user's scene: the program varies the values of the scene, and states the margin in one
+// sentence.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +12,8 @@
 namespace weft::bench {
 namespace {
 
-/// A strip of undamped threads that swings from one edge by the midpoint rule: long steps or stiff threads break it.
+/// A strip of undamped threads that swings from one edge with the midpoint rule. It becomes unstable with long steps or
+/// stiff threads.
 const std::string kStrip =
     "[time]\nduration = 0.8\nfps = 10\nstep = 0.00625\nintegrator = \"implicit_midpoint\"\n[physics]\nair_density = 0\n"
     "[contact]\nself = false\nobstacles = false\n[[cloth]]\nname = \"strip\"\nsize = [0.3, 0.3]\nparticles = [5, 5]\n"
@@ -61,7 +63,7 @@ TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
     return margin.axis == VariedParameter::stiffness && margin.breaks != nullptr && margin.breaks->factors[0] > 1;
   });
   ASSERT_NE(stiffer, margins.end());
-  // A run with that factor ends with the same message.
+  // A run with this factor must end with the same message.
   scene::Scene scene = support::scene_of_text(kStrip);
   scene::Material& material = scene.cloths[0].material;
   for (double* stiffness : {&material.stretch_weft, &material.stretch_warp, &material.shear, &material.bend})

@@ -19,7 +19,7 @@ namespace {
 
 using cli::contains;
 
-// Made-up costs that follow powers of the particle count n: forces n, the linear solver n^1.5, in 4 frames.
+// Made-up costs in 4 frames, as powers of the particle count n: forces cost n, the linear solver n^1.5.
 SpeedRun run_with(double size, int threads, double step) {
   SpeedRun run{.setting = {size, threads, step}};
   run.particles = std::lround(10'000 * size * size);
@@ -53,7 +53,7 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-// Reads the rows, keyed by the names of the header.
+// Reads the rows of a CSV text, with the names of the header as keys.
 std::vector<std::map<std::string, std::string>> records_of(const std::string& csv) {
   std::istringstream text(csv);
   std::string line;
@@ -129,7 +129,7 @@ TEST(SpeedReport, ExponentsAreSlopesBetweenSizes) {
   EXPECT_FALSE(exponent(large, small, 3, 96));
   EXPECT_FALSE(exponent(small, large, 0, 96));
   const std::string text = speed_markdown({"t", "m", {}, rows()}, "p.svg");
-  // Costs of 2 n^1 and 2 n^1.5 together: 40,000 particles, 0.4 CPU s of forces and 8 of the linear solver, in 4 frames.
+  // With 40,000 particles, forces cost 0.4 CPU s and the linear solver 8 CPU s, in 4 frames.
   EXPECT_TRUE(contains(text, "| 40,000 | 16 | 0 | 3.00 | 20.0 (0.50) | 100 (1.00) | 2,000 (1.50) | 2,100 (1.47) |"))
       << text;
 }
@@ -137,7 +137,8 @@ TEST(SpeedReport, ExponentsAreSlopesBetweenSizes) {
 TEST(SpeedReport, ConclusionIsComputedFromTheRows) {
   auto runs = rows();
   const std::string text = conclusion(runs);
-  // 2.1 s a frame with 40,000 particles, 37.5 ms with 2,500: log 56 / log 16, and log 7.64 / log 4 from 10,000 on.
+  // 40,000 particles cost 2.1 s a frame, 2,500 particles 37.5 ms: the exponent is log 56 / log 16; from 10,000
+  // particles on, it is log 7.64 / log 4.
   EXPECT_TRUE(contains(text,
                        "A frame takes 2,100 CPU ms with 40,000 particles. The largest part of that is linear "
                        "solver, 95 %. From 2,500 particles, with 37.5 CPU ms, it grows with the power 1.45 of "
@@ -157,8 +158,8 @@ TEST(SpeedReport, ConclusionIsComputedFromTheRows) {
 
 TEST(SpeedReport, BoundIsWhatMovesOverTheBandwidth) {
   SpeedRun run = run_with(1, 1, 1);
-  // Counted by hand: full blocks of 9 numbers and a column, 4 bytes each; isotropic blocks of a number and a column; 16
-  // padded vectors of 16 bytes.
+  // Counted by hand. Full blocks have 9 numbers and a column index of 4 bytes each; isotropic blocks a number and a
+  // column index; each particle has 16 padded vectors of 16 bytes.
   EXPECT_EQ(bytes_of_linear_iteration(run), 10'000 * (9 * 40 + 4 * 8 + 16 * 16));
   // Each number is moved three times in double and once in single precision; three evaluations move three vectors each.
   EXPECT_EQ(bytes_of_newton_iteration(run), 10'000 * (9 * 9 * 28 + 4 * 28 + 9 * 24));

@@ -34,7 +34,7 @@ TEST_F(Stills, SheetShowsEvenlySpacedFramesFromTheFirstToTheLast) {
   EXPECT_EQ(about("few.png").at("frames"), "0 1 2") << "a scene of three frames has no more";
 }
 
-// The scene cannot start, so its simulation would end with exit code 3.
+// The scene is invalid at the start: if the command simulated it, the exit code would be 3.
 TEST_F(Stills, SheetThatNoPngCanHoldIsRefusedBeforeTheSimulation) {
   const Arguments sheet{"sheet", "s.toml", "--set", "cloth.cloth.position=[0,0,0.02]", "--columns", "1", "--count"};
   const auto of = [&](const char* count) {
@@ -66,7 +66,7 @@ TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
   for (const char* picture : {"stills/s.png", "stills/b.png", "stills/c.png"})
     EXPECT_EQ(pixels(picture), pixels("one.png")) << picture;
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "stills"), {}), 3);
-  // One scene (a shell pattern may match a single file), and a cache.
+  // One scene is also possible with a folder (a shell pattern may match a single file), and a cache.
   expect_well({"thumbnail", "s.toml", "--frame", "2", "-o", "more/of"});
   EXPECT_EQ(pixels("more/of/s.png"), pixels("one.png"));
   expect_well({"thumbnail", "b.toml", "cache_of_s", "--frame", "2"});
@@ -75,7 +75,8 @@ TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
   EXPECT_EQ(about("stills/b.start.png").at("scene"), "b");
 }
 
-// Scenes that cannot be read fail before the first drawing.
+// Scenes that cannot be read are reported before the first drawing, but the exit code is that of the first scene in
+// order.
 TEST_F(Stills, ExitCodeIsThatOfTheFirstSceneThatFailed) {
   EXPECT_EQ(weft({"thumbnail", "s.toml", "none.toml", "--frame", "30"}).exit_code, 2);
   EXPECT_EQ(weft({"thumbnail", "none.toml", "s.toml", "--frame", "30"}).exit_code, 3);
@@ -130,7 +131,7 @@ TEST_F(Stills, OfAnUnfinishedCacheShowWhatIsThere) {
   EXPECT_NE(missing.err.find("frame 3 is missing"), std::string::npos) << missing.err;
 }
 
-// The cloth is flat at first, wraps round the ball, and lies on it at the end.
+// The cloth is flat at first, wraps around the ball, and lies on it at the end.
 TEST_F(Stills, ThumbnailShowsTheClothAtWorkNotFlatInTheAir) {
   const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -145,7 +146,8 @@ TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
   EXPECT_NE(outcome.err.find("no frame shows any cloth"), std::string::npos) << outcome.err;
 }
 
-// The sheet intersects the ball, which no run accepts: `check` and `run` print the same, the picture shows the place.
+// The sheet intersects the ball, which no run accepts: `check` and `run` print the same message, and the picture shows
+// where.
 TEST_F(Stills, OfAStartThatIsRefusedShowInRedWhatMeets) {
   const Arguments low{"--set", "cloth.cloth.position=[0,0,0.02]"};
   const auto with = [&](Arguments arguments) {

@@ -23,7 +23,7 @@
 namespace weft::cli {
 namespace {
 
-// Called in the child process: standard input is empty, the outputs are the pipes.
+// Runs in the child process: makes standard input empty, and connects the outputs to the pipes.
 void prepare(const std::filesystem::path& folder, int out, int err, std::size_t file_size_limit) {
   const int in = ::open("/dev/null", O_RDONLY);
   if (in < 0 || ::dup2(in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0 || ::chdir(folder.c_str()) != 0) {
@@ -33,8 +33,9 @@ void prepare(const std::filesystem::path& folder, int out, int err, std::size_t 
   if (file_size_limit > 0 && ::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
 }
 
-// If this process has several threads, the child may wait for a lock held by a thread that does not exist in the child.
-// The sanitizers report leaks only if a program ends by itself.
+// Whether a fork may run the command without exec. If this process has several threads, the child could wait for a lock
+// that another thread holds, which does not exist in the child. Builds with sanitizers need exec, since they report
+// leaks only if a program ends by itself.
 bool can_run_in_fork() {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   return false;
@@ -44,8 +45,8 @@ bool can_run_in_fork() {
 #endif
 }
 
-// Loads OpenGL in this process, so that forks find it loaded: loading takes a fifth of the time of a small picture. If
-// a library cannot be loaded here, each fork searches for it.
+// Loads OpenGL in this process, so that forks need not load it: loading takes a fifth of the time of a small picture.
+// If a library cannot be loaded here, each fork searches for it.
 void load_opengl_once() {
   static void* const library = [] {
     for (const char* file : {"libOSMesa.so.8", "/usr/lib/x86_64-linux-gnu/dri/swrast_dri.so"})
@@ -78,7 +79,7 @@ Subprocess::Subprocess(const std::vector<std::string>& arguments, const std::fil
   argv.push_back(nullptr);
   const bool in_fork = start == Start::fork && can_run_in_fork();
   if (in_fork && draws(arguments)) load_opengl_once();
-  std::fflush(nullptr);  // else the child would write the buffers again
+  std::fflush(nullptr);  // otherwise the child would write the buffered text again
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork");
   if (pid_ == 0) {

@@ -1,4 +1,4 @@
-// Starts the real program in a process of its own, as a shell does.
+// Starts the real program in its own process, as a shell does.
 #pragma once
 
 #include <sys/types.h>
@@ -47,8 +47,8 @@ inline bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// Runs one command. If the test has one thread, a fork calls what main() calls, which saves loading the program and
-/// its libraries: 0.15 to 0.3 CPU s. Builds with sanitizers always execute WEFT_PROGRAM.
+/// Runs one command. If the test has one thread, a fork of it calls the function that main() calls. This saves loading
+/// the program and its libraries: 0.15 to 0.3 CPU s. Builds with sanitizers always execute WEFT_PROGRAM.
 Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
 
 }  // namespace weft::cli

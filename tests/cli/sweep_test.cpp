@@ -61,7 +61,8 @@ TEST(SweepPlan, NamesHaveNothingOfAPathFromAKey) {
   EXPECT_EQ(names(plan_sweep({}, {{"../a/b", {"1", "2"}}})), (std::vector<std::string>{"-a-b=1", "-a-b=2"}));
 }
 
-// The maximum number of values. Names keep only the beginning of a value, which is equal here, so they are numbered.
+// The list has the maximum number of values. Names keep only the beginning of a value, which is the same for all, so
+// they are numbered.
 TEST(SweepPlan, NamesThatAreCutAlikeAreNumbered) {
   Axis axis{"k", {}};
   for (int i = 0; i < 10'000; ++i) axis.values.push_back(std::string(200, 'x') + std::to_string(i));
@@ -204,7 +205,7 @@ TEST_F(SweepSheet, OfTooManyRunsShowsTheFirstRows) {
   result.video = folder_ / "a.mp4";
   result.run.difference.clear();
   write_sweep_sheet(folder_ / "sheet.png", std::vector<SweepResult>(5, result), "", {});
-  const image::Image sheet = image::read_png(folder_ / "sheet.png");  // of two rows, the first
+  const image::Image sheet = image::read_png(folder_ / "sheet.png");  // shows only the first of two rows
   EXPECT_GT(sheet.width, 3 * 16);
   EXPECT_GT(sheet.height, 8192);
   EXPECT_LT(sheet.height, 2 * 8192);
@@ -318,7 +319,7 @@ TEST_F(Sweeps, AreNotReportedBeforeTheyBegin) {
 }
 
 TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
-  // A camera that one of the scenes already has.
+  // Only the first of the two runs has a camera named v.
   const std::string cameras =
       "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}],"
       "[{name='w',position=[1,-1,1],target=[0,0,0.2]}]";
@@ -362,7 +363,7 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
 }
 
-// The second run, which does not begin before the sweep is stopped, has a complete video of the first sweep.
+// The second run has a complete video of the first sweep, and does not begin before the sweep is stopped.
 TEST_F(Sweeps, ThatWereToBeRepeatedAndAreStoppedGoOnWithAllRuns) {
   const Arguments arguments{"--set", kRadius, "--set", "time.step=0.002"};
   ASSERT_EQ(sweep(arguments).exit_code, 0);
@@ -377,7 +378,7 @@ TEST_F(Sweeps, ThatWereToBeRepeatedAndAreStoppedGoOnWithAllRuns) {
   EXPECT_TRUE(fs::exists(folder_ / "w/radius=0.11/s.json")) << "the run has no statistics: " << table();
 }
 
-/// Waits up to five seconds until no process writes this cache. Returns whether that is so.
+/// Waits up to five seconds until no process holds the lock of this cache. Returns whether the lock is free.
 bool is_left(const fs::path& cache) {
   const int lock = ::open((cache / "lock").c_str(), O_RDONLY);
   bool left = false;
@@ -390,7 +391,7 @@ bool is_left(const fs::path& cache) {
 }
 
 TEST_F(Sweeps, ThatAreKilledTakeTheirRunsWithThem) {
-  // The run would take half a minute without the signal.
+  // Without the signal, the run would take half a minute.
   Subprocess process(with_sweep({"--set", "time.step=0.0001,0.01"}), folder_);
   const fs::path cache = folder_ / "w/step=0.0001/.s.weft-cache";
   for (int i = 0; i < 3000 && !fs::exists(cache / "frame_00000.weft"); ++i) usleep(20'000);

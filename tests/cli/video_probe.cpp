@@ -23,7 +23,7 @@ struct Input {
   }
 };
 
-// Receives all frames that the decoder has ready; false at an error.
+// Receives all frames that the decoder has ready. Returns false after an error.
 bool receive_frames(Input& input, VideoFacts& facts) {
   for (;;) {
     const int status = avcodec_receive_frame(input.decoder, input.frame);
