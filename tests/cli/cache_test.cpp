@@ -1,4 +1,4 @@
-// run, simulate, render and --resume give the same bits, whichever command makes the frames.
+// The commands run, simulate and render, and --resume, give the same bits, whichever of them makes the frames.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kPictures = "{frame:05}.png";
 
-// Statistics without values that differ between runs: times, memory, machine and folder.
+// Statistics without values that differ between runs: times, memory and paths.
 Json read_reproducible_statistics(const fs::path& file) {
   Json stats = Json::parse(support::read_bytes(file));
   for (const char* key : {"totals", "peak_memory_bytes", "scene_file", "output", "cache_bytes"}) stats.erase(key);
@@ -150,7 +150,7 @@ TEST_F(CachedRun, ChangedLooksGoOnAndDressWhatWasKept) {
   expect_well({"render", "c", "-o", std::string("a/") + kPictures});
   expect_well({"render", "whole", "-o", std::string("b/") + kPictures});
   expect_same("a", "b", ".png", kFrames);
-  // A complete cache can also be extended.
+  // A longer duration extends a complete cache.
   expect_well(with_looks({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "time.duration=0.88"}));
   EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), kFrames + 2u);
 }
@@ -169,7 +169,7 @@ TEST_F(CachedRun, StoredFramesGetTheAngleOfALensForTheSizeOfTheRunThatGoesOn) {
   simulate({"--size", "64x36", "--frames", ":8"});
   simulate({"--size", "36x64", "--frames", ":3", "--resume"});
   simulate({"--size", "36x64", "--resume"});
-  // The longer side of the picture, which sees 36 mm, is upright now.
+  // The longer side of the picture, which sees 36 mm of the film, is now vertical.
   const double angle = 360 / std::numbers::pi * std::atan(36.0 / (2 * 50));
   const cache::Reader reader(folder_ / "c");
   EXPECT_EQ(reader.frames().size(), static_cast<std::size_t>(kFrames));
@@ -189,7 +189,7 @@ TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {
   EXPECT_TRUE(contains(rest.err, "it has the look from before the scene was changed")) << rest.err;
   expect_well(again);
   expect_well({"render", "c", "-o", "b.mp4"});
-  // All frames are there, but only the first three have the look of the scene.
+  // The cache holds all frames, but only the first three have the looks of the scene.
   const Arguments back{"simulate", "s.toml", "--cache", "c", "--resume"};
   part = back;
   part.insert(part.end(), {"--frames", ":3"});
@@ -378,7 +378,7 @@ TEST_F(CachedRun, InterruptedByCtrlCRunGoesOnToTheWholeVideo) {
 }
 
 TEST_F(CachedRun, InterruptedWithinALongFrameSimulationKeepsTheFramesBefore) {
-  // Ten million steps are needed for the second frame.
+  // The second frame needs ten million steps.
   Subprocess process({"simulate", "s.toml", "--cache", "c", "--progress", "none", "--log-json", "-", "--set",
                       "time.step=1e-7", "--set", "time.fps=1", "--set", "time.duration=3"},
                      folder_);
@@ -386,7 +386,7 @@ TEST_F(CachedRun, InterruptedWithinALongFrameSimulationKeepsTheFramesBefore) {
   process.send(SIGTERM);
   const Outcome interrupted = process.wait();
   EXPECT_EQ(interrupted.exit_code, 75);
-  // On a busy machine the signal may come before the first step.
+  // On a busy machine, the signal may arrive before the first step.
   EXPECT_TRUE(contains(interrupted.err, "interrupted within a time step") ||
               contains(interrupted.err, "interrupted after frame 0"))
       << interrupted.err;
@@ -403,14 +403,14 @@ TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
   const Outcome simulated = limited({"simulate", "s.toml", "--cache", "c"}, 3000);
   EXPECT_EQ(simulated.exit_code, 6);
   EXPECT_TRUE(contains(simulated.err, "cannot be written: File too large")) << simulated.err;
-  // The limit leaves enough space for pictures of a few kilobytes, but not for states.
+  // The limit of the file size allows pictures of a few kilobytes, but not states.
   const std::string camera = "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}]";
   const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures, "--set", camera}, 8000);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "the run continues, but")) << run.err;
   EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
   EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
-  // With a computed camera the pictures are drawn from the cache.
+  // With a computed camera, pictures are drawn from the cache, so the run fails.
   EXPECT_EQ(limited({"run", "s.toml", "-o", std::string("q/") + kPictures}, 3000).exit_code, 6);
 }
 

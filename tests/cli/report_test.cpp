@@ -62,7 +62,7 @@ TEST(StatsJson, SumsUpSteps) {
   EXPECT_DOUBLE_EQ(totals.at("solver_error_m"), 0.0004);
 }
 
-// Returns the keys in the first column of the table that follows this line of the page.
+// Returns the keys in the first column of the table that follows the text `before` in the page.
 std::set<std::string> documented_keys(const std::string& page, const std::string& before) {
   std::set<std::string> keys;
   const std::size_t begin = page.find(before);
@@ -119,7 +119,8 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
   EXPECT_NE(summary(report).find("  simulate      0.02 s  0.02 s      18.0 ms\n"), std::string::npos);
 }
 
-// The summary gives the error of the worst frame. The sum over all frames says little: 120 mm for a band of a metre.
+// The summary states the error of the worst frame. The sum over all frames is not useful: for example, 120 mm for a
+// band of a metre.
 TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatReducesIt) {
   RunReport report;
   report.frames = two_frames();
@@ -161,13 +162,13 @@ TEST(Summary, SaysWhatCompanionsHaveMeasured) {
 TEST(Summary, OfARunWithoutFramesSaysSo) {
   RunReport report;
   report.output = "a.mp4";
-  report.width = 64;  // without a size no picture was requested
+  report.width = 64;  // a report without picture size is one of a run without pictures
   EXPECT_EQ(summary(report).substr(0, 31), "a.mp4: no frame was written\n   ");
 }
 
 TEST(Warnings, ComeOnlyWithFiguresThatLookWrong) {
   auto frames = two_frames();
-  EXPECT_TRUE(find_warnings(frames).empty());  // one rejected step for four accepted ones is no reason to warn
+  EXPECT_TRUE(find_warnings(frames).empty());  // one rejected step in five does not suffice for a warning
   frames[1].report.rejected_steps = 2;
   ASSERT_EQ(find_warnings(frames).size(), 1u);
   EXPECT_EQ(find_warnings(frames)[0],
