@@ -1,4 +1,5 @@
-// Compares the collected candidate pairs, and what the cache reports as covered, with brute force.
+// Compares with brute force which candidate pairs the cache collects, and for which positions it reports them as
+// complete.
 #include "physics/collision/candidate_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -57,7 +58,7 @@ std::set<std::pair<Index, Index>> set_of(const PairList& pairs) {
   return set;
 }
 
-/// Pairs of triangles without a common vertex that have a vertex of one closer than `reach` to a face of the other.
+/// Pairs of triangles without a common vertex, of which one has a vertex closer than `reach` to the face of the other.
 std::set<std::pair<Index, Index>> near(std::span<const Triangle> triangles, std::span<const Vec3> x, double reach) {
   std::set<std::pair<Index, Index>> found;
   for (std::size_t a = 0; a < triangles.size(); ++a)
@@ -87,7 +88,7 @@ TEST(CandidateCache, EveryPairWithinReachAtACoveredEndWasCollected) {
   EXPECT_GE(covered, 100);  // all short trials are covered
 }
 
-// A folded sheet is near itself.
+// The sheet is folded, so that parts of it are near each other.
 TEST(CandidateCache, ASheetMeetsItself) {
   Layers layers(4, 0.5 * kReach);
   for (int j = 0; j <= 4; ++j)
@@ -112,8 +113,8 @@ TEST(CandidateCache, FeaturesWithinReachAtACoveredStartWereWithinTheRadius) {
   }
 }
 
-// If the cloth rests, the Verlet margin is half the detection distance. Without reuse, or in a fast step, the cache
-// covers only exactly the same start positions.
+// If the cloth rests, the Verlet margin is half the detection distance. Without reuse of candidate pairs, or in a fast
+// step, the cache covers only exactly the same start positions.
 TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
   const Layers layers(2, kReach);
   std::vector<Vec3> inside = layers.x, outside = layers.x, fast = layers.x;
@@ -149,12 +150,13 @@ TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   end[4].x() += 0.02 * kReach;
   EXPECT_FALSE(cache.covers_end(end));
   end[4] = layers.x[4] + Vec3(1.5 * kReach, 0, 0);
-  EXPECT_FALSE(cache.covers_end(end));  // halfway
+  EXPECT_FALSE(cache.covers_end(end));  // between start and end, without response
   cache.invalidate();
   EXPECT_FALSE(cache.covers_end(to));
 }
 
-// With diagonal directions the margin bounds the length of a displacement, otherwise its components along the axes.
+// With diagonal directions, the margin limits the length of a displacement; otherwise, it limits its components along
+// the axes.
 TEST(CandidateCache, WithMoreDirectionsThanSixAnEndIsCoveredWithinABall) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
@@ -170,8 +172,8 @@ TEST(CandidateCache, WithMoreDirectionsThanSixAnEndIsCoveredWithinABall) {
   }
 }
 
-// If the response pushes particles away from their end positions, any position between the two is covered, and what was
-// covered before stays covered.
+// If the response moves particles away from their end positions, the cache covers any position between the two, and all
+// positions that it covered before.
 TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
@@ -190,7 +192,7 @@ TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {
   EXPECT_TRUE(cache.covers_end(layers.x));
 }
 
-// Compares with brute force the pairs for all end positions between the two corners.
+// Compares the pairs with brute force, for end positions between the two corners.
 TEST(CandidateCache, EveryPairWithinReachAtAnEndBetweenIsCollectedThen) {
   const Layers layers(4, 0.5 * kReach);
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
@@ -224,7 +226,7 @@ TEST(CandidateCache, WhatIsNotWantedIsLeftOut) {
   EXPECT_TRUE(collected(false, false).empty());
 }
 
-// The bounds of a still obstacle are valid only while it stays where they were fitted.
+// The cache fits bounds to a still obstacle; they are valid only while the obstacle stays there.
 TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
   Layers layers(4, 0.5 * kReach);
   CandidateCache alone(layers.bodies, {}, layers.x, kReach);
@@ -244,7 +246,8 @@ TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
   EXPECT_FALSE(cache.is_clear(2));
   EXPECT_TRUE(cache.covers_start(with_obstacle_at(0.2)));
   EXPECT_TRUE(cache.covers_end(with_obstacle_at(500)));
-  // The cloth ends at 0.12 m. The obstacle may come as near as two detection distances, and may not change sides.
+  // The cloth ends at 0.12 m. The obstacle may come as near as two detection distances, but may not pass to the other
+  // side of the cloth.
   EXPECT_TRUE(cache.covers_end(with_obstacle_at(0.12 + 2.001 * kReach)));
   EXPECT_FALSE(cache.covers_end(with_obstacle_at(0.12 + 1.999 * kReach)));
   EXPECT_FALSE(cache.covers_start(with_obstacle_at(-1)));

@@ -52,7 +52,8 @@ Proximity edges(double outside_a, double outside_b, double along_a) {
           {outside_a, outside_b}};
 }
 
-// For 0.2 and 0.8 the geometric mean, 0.4, is not the arithmetic (0.5) or harmonic mean (0.32) or an extreme.
+// For 0.2 and 0.8, the geometric mean is 0.4. It differs from the arithmetic mean (0.5), the harmonic mean (0.32) and
+// the extremes.
 TEST(ContactBuilder, FrictionOfAPairIsTheGeometricMean) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {}, scene.masses);
@@ -72,7 +73,8 @@ TEST(ContactBuilder, APairMayHaveFrictionOfItsOwnInEitherOrder) {
   EXPECT_DOUBLE_EQ(builder.friction_of(0, 1).sliding, 0.4);
 }
 
-// Vertices 1 and 2 of the obstacle are padded and rough. Friction for a pair of bodies also overrides that of patches.
+// Vertices 1 and 2 of the obstacle form a patch with its own thickness and friction. Friction of a pair of bodies takes
+// precedence over that of patches.
 TEST(ContactBuilder, APatchHasThicknessAndFrictionOfItsOwn) {
   Scene scene;
   const std::vector<Triangle> one{{0, 1, 2}};
@@ -107,8 +109,8 @@ TEST(ContactBuilder, FrictionReachesTheContact) {
   EXPECT_DOUBLE_EQ(contacts[1].static_friction, 0.3);
 }
 
-// An edge pair has its full stiffness inside both wedges and away from the ends of the edges, a vertex inside its
-// wedge. Towards these limits the stiffness falls linearly.
+// A pair of edges has its full stiffness inside both wedges and away from the ends of the edges; a vertex, inside its
+// wedge. Toward these limits, the stiffness falls linearly.
 TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_fraction(vertex_face(0, {3, 4, 5})), 1);
   Proximity beside_border = vertex_face(0, {3, 4, 5});
@@ -117,11 +119,11 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   beside_border.outside_wedge[0] = 0.1;
   EXPECT_EQ(stiffness_fraction(beside_border), 0);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.5)), 1);
-  // Flat: the sum of the sines decides, from 0.05 to 0.2.
+  // Flat wedges: the stiffness depends on the sum of the sines, from 0.05 to 0.2.
   EXPECT_EQ(stiffness_fraction(edges(-0.025, -0.025, 0.5)), 0);
   EXPECT_NEAR(stiffness_fraction(edges(0, -0.125, 0.5)), 0.5, 1e-12);
   EXPECT_NEAR(stiffness_fraction(edges(-0.1, -0.1, 0.5)), 1, 1e-12);
-  // Outside the wedge of either edge the ratio falls to 0 between 0 and 0.1.
+  // Outside the wedge of either edge, the ratio falls from 1 to 0 as the sine grows from 0 to 0.1.
   EXPECT_EQ(stiffness_fraction(edges(0, -0.5, 0.5)), 1);
   EXPECT_NEAR(stiffness_fraction(edges(0.05, -0.5, 0.5)), 0.5, 1e-12);
   EXPECT_NEAR(stiffness_fraction(edges(-0.5, 0.05, 0.5)), 0.5, 1e-12);
@@ -135,8 +137,8 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0)), 0);
 }
 
-// Flat faces of two blocks touch where the rims of the faces cross, also at a corner: only along the normal of the
-// faces.
+// Flat faces of two blocks touch where their borders cross, also at a corner. Only contacts along the normal of the
+// faces have stiffness.
 TEST(StiffnessShare, OfBlocksFadesOutsideOfAWedgeOnly) {
   EXPECT_EQ(stiffness_fraction(edges(0, 0, 0.01), false), 1);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0), false), 1);
@@ -156,7 +158,7 @@ TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
 // The stiffness is 100 m / h², with the weighted mean mass m of the pushed particles, and at least the scene's value.
 TEST(ContactBuilder, StiffnessFollowsTheMassOfWhatIsPushed) {
   Scene scene;
-  constexpr double kSceneStep = 3 * kBuilderStep;  // the scene's step; the law ignores the actual step
+  constexpr double kSceneStep = 3 * kBuilderStep;  // the stiffness depends on the scene's step, not on the actual step
   const auto contacts =
       scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {.stiffness = 10, .step = kSceneStep});
   const double mass = (1e-3 + 0.5 * 4e-3 + 0.3 * 5e-3 + 0.2 * 6e-3) / 2;
@@ -195,7 +197,7 @@ TEST(ContactBuilder, PinchedClothAndItsObstacleAreLeftOut) {
   EXPECT_EQ(contacts[0].particles[0], 3);
 }
 
-// A pinched particle 2 mm deep is pushed out at 0.2 m/s, with a twentieth of the stiffness if it has no clearance.
+// A pinched particle 2 mm deep is pushed out at 0.2 m/s. If it has no clearance, the stiffness is a twentieth.
 TEST(ContactBuilder, PinchedClothIsPushedBackSlowlyAndWithoutRoomSoftly) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {.stiffness = 1e6}, scene.masses);
@@ -226,7 +228,7 @@ TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {
   EXPECT_FALSE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
   ASSERT_EQ(response.springs().size(), 1U);
   const Contact& contact = response.springs()[0];
-  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // at least the present value, though the full range is larger
+  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // at least the present distance, although the full range is larger
   EXPECT_DOUBLE_EQ(contact.full_range, 0.0025);
   EXPECT_NEAR((contact.normal - Vec3::UnitZ()).norm(), 0, 1e-12);
 }
@@ -237,7 +239,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   ContactResponse response(ResponseForm::springs, scene.masses);
   response.begin_step(kBuilderStep);
   builder.begin_step();
-  // The closest features are vertex 3 and the face below, or a pair equally near.
+  // The closest features are vertex 3 and the face below it, or a pair at the same distance.
   const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
   Proximity known;
   known.vertices = closest_features(pair, scene.x_t0).vertices;
@@ -247,7 +249,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   EXPECT_EQ(response.springs().size(), 1U);
 }
 
-// With velocity constraints, every corner of the cloth triangle is kept beyond the obstacle's plane.
+// With velocity constraints, every corner of the cloth triangle stays above the obstacle's plane.
 TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
   Scene scene;
   for (std::size_t v = 0; v < 3; ++v) scene.x_t1[v].z() -= 0.01;

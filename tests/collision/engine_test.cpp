@@ -1,4 +1,4 @@
-// All parts of collision handling together, on a square of cloth over a floor.
+// All parts of collision handling together, for a square of cloth over a floor.
 #include "physics/collision/engine.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,8 @@ namespace weft::collision {
 namespace {
 
 constexpr double kEngineStep = 0.01;  // [s]
-constexpr double kThickness = 0.002;  // of the cloth [m]: contact with a floor at half of this, detection at 1.5 mm
+constexpr double kThickness = 0.002;  // of the cloth [m]: contact begins at half of this from the floor; the detection
+                                      // distance is 1.5 mm
 struct Sheet {
   int n;
   std::vector<double> planes{0};  // heights of the floor and the ceiling [m]
@@ -52,7 +53,7 @@ struct Sheet {
   Engine engine(const EngineParameters& parameters = {}) const { return {bodies(), parameters, x, masses}; }
 };
 
-// Begins a step in which the engine may not move any vertex.
+// Begins a step in which the engine must not move any vertex.
 void begin_step(Engine& engine, const std::vector<Vec3>& from, std::vector<Vec3> to) {
   engine.begin_step(from, to, {}, kEngineStep);
 }
@@ -70,7 +71,7 @@ TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
 }
 
 // Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm. They contain every pair
-// of features that comes near through such motions.
+// of features that comes near by such motions.
 TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   Sheet sheet(3, 0.0044);
   Engine engine = sheet.engine();
@@ -81,7 +82,8 @@ TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   EXPECT_EQ(engine.proximities(), 16);
 }
 
-// Kept closest points, found with velocity cones, equal those of a new search. Nothing moves, so that all are kept.
+// With velocity cones, the engine reuses closest points. Nothing moves here, so it reuses all, and they must equal
+// those of a new search.
 TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
   Sheet sheet(3, 0.0029);
   EngineParameters parameters;
@@ -105,7 +107,7 @@ TEST(Engine, WhatWouldMeetIsFoundAtTheEndOfTheWay) {
   begin_step(engine, sheet.x, sheet.x);
   EXPECT_TRUE(engine.is_separated(sheet.x, sheet.falling(0.0499)));
   EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.0501)));
-  // Passing through the floor and out on the other side is refused too.
+  // An end beyond the floor, at which the sheet has passed through, is refused too.
   EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.1)));
 }
 
@@ -136,7 +138,7 @@ TEST(Engine, AGuessThatMeetsTheFloorIsPushedApart) {
   EXPECT_EQ(kept, above);
 }
 
-// The sheet falls by 1.4 mm to below the floor, and is pushed up. The ceiling sinks by as much, so it is near the sheet
+// The sheet falls by 1.4 mm to below the floor, and is pushed up. The ceiling sinks by 1.4 mm, so it is near the sheet
 // only after the push.
 TEST(Engine, WhatAGuessIsPushedToIsFoundNear) {
   Sheet sheet(3, 0.001, 0.0042);
@@ -153,7 +155,7 @@ TEST(Engine, WhatAGuessIsPushedToIsFoundNear) {
   }
 }
 
-// If the predicted end runs into the floor, its contacts exist before the first solve.
+// If the predicted end is below the floor, the contacts with it exist before the first solve.
 TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -176,9 +178,9 @@ TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
   for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
 }
 
-// A step that restarts from an intermediate state has the contacts of that state: none from the start, and one for each
-// pair that was pushed apart. Slip is measured from the start of the step. Corners stay behind the plane of their pair
-// without friction.
+// A step that restarts from an intermediate state uses the contacts of that state: none of those at the start, and one
+// for each pair that was pushed apart. Slip is measured from the start of the step. Other contacts keep corners behind
+// the plane of their pair, without friction.
 TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -203,20 +205,22 @@ TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
     EXPECT_NEAR(contact.depth, contact.range - contact.normal.dot(end), 1e-15);
     smooth += contact.friction == 0;
     if (contact.friction == 0) {
-      EXPECT_LT(contact.depth, 1e-15);  // no force on what has not moved
+      EXPECT_LT(contact.depth, 1e-15);  // no force on corners that have not moved
     }
   }
   EXPECT_GT(smooth, 0);
   EXPECT_LT(smooth, static_cast<int>(contacts.size()));
 
-  // From the intermediate state on, an end beyond the floor is refused as it is from the start; an end above is free.
+  // From the intermediate state, an end beyond the floor is refused, as from the start; an end above the floor is
+  // accepted.
   std::vector<Vec3> through = bend, up = bend;
   for (std::size_t i = 0; i < sheet.particles(); ++i) through[i].z() -= 0.01, up[i].z() += 1;
   EXPECT_FALSE(engine.is_separated(bend, through));
   EXPECT_TRUE(engine.is_separated(bend, up));
 }
 
-// A ceiling comes down to 0.1 mm below the floor. With `may_pinch` the cloth between is exempt, else refused.
+// A ceiling comes down to 0.1 mm below the floor. With `may_pinch`, the cloth between them is exempt; otherwise the
+// step is refused.
 TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   Sheet sheet(2, 0.005, 0.01);
   std::vector<Vec3> end = sheet.x;
@@ -234,7 +238,8 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   EXPECT_TRUE(engine.is_separated(sheet.x, pinched));  // apart from the pinched pairs
 }
 
-// A ceiling comes down tilted and pinches the cloth on one side. A guess of the next end exempts no further pairs.
+// A ceiling comes down tilted, and pinches the cloth on one side. A guess of the next end must not exempt further
+// pairs.
 TEST(Engine, NothingIsExemptedForAGuess) {
   Sheet sheet(6, 0.005, 0.01);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
@@ -270,8 +275,8 @@ TEST(Engine, ASheetThroughTheFloorMeetsItAtTheStart) {
   }
 }
 
-// The state is saved after a step that began while the candidate pairs were valid, and restored into a new engine. The
-// sheet is folded and crumpled, so that some planes of the start do not separate during the step.
+// The state is saved after a step that began with valid candidate pairs, and is restored into a new engine. The sheet
+// is folded and crumpled, so that some planes of the start do not separate during the step.
 TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> number(-1, 1);

@@ -1,4 +1,5 @@
-// Compares the broad phase, with each of its options, with brute force over all pairs, as sets, while surfaces move.
+// Compares the broad phase, with each of its options, with brute force over all pairs. Compares the pairs as sets,
+// while surfaces move.
 #include "physics/collision/hierarchy/broad_phase.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +61,7 @@ BothLists all_pairs(BroadPhase& broad_phase, std::size_t surfaces) {
   return found;
 }
 
-/// All sampled settings that must give exactly the same pairs.
+/// Combinations of options that must give exactly the same pairs.
 std::vector<BroadPhaseOptions> exact_options(int directions) {
   std::vector<BroadPhaseOptions> all;
   for (const int children : {2, 4, 8})
@@ -108,7 +109,8 @@ TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTree
   EXPECT_GT(max_count, 2 * min_count);
 }
 
-/// Margin for pairs that must be listed whatever the rounding: smaller by far more than the rounding of float [m].
+/// Every pair within this margin must be listed. It is smaller than kMargin by much more than the rounding of float
+/// [m].
 constexpr double kRequiredMargin = kMargin - 2e-6;
 
 TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
@@ -140,7 +142,8 @@ TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
   }
 }
 
-/// Pairs without a common vertex that come closer than `reach` during the motion, feature by feature, at close samples.
+/// Pairs without a common vertex that come closer than `reach` during the motion, compared feature by feature at 17
+/// times.
 Pairs near_during_motion(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                          double reach) {
   Pairs near;
@@ -156,8 +159,8 @@ Pairs near_during_motion(const MovingScene& scene, std::span<const Vec3> x_t0, s
   return near;
 }
 
-// The pairs are complete for any trajectory that starts within the margin and ends, within the margin, anywhere in the
-// boxes between two corners.
+// The pairs are complete for any trajectory that starts within the margin, and ends within the margin of any position
+// in the boxes between two corners.
 TYPED_TEST(BroadPhasePairs, HoldAllThatComeNearOnTheWayToAnywhereBetweenTwoCorners) {
   const FoldingSlidingFlying motion(5);
   const std::vector<Surface> surfaces = motion.scene().surfaces();
@@ -220,8 +223,8 @@ TEST(BroadPhase, WithASeparationListListsTheSamePairsAgainWhenAskedTwice) {
   EXPECT_EQ(all_pairs(broad_phase, surfaces.size()), first);
 }
 
-// Regions that normal cones skip are traversed again as they fold, once each. The list does not skip them again when
-// they are flat once more, so it may hold more pairs.
+// Regions that normal cones skip are traversed again when they fold, once each. The separation list does not skip them
+// again when they become flat, so it may have more pairs.
 TEST(BroadPhase, WithASeparationListAndNormalConesListsEachPairOnce) {
   const FoldingSlidingFlying motion(9);
   const std::vector<Surface> surfaces = motion.scene().surfaces();

@@ -1,4 +1,4 @@
-// Compares candidate pairs of the hierarchy with brute force over all pairs, as sets.
+// Compares the candidate pairs of the hierarchy with brute force over all pairs, as sets.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -33,7 +33,7 @@ using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, 
                                 Setup<18, 4, 8>, Setup<18, 8, 2>, Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
 TYPED_TEST_SUITE(HierarchyPairs, Setups);
 
-/// Brute force in double: the intervals of a triangle along each direction, at the start and the end of its path.
+/// Brute force in double precision: the intervals of a triangle along each direction, at start and end of its path.
 template <int K>
 class BruteForce {
  public:
@@ -82,7 +82,8 @@ Pairs as_set(const PairList& list) {
   return set;
 }
 
-/// Outward rounding to float may add pairs whose bounds are apart by a few 1e-7 of the coordinates, but no others.
+/// Bounds are rounded outward to float. This may add pairs whose bounds are apart by a few 1e-7 of the coordinates, but
+/// no others.
 void expect_between(const Pairs& required, const Pairs& found, const Pairs& allowed) {
   EXPECT_TRUE(std::includes(found.begin(), found.end(), required.begin(), required.end()));
   EXPECT_TRUE(std::includes(allowed.begin(), allowed.end(), found.begin(), found.end()));

@@ -72,7 +72,7 @@ TYPED_TEST(HierarchyQuery, ForTheNearestTrianglesFindsThemAndAllTiesOfThoseThatC
   for_all_fits<TypeParam::value>([&](const auto& fit) {
     const Surface& surface = fit.tree.surface();
     for (int i = 0; i < 40; ++i) {
-      // Half of the points are random. The others are vertices, where all triangles around are equally near.
+      // Half of the points are random. The others are vertices, to which all triangles around are equally near.
       const Index vertex = surface.first_vertex + static_cast<Index>(generator() % 1000) % surface.vertex_count;
       const Vec3 p = i % 2 == 0 ? random_vec(generator) : fit.x[vertex];
       // In every third query, every third triangle is excluded.

@@ -29,7 +29,7 @@ inline Vec3 random_vec(std::mt19937& generator) {
   return {a, b, c};
 }
 
-/// Triangles between few random vertices: many share a vertex or an edge, some are equal or name a vertex twice.
+/// Random triangles between few vertices: many share a vertex or an edge; some are equal, or name a vertex twice.
 inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double size) {
   std::mt19937 generator(seed);
   TestMesh mesh;

@@ -1,4 +1,4 @@
-// Moving surfaces, for tests and measurements of what changes from step to step.
+// Moving surfaces, for tests and measurements of methods that reuse results of earlier steps.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace weft::collision::testing {
 
-inline constexpr double kMargin = 0.01;  ///< by which bounds are enlarged [m]
+inline constexpr double kMargin = 0.01;  ///< enlargement of the bounds [m]
 
 /// Several meshes with a common numbering.
 struct MovingScene {
@@ -35,8 +35,8 @@ struct MovingScene {
   }
 };
 
-/// A sheet rolls up and opens again, a second sheet slides over it and flutters, and a ball of triangles flies through
-/// both, returns and rests for a while. Steps are as large as in a simulation: a few per cent of the size each.
+/// A sheet rolls up and unrolls; a second sheet slides over it and flutters; a ball of triangles flies through both,
+/// returns and rests for a while. Motions in a step are as large as in a simulation: a few per cent of the size.
 class FoldingSlidingFlying {
  public:
   explicit FoldingSlidingFlying(int n) : sheet_(folded_sheet(n, 1, 0)), ball_(triangle_soup(4, 20, 60, 0.1)) {

@@ -1,4 +1,5 @@
-// Compares closed-form closest points with an exact minimisation in quadruple precision that tries every support.
+// Compares the closed forms of closest points with an exact minimisation in quadruple precision, which tries every
+// support (the set of corners with positive weight).
 #include "physics/collision/proximity/closest_points.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +24,8 @@ Quad dot(const QuadVec& a, const QuadVec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Foot of the perpendicular from point `w` to the plane (line) through 0 spanned by u and v. `inside`: its weights are
-/// positive; for a triangle their sum is below 1, for a pair of edges each is below 1.
+/// Foot of the perpendicular from point `w` to the plane through 0 spanned by u and v. `inside`: both weights are
+/// positive and, for a triangle, their sum is below 1; for a pair of edges, each is below 1.
 struct Foot {
   bool inside;
   Quad distance_sq;
@@ -75,7 +76,7 @@ double exact_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec
   return std::sqrt(static_cast<double>(best));
 }
 
-/// Checks that the weights of each side sum to 1 and that the difference belongs to them.
+/// Checks that the weights of each side sum to 1, and that they give `difference`.
 void expect_consistent(const ClosestPoints& c, const std::array<Vec3, 4>& x, int on_a, double size) {
   const auto split = c.weights.begin() + on_a;
   EXPECT_NEAR(std::accumulate(c.weights.begin(), split, 0.0), 1, 1e-15);
@@ -88,7 +89,7 @@ void expect_consistent(const ClosestPoints& c, const std::array<Vec3, 4>& x, int
   EXPECT_DOUBLE_EQ(c.distance_sq, c.difference.squaredNorm());
 }
 
-/// Random numbers in which each order of magnitude of a cloth scene is equally likely.
+/// Random numbers. Each order of magnitude that a cloth scene has is equally likely.
 class Numbers {
  public:
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
@@ -106,7 +107,7 @@ TEST(ClosestVertexFace, IsThePerpendicularFootInsideAndTheEdgeOrCornerOutsideEac
     unsigned support;  // bit 0 is the vertex, bits 1 to 3 are the corners
   };
   constexpr double s = 1e-12, h = 0.5;
-  // Points on either side of the three edges, and of the lines through each corner perpendicular to its edges.
+  // Points 1e-12 on either side of the three edges, and of the lines through each corner perpendicular to its edges.
   const Case cases[] = {
       {h, h / 2, 0b1111},    {h, s, 0b1111},         {h, -s, 0b0111},         {s, h, 0b1111},
       {-s, h, 0b1011},       {1 - s, h - s, 0b1111}, {1 + s, h + s, 0b1101},  {s, -s, 0b0111},
@@ -161,7 +162,8 @@ TEST(ClosestVertexFace, SurvivesNeedlesAndCollapsedTriangles) {
 TEST(ClosestVertexFace, DifferenceKeepsItsDirectionCloseToTheFace) {
   const Vec3 place{900, -400, 30};
   const Vec3 t0 = place, t1 = place + Vec3{0.0078125, 0, 0}, t2 = place + Vec3{0, 0.0078125, 0};
-  // 2^-33 m above a face at 1 km: inputs are exactly representable, so only the function itself rounds.
+  // The point is 2^-33 m above a face at 1 km. All inputs are exactly representable, so only the function itself
+  // rounds.
   const Vec3 p = place + Vec3{0.001953125, 0.001953125, 0x1p-33};
   const ClosestPoints found = closest_vertex_face(p, t0, t1, t2);
   EXPECT_EQ(found.difference, Vec3(0, 0, 0x1p-33));

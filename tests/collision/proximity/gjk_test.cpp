@@ -1,4 +1,4 @@
-// Compares GJK with the closed forms over all features, for all kinds of triangles and quads, crossing or not.
+// Compares GJK with the closed forms over all features, for triangles and quads of all shapes, crossing or not.
 #include "physics/collision/proximity/gjk.hpp"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,8 @@ double size_of(const Polygon& a, const Polygon& b) {
   return size;
 }
 
-/// A triangle or a planar convex quad of some kind: ordinary, needle, nearly or exactly a segment, a point.
+/// A triangle or a planar convex quad. `kind` selects its shape: ordinary, needle, almost or exactly a segment, a
+/// point.
 Polygon random_polygon(std::mt19937& generator, int kind) {
   const Vec3 o = random_vec(generator), e = random_vec(generator);
   const double flatness[] = {1, 1e-4, 1e-9, 0};
@@ -65,14 +66,14 @@ Polygon random_polygon(std::mt19937& generator, int kind) {
   return {o, o + e, o + e + 0.7 * f, o + f};
 }
 
-/// Compares with brute force the distance relative to the size, the gap of the bounds, and the weighted points.
+/// Compares with brute force: the distance relative to the size, the lower bound, and the weighted points.
 void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   const ConvexClosest found = closest_convex(a, b);
   const double expected = distance_of_triangulations(a, b), size = size_of(a, b);
   EXPECT_NEAR(found.distance, expected, tolerance * size);
   EXPECT_LE(found.lower_bound, expected + tolerance * size);
   EXPECT_LE(found.lower_bound, found.distance);
-  // The direction of a short difference is known only to 1e-16 size / distance, and tilts the plane by that angle.
+  // The direction of a short difference is accurate only to 1e-16 size / distance; the plane is tilted by that angle.
   EXPECT_GE(found.lower_bound, expected - tolerance * size - 1e-15 * size * size / std::max(expected, 1e-300));
   Vec3 difference = Vec3::Zero();
   double sum_a = 0, sum_b = 0;
@@ -91,7 +92,7 @@ void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   EXPECT_LE((difference - found.difference).norm(), tolerance * size);
 }
 
-/// Relative tolerances: 30 times the maximum errors over 600,000 pairs of the first test, 7e-16 and 1.5e-15.
+/// Relative tolerances: 30 times the largest errors in 600,000 pairs of the first test, which were 7e-16 and 1.5e-15.
 constexpr double kOrdinary = 2e-14, kNeedle = 5e-14;
 
 TEST(Gjk, EqualsTheClosedFormsForTrianglesAndQuadsOfAllKindsAndScales) {
@@ -146,8 +147,8 @@ TEST(Gjk, FarFromTheOriginLosesOnlyTheDigitsOfTheCoordinates) {
     const Vec3 away = 1e3 * random_vec(generator);
     for (Vec3& p : a) p = 1e-3 * p + away;
     for (Vec3& p : b) p = 1e-3 * p + away;
-    // Differences of nearby numbers are exact. Rounding of the corners makes the quad non-planar by 1e-13 m, by which
-    // the two results may differ.
+    // Differences of nearby numbers are exact. But rounded corners make the quad non-planar by 1e-13 m, and the two
+    // results may differ by as much.
     EXPECT_NEAR(closest_convex(a, b).distance, distance_of_triangulations(a, b), 3e-13) << i;
   }
 }

@@ -70,7 +70,7 @@ struct AllPairs {
   }
 };
 
-/// `shuffle`: gives the candidates another order, and half of the pairs their other one.
+/// Finds near pairs. `shuffle`: puts the candidates into a random order, and swaps the two triangles of half of them.
 std::vector<Proximity> find(const TestMesh& mesh, double reach, std::mt19937* shuffle = nullptr) {
   Tree<6> tree(mesh.surface(), mesh.x);
   tree.refit(mesh.x, mesh.x, reach / 2);
@@ -99,9 +99,10 @@ TestMesh rough_layers(unsigned seed, int n = 12, double roughness = 0.02) {
   return mesh;
 }
 
-/// Scenes with distances equal up to rounding (aligned layers), without any, with crossing surfaces, with border edges.
+/// Four kinds of scenes: distances that are equal up to rounding (aligned layers); no equal distances; crossing
+/// surfaces; border edges.
 std::vector<TestMesh> scenes() {
-  // Keeps one of several equal triangles: features are identified by their vertices here.
+  // Keeps one of several equal triangles, since this test identifies features by their vertices.
   TestMesh soup = testing::triangle_soup(4, 12, 60, 0.3);
   std::set<std::set<Index>> seen;
   std::erase_if(soup.triangles, [&](const Triangle& t) { return !seen.insert({t.begin(), t.end()}).second; });
@@ -167,7 +168,8 @@ TEST(Proximities, InsideAFaceOrInsideBothEdgesAreThoseOfBruteForce) {
 }
 
 TEST(Proximities, OnAnEdgeOrCornerAreThoseWhereNoFaceAroundIsCloser) {
-  // Without equal distances the rule has one result: the vertex lies in the region nearest to that edge or corner.
+  // If no distances are equal, the rule gives one result: the vertex lies in the region that is nearest to this edge or
+  // corner.
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const TestMesh mesh = rough_layers(seed);
     const double reach = 0.05;
@@ -226,7 +228,8 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
     for (const Proximity& p : find(mesh, reach)) listed.insert(key(p));
     const AllPairs all(mesh);
 
-    // Minimum distance of a listed pair between features around the given corners; adds rings of neighbours.
+    // Minimum distance of a listed pair of features around the given vertex and face; searches rings of neighbours
+    // until a pair is as near as `distance`.
     const auto represented = [&](Index v, const Triangle& face, double distance) {
       std::set<std::pair<Index, Triangle>> seen, open{{v, face}};
       while (!open.empty()) {
@@ -266,7 +269,8 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
             const ClosestPoints points =
                 closest_edge_edge(at(mesh, e[0]), at(mesh, e[1]), at(mesh, f[0]), at(mesh, f[1]));
             if (points.support() == 0b1111U || !(points.distance_sq < reach * reach)) continue;
-            // The closest point of one edge is an end: that vertex and the other edge's triangle must be represented.
+            // The closest point of one edge is an end of it: this vertex and the triangle of the other edge must be
+            // represented.
             const bool end_of_e = points.weights[0] == 0 || points.weights[1] == 0;
             const Index end = end_of_e ? e[points.weights[0] == 0] : f[points.weights[2] == 0];
             EXPECT_TRUE(represented(end, end_of_e ? b : a, std::sqrt(points.distance_sq)));
@@ -277,7 +281,7 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
   }
 }
 
-/// Whether the triangle has all of these vertices, or one of them.
+/// Whether the triangle has all of these vertices (has_all), or any vertex of the other triangle (has_one).
 bool has_all(const Triangle& t, const std::vector<Index>& vertices) {
   return std::ranges::all_of(vertices, [&](Index v) { return has_vertex(t, v); });
 }
@@ -285,7 +289,7 @@ bool has_one(const Triangle& t, const Triangle& s) {
   return std::ranges::any_of(s, [&](Index v) { return has_vertex(t, v); });
 }
 
-// gather() can skip the neighbours of these triangles, by the clearance of the vertex stars.
+// gather() can skip the neighbours of these triangles, since the clearance of their vertex stars is known.
 TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
   int open_of_all = 0, creased_of_all = 0;
   for (const double roughness : {0.005, 0.02, 0.04}) {
@@ -340,7 +344,7 @@ TEST(Proximities, OfAVertexOverASharedEdgeAndOverACornerAreListedOnce) {
 }
 
 TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
-  // Two roofs, one upside down over the other, ridges crossed: each ridge lies in the wedge of the other.
+  // Two roofs, one upside down above the other, with crossed ridges: each ridge lies in the wedge of the other.
   TestMesh mesh;
   mesh.x = {{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}, {0, -1, 0.1}, {0, 1, 0.1}, {-1, 0, 1.1}, {1, 0, 1.1}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {4, 5, 6}, {4, 7, 5}};
@@ -356,13 +360,14 @@ TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
   EXPECT_NEAR(p.outside_wedge[0], -std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(p.outside_wedge[1], -std::sqrt(0.5), 1e-12);
 
-  // The lower roof becomes a valley: its faces are closer to the upper ridge than the valley line is.
+  // The lower roof becomes a valley, whose faces are closer to the upper ridge than its bottom line is.
   mesh.x[2][2] = mesh.x[3][2] = 0.05;
   p = ridge(find(mesh, 0.15));
   EXPECT_NEAR(p.outside_wedge[0], 0.05 / std::hypot(1, 0.05), 1e-12);
 }
 
-// A border passes over a flat surface, beside vertex 0 of that surface: a face there is closer to the border.
+// A border passes over a flat surface, beside vertex 0 of that surface. A face around this vertex is closer to the
+// border than the vertex.
 TEST(Proximities, WedgeOfAVertexTellsWhetherAFaceAroundItIsCloser) {
   TestMesh mesh;
   mesh.x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.03, -1, 0.04}, {0.03, 1, 0.04}, {1, 0, 1}};
@@ -378,7 +383,7 @@ TEST(Proximities, WedgeOfAVertexTellsWhetherAFaceAroundItIsCloser) {
   EXPECT_NEAR(at_centre().distance, 0.05, 1e-15);
   EXPECT_NEAR(at_centre().outside_wedge[0], 0.03 / 0.05, 1e-12);
 
-  // Vertex 0 becomes the tip of a cone, and the closest point of its surface.
+  // Vertex 0 becomes the tip of a cone, and is now the closest point of this surface.
   for (std::size_t v = 1; v < 5; ++v) mesh.x[v].z() = -1;
   EXPECT_EQ(at_centre().outside_wedge[0], 0);
 }

@@ -1,5 +1,5 @@
-// Compares the nearest point of a surface with the known result for a box; the search by hierarchy equals that over all
-// triangles, bit by bit.
+// Compares the nearest point of a surface with the known result for a box. The search in the hierarchy must equal the
+// search over all triangles bit by bit.
 #include "physics/collision/proximity/surface_point.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace {
 
 using testing::random_vec;
 
-// The signed distance to a box is known: outside, the distance to its nearest point; inside, minus the minimum depth.
+// The signed distance to a box is known: outside, the distance to its nearest point; inside, the smallest depth below a
+// face, negative.
 TEST(NearestPoint, TellsTheSignedDistanceToABox) {
   const Vec3 half(0.1, 0.2, 0.05);
   const mesh::Mesh box = mesh::make_box(2 * half, 0, 1);
@@ -55,8 +56,8 @@ testing::TestMesh as_test_mesh(const mesh::Mesh& mesh) {
   return {mesh.positions, {mesh.topology.triangles.begin(), mesh.topology.triangles.end()}};
 }
 
-/// Still boxes with many equally near faces; a sphere and a box; a folded sheet and a sphere; a flat open sheet alone;
-/// a soup with triangles that are equal or have no area.
+/// Scenes: two still boxes, with many equally near faces; a sphere and a box; a folded sheet and a sphere; a single
+/// flat open sheet; random triangles, some equal and some without area.
 std::vector<Fitted> fitted() {
   const auto box = as_test_mesh(mesh::make_box(Vec3(0.8, 0.6, 0.4), 0, 4)),
              sphere = as_test_mesh(mesh::make_sphere(0.5, 16));
@@ -78,7 +79,7 @@ TEST(NearestPoint, ByHierarchyHasTheBitsOfThatOfAllTriangles) {
   for (const Fitted& scene : fitted())
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
       for (int i = 0; i < 500; ++i) {
-        // The point is anywhere, at a vertex, or in the middle of a box or sphere, where several faces are equally far.
+        // The point is random, a vertex, or in the middle of a box or sphere, where several faces are equally near.
         const Index vertex =
             scene.surfaces[s].first_vertex + static_cast<Index>(generator() % 1000) % scene.surfaces[s].vertex_count;
         const Vec3 p = i % 10 == 0 ? scene.x[vertex] : i % 10 == 1 ? Vec3(0, 0, 0.01 * i) : random_vec(generator);
@@ -106,7 +107,8 @@ TEST(NearestPoint, LooksAtFacesOfOneDirectionAloneWhereThereAreAny) {
   EXPECT_GT(none, 50);
 }
 
-// The point is deep inside and near a side. The query asks for the bottom, where the cloth entered.
+// The point is deep inside, near a side. The query asks for the distance to the bottom, through which the cloth
+// entered.
 TEST(NearestPoint, OfOneDirectionIsNotThatOfTheNearestSide) {
   const Fitted scene({as_test_mesh(mesh::make_box(Vec3(0.2, 0.2, 0.1), 0, 1))}, 1, 0, 0);
   const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, -Vec3::UnitZ());
@@ -175,7 +177,7 @@ TEST(FindCrossing, TellsWhereOnTheFirstTriangleAndNothingForTrianglesApart) {
   for (int c = 0; c < 3; ++c) place += (*weights)[c] * x[c];
   EXPECT_NEAR(place[2], 0, 1e-15);
   EXPECT_NEAR(place[1], 0, 1e-15);
-  // The two triangles intersect in a segment along x; this is its midpoint.
+  // The two triangles intersect along a segment in x; the result is its midpoint.
   const double end = 5.0 / 10;  // where the edge from the first to the last corner pierces the other triangle
   EXPECT_NEAR(place[0], 0.5 * end, 1e-15);
   EXPECT_FALSE(

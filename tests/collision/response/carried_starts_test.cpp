@@ -1,4 +1,4 @@
-// A step in the frame of a turning obstacle: a thin blade sweeps into cloth that is 0.1 mm in front of it.
+// The step is solved in the frame of a turning obstacle: a thin blade moves into cloth that is 0.1 mm in front of it.
 #include "physics/collision/response/carried_starts.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 constexpr double kGap = 1e-4;  // [m]
 
 /// Vertices 0 to 5 are two triangles of cloth, one beside the face of the other. Vertices 6 to 8 are a blade of 0.6 m
-/// along x, which turns about z and moves along x during the step.
+/// along x, which rotates about z and moves along x during the step.
 class BeforeATurningBlade : public ::testing::TestWithParam<double> {
  protected:
   BeforeATurningBlade() {
@@ -65,7 +65,8 @@ TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
 
 INSTANTIATE_TEST_SUITE_P(By, BeforeATurningBlade, ::testing::Values(0.05, 0.3, 1.0));
 
-// A press comes down on cloth that lies on a floor. Where the press would carry it, the cloth would be below the floor.
+// A press comes down on cloth that lies on a floor. At the start that is carried along with the press, the cloth would
+// be below the floor.
 TEST(CarriedStarts, ClothIsNotCarriedThroughAnObstacleThatStands) {
   std::vector<Vec3> x_t0;
   for (const double z : {0.0, kGap, -2.5 * kGap})  // cloth, press, floor

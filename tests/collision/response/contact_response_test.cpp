@@ -1,4 +1,4 @@
-// Which contacts become prescribed velocities (walls) and which become springs.
+// Tests which contacts become prescribed velocities (walls), and which become springs.
 #include "physics/collision/response/contact_response.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kResponseStep = 0.01;  // [s]
 
-/// Particle 1 over a still obstacle at `height` [m].
+/// Contact of particle 1, at `height` [m] over a still obstacle. `side`: −1 reverses the normal.
 Contact over_floor(double height, double side = 1) {
   Contact contact;
   contact.particles = {0, 1, 0, 0};
@@ -55,7 +55,7 @@ TEST(ContactResponse, AParticleOnAnObstacleGetsAWallWhateverItsSide) {
   }
 }
 
-// A wall moves with its obstacle, by 0.5 mm upward during the step.
+// A wall has the motion of its obstacle, here 0.5 mm upward during the step.
 TEST(ContactResponse, AWallGoesWithItsObstacle) {
   Response of(ResponseForm::velocity_constraints, 0.002);
   Contact contact = over_floor(0.002);
@@ -75,7 +75,7 @@ TEST(ContactResponse, AllOtherContactsAreSpringsInEitherForm) {
   Contact of_an_edge = over_floor(0.002);
   of_an_edge.weights = {0.4, 0.6, 0, 0};
   of.response.add(of_an_edge, of.x_t0);
-  // Pinched: the particle is on the wrong side, where no wall may hold it.
+  // The particle is pinched: it is on the wrong side, where no wall may hold it.
   std::vector<Vec3> inside = of.x_t0;
   inside[1].z() = -0.001;
   of.response.add(over_floor(-0.001), inside);

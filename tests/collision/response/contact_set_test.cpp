@@ -22,7 +22,7 @@ Vec3 random_vector(double size) {
   return {x, y, z};
 }
 
-/// Contact normal force at 500 N/m [N] and its slope [N/m]; `depth` is relative to the range and at most 1.
+/// Contact normal force at 500 N/m [N] and its slope [N/m]; `depth` is relative to kRange and at most 1.
 double normal_force_at(double depth) {
   return 500 * kRange * depth * (1 + numerics.contact.stiffening * std::pow(depth, 4));
 }
@@ -30,7 +30,7 @@ double slope_at(double depth) {
   return 500 * (1 + 5 * numerics.contact.stiffening * std::pow(depth, 4));
 }
 
-/// A vertex of cloth 0.4 ranges above the middle of a triangle of cloth, in a slanted frame.
+/// A vertex of cloth in a slanted frame, 0.4 kRange above the middle of a triangle of cloth.
 struct VertexOnFace {
   std::vector<Vec3> x;
   Contact contact;
@@ -62,7 +62,7 @@ struct VertexOnFace {
   double energy(const std::vector<Vec3>& at) const {
     return contact.stiffness * kRange * kRange * energy_at((kRange - gap(at)) / kRange);
   }
-  /// ∫ d (1 + c d⁴) for a depth d in ranges; beyond one range the force continues along its tangent.
+  /// ∫ d (1 + c d⁴) for a depth d relative to kRange; beyond 1, the force continues along its tangent.
   static double energy_at(double depth) {
     const double c = numerics.contact.stiffening;
     if (depth <= 0) return 0;
@@ -76,7 +76,7 @@ struct VertexOnFace {
   }
 };
 
-/// The lagged state before the first linearisation of a step.
+/// Lagged values, as before the first linearisation of a step.
 ContactLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
   ContactLag lag;
   contacts.update(x, lag);
@@ -113,7 +113,7 @@ TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
         EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-6);
       }
   }
-  // Some trials are within the range and some are outside.
+  // Some trials are within the range, others are outside.
   EXPECT_GT(pushing, 5);
   EXPECT_LT(pushing, 20);
 }
@@ -145,7 +145,7 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const VertexOnFace pair(mu), smooth(0);
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const Vec3 n = pair.contact.normal;
-  // Friction uses the normal force at the start before the first solve.
+  // Before the first solve, friction uses the normal force at the start.
   const double normal_force = normal_force_at(0.6);
   const double stick = numerics.contact.stick_velocity * kSlidingStep;
   const Vec3 direction = n.unitOrthogonal();
@@ -216,7 +216,7 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
   for (int k = 2; k < numerics.newton.slow_after - 1; ++k) contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.2),
               1e-3 * mu * normal_force_at(0.2));  // accuracy of the depth search
-  // Within a step the number of updates is limited, so that normal force and slip cannot alternate for ever.
+  // The number of updates in a step is limited, so that normal force and slip cannot alternate without end.
   contacts.update(x, lag);
   const double last = tangential();
   x[0] -= 0.2 * kRange * pair.contact.normal;
@@ -256,7 +256,7 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   return k;
 }
 
-// Uses the tangents of the start.
+// Forces of the linear system, with the tangents of the start.
 std::vector<Vec3> linear_forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   contacts.add_linear_forces(x, lag_at_start(contacts, x), f);
@@ -294,7 +294,7 @@ solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Ve
 
 TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
   for (double rate : {1.0, 2.0}) {
-    // Frictionless contacts may be anywhere within the range; rough ones must not have slipped yet.
+    // Frictionless contacts may be anywhere within the range; contacts with friction must not have slipped yet.
     const VertexOnFace smooth(0), rough(0.4);
     std::vector<Vec3> x = smooth.jittered(0.0003);
     ASSERT_EQ(smooth.set().count_active(x), 1);
@@ -308,7 +308,7 @@ TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
   }
 }
 
-/// A vertex that slips on a face; slips are relative to the stick slip.
+/// A vertex that slips on a face. Slips are relative to the stick slip ε.
 struct Slipping : VertexOnFace {
   ContactSet contacts;
   ContactLag lag;
@@ -324,12 +324,12 @@ struct Slipping : VertexOnFace {
     at[0] += numerics.contact.stick_velocity * kSlidingStep * (slip * along + sideways * across);
     return at;
   }
-  /// Updates the lag at the result of an iteration.
+  /// Updates the lagged values at the result of an iteration.
   Slipping& update(double slip, double sideways = 0) {
     contacts.update(slipped(slip, sideways), lag);
     return *this;
   }
-  /// Friction in the linear system, relative to the normal force [1].
+  /// Friction in the linear system, relative to the normal force.
   Vec3 friction(double slip, double sideways = 0) const {
     std::vector<Vec3> f(x.size(), Vec3::Zero());
     contacts.add_linear_forces(slipped(slip, sideways), lag, f);
@@ -394,12 +394,12 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
     pair.update(slip);
     const bool sticks = turn < numerics.contact.max_resticks;
     EXPECT_EQ(pair.lag.frictions[0].sticks, sticks) << turn;
-    // Friction follows the tangent at zero slip, or slides.
+    // Friction follows the tangent at zero slip while it sticks; otherwise it has its full size.
     EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
     pair.update(slip);
     EXPECT_FALSE(pair.lag.frictions[0].sticks) << turn;
   }
-  // The next step starts again.
+  // In the next step, friction can stick again.
   pair.lag = {};
   pair.update(4).update(-4);
   EXPECT_TRUE(pair.lag.frictions[0].sticks);
@@ -468,25 +468,26 @@ TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   const ContactSet contacts = pair.set();
   ContactLag lag = lag_at_start(contacts, pair.x);
   EXPECT_NEAR(lag.depths[0], 0.6 * kRange, 1e-15);
-  // Pressed: the force follows the tangent, below the law, until the depth of linearisation matches the actual depth.
+  // The vertex is pressed: the force follows the tangent, below the law, until the depth of linearisation is the actual
+  // depth.
   std::vector<Vec3> x = pair.x;
   x[0] -= 0.3 * kRange * pair.contact.normal;
   std::vector<Vec3> f(4, Vec3::Zero());
   contacts.add_linear_forces(x, lag, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
   EXPECT_LT(f[0].norm(), normal_force_at(0.9));
-  // The next tangent is taken at the depth where the law gives that force, not at the iterate.
+  // The next tangent is taken at the depth at which the law gives that force, not at the iterate.
   contacts.update(x, lag);
   EXPECT_LT(lag.depths[0], 0.89 * kRange);
   EXPECT_NEAR(normal_force_at(lag.depths[0] / kRange), f[0].norm(),
               1e-8 * f[0].norm());  // accuracy of the depth search
-  // Finally both agree to rounding; otherwise a step would satisfy the tangents and not the laws.
+  // Finally, both depths agree to rounding; otherwise a step would satisfy the tangents, but not the laws.
   for (int k = 0; k < 8; ++k) contacts.update(x, lag);
   EXPECT_NEAR(lag.depths[0], 0.9 * kRange, 1e-8 * kRange);
   std::fill(f.begin(), f.end(), Vec3::Zero());
   contacts.add_linear_forces(x, lag, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.9), 1e-14 * normal_force_at(0.9));
-  // Lifted off: no contact pulls, and the next contact starts with the minimum slope.
+  // The vertex is lifted off: no contact pulls, and the next contact starts with the minimum slope.
   x[0] += kRange * pair.contact.normal;
   contacts.update(x, lag);
   EXPECT_EQ(lag.depths[0], 0);

@@ -1,4 +1,4 @@
-// The tangent of friction as the linear solver sees it.
+// The tangent of friction that the linear system contains.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,7 +9,7 @@
 namespace weft::collision {
 namespace {
 
-// Friction that an iterate exceeds must not make the matrix indefinite.
+// If an iterate exceeds the friction cone, the friction must not make the matrix indefinite.
 TEST(FrictionTangent, IsNeverNegativeHoweverLargeTheFriction) {
   const Vec3 n = Vec3(1, 2, 3).normalized(), along = n.unitOrthogonal(), beside = n.cross(along);
   const Mat3 across = Mat3::Identity() - n * n.transpose();

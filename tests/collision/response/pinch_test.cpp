@@ -1,4 +1,5 @@
-// Pinched cloth, pair by pair: which pairs are exempt, in which direction they are pushed back, and what is reported.
+// Pinched cloth, pair by pair: which pairs are exempt, in which direction the cloth is pushed back, and what is
+// reported.
 #include "physics/collision/response/pinch.hpp"
 
 #include <gtest/gtest.h>
@@ -59,7 +60,7 @@ TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
   pinched_.note_origins(broad_phase_, x_);
   EXPECT_TRUE(pinched_.exempts(with(1)));
   EXPECT_FALSE(pinched_.exempts(with(2)));
-  // The cloth is nearer to the bottom than to the top, through which it entered.
+  // The cloth is nearer to the bottom than to the top, through which it entered the box.
   move_cloth_to(-0.07);
   const std::vector<PinchedPairs::Push> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
   ASSERT_EQ(pushes.size(), 3U);
@@ -73,7 +74,7 @@ TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
   }
 }
 
-// The obstacle that caught the cloth has turned on its side since, so that the other faces are the nearest.
+// The obstacle has rotated by 90 degrees since it pinched the cloth, so that other faces are nearest now.
 TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -85,7 +86,8 @@ TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned
   for (const auto& [push, has_room] : pushes) EXPECT_LT((push.normal - Vec3::UnitX()).norm(), 1e-12);
 }
 
-// The upper box comes down into the lower one. Cloth that is pushed up out of the lower box would enter the upper one.
+// The upper box comes down into the lower one. If the cloth were pushed up out of the lower box, it would enter the
+// upper one.
 TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -125,7 +127,7 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
     pinched_.renew(scene_.triangles, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), 1U) << z;
   }
-  // The tested corner is back outside, the others are not.
+  // The tested corner is outside again; the other corners are not.
   move_cloth_to(0.11);
   x_[1][2] = x_[2][2] = 0.05;
   pinched_.renew(scene_.triangles, broad_phase_, x_);
@@ -135,8 +137,8 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   EXPECT_TRUE(pinched_.empty());
 }
 
-// Another cloth triangle has the same corners. Cloth that passes through a limb has no separating plane beside it
-// either, so pairs of other triangles with that limb are exempt too.
+// A second cloth triangle has the same corners. Where cloth passes through a limb, triangles beside it have no
+// separating plane either, so their pairs with this limb are exempt too.
 TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
   pinched_.add(with(1));
   const std::vector<Triangle> cloth{{0, 1, 2}, {0, 2, 1}};
@@ -153,8 +155,8 @@ TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
   }
 }
 
-// Two corners of the cloth are in the lower box, one is outside. Triangles that only share the outer one keep their
-// planes: else cloth under tension would be pulled in, ring after ring.
+// Two corners of the cloth are in the lower box, one is outside. Triangles that have only the outer corner keep their
+// planes; otherwise cloth under tension would be pulled into the box, one ring of triangles after another.
 TEST_F(PinchedTriangle, TakesNothingInBesideACornerThatIsOnItsSide) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -170,12 +172,12 @@ TEST_F(PinchedTriangle, TakesNothingInBesideACornerThatIsOnItsSide) {
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
   pinched_.renew(scene_.triangles, broad_phase_, x_);
   EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
-  pinched_.add(with(1));  // it had no room in this step either
+  pinched_.add(with(1));  // the pair had no clearance in this step either
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
 }
 
-// A ball of 0.1 m reached one triangle of cloth at its top. The next one crosses it where it is inclined by 40 degrees,
-// and leaves it there.
+// A ball of 0.1 m touched one triangle of cloth at its top. The next triangle crosses the ball at an inclination of 40
+// degrees, and must leave it there.
 TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
   const auto at = [](double degrees, double radius, double y) {
     const double angle = degrees * std::numbers::pi / 180;
@@ -200,7 +202,7 @@ TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
   ASSERT_EQ(pinched.size(), 2U);
   EXPECT_EQ(pinched.origins().at({cloth[0], 1, 0}).faces, std::vector<Triangle>{top});
   for (const Triangle& face : pinched.origins().at({cloth[1], 1, 0}).faces)
-    EXPECT_GT(face_normal(face, x).dot(at(40, 1, 0)), std::cos(0.3));  // it crosses within 15 degrees of there
+    EXPECT_GT(face_normal(face, x).dot(at(40, 1, 0)), std::cos(0.3));  // less than 15 degrees away from the crossing
 }
 
 // All corners of the cloth are outside the lower box; a corner of the box pierces the cloth.

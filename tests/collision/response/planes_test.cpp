@@ -1,4 +1,4 @@
-// Separating planes are remembered, and saving them loses nothing.
+// Tests that separating planes are remembered, and that saving and restoring them loses nothing.
 #include "physics/collision/response/planes.hpp"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ struct RandomPairs {
 
 std::vector<CornerPair> failing(Planes& planes, const RandomPairs& of, std::span<const Vec3> x_t0,
                                 std::span<const Vec3> x_t1, PlaneKinds which = PlaneKinds::all) {
-  const std::vector<float> moved(of.x.size(), 1e9F);  // no pair is certified by its gap alone
+  const std::vector<float> moved(of.x.size(), 1e9F);  // so large that no pair is separated by its gap alone
   const std::vector<std::uint8_t> changed(of.x.size(), 1);
   std::vector<CornerPair> found;
   planes.find_failing(of.x, x_t0, x_t1, moved, changed, found, nullptr, which);
@@ -59,7 +59,7 @@ TEST(Planes, APlaneThatIsKnownIsTriedBeforeAnyIsSearchedFor) {
   RandomPairs pairs(3000);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
-  PairList near;  // for some of these the first check knows no plane
+  PairList near;  // pairs near each other, for some of which the first check finds no plane
   planes.set_moved(std::vector<float>(pairs.x.size(), 0.0F));
   planes.append_closer(1e-4, 0, planes.size(), near);
   std::erase_if(pairs.pairs, [&](const TrianglePair& pair) { return std::ranges::find(near, pair) != near.end(); });
@@ -124,7 +124,7 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
   EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);
 }
 
-// A first guess checks pairs of cloth with turning planes only, pairs with obstacles also with planes for parts of the
+// A first guess checks pairs of cloth only with turning planes; pairs with obstacles also with planes for parts of the
 // step.
 TEST(Planes, ThatTurnAreAllThatIsSoughtForClothAlone) {
   RandomPairs pairs(3000);
@@ -138,7 +138,7 @@ TEST(Planes, ThatTurnAreAllThatIsSoughtForClothAlone) {
   EXPECT_EQ(failing(of_obstacles, pairs, pairs.x, end, PlaneKinds::turning).size(), without_any);
 }
 
-// A pair whose triangles have moved less than its gap stays separated without a check.
+// A pair whose triangles have moved by less than its gap is separated without a check.
 TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
   RandomPairs pairs(500);
   Planes planes(pairs.triangles);

@@ -1,5 +1,5 @@
-// Planes that separate two triangles for a whole step and turn with them. For random motions, separation_exact_test.cpp
-// compares the separating planes with exact predicates.
+// Planes that separate two triangles for a whole step, and turn with them. separation_exact_test.cpp compares
+// separating planes with exact predicates, for random motions.
 #include "physics/collision/response/separating_plane.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ bool any_direction_separates(const std::vector<Vec3>& x_t0, const std::vector<Ve
   return false;
 }
 
-// A separating plane turns with the layers by up to 90 degrees; beyond that, the step is divided.
+// A separating plane turns with the layers by up to 90 degrees. For larger angles, the step is divided.
 TEST(SeparatingPlane, LayersThatTurnTogetherHaveAPlaneThatTurnsWithThem) {
   for (const double angle : {20.0, 45.0, 80.0, 100.0, 140.0}) {
     SCOPED_TRACE(angle);

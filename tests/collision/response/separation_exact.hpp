@@ -1,4 +1,4 @@
-// Compares the separating planes of Separation with exact decisions, family by family.
+// Compares the separating planes of Separation with exact decisions, for each family of queries.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,21 +15,22 @@
 
 namespace weft::collision {
 
-/// Results of the queries of one family.
+/// Results of the queries of one family. A pair is certified if it has a separating plane, else refused.
 struct SeparationTally {
   int queries = 0, meeting = 0, certified = 0, in_integers = 0;
   int missed = 0;    ///< certified, but they meet
-  int touching = 0;  ///< certified, but they touch within rounding at the start, which had to be without contact
+  int touching = 0;  ///< certified, but touching within rounding errors at the start, although starts are made without
+                     ///< contact
   int needless_refusals = 0;  ///< refused, although 1e-5 m apart and moving by less than 0.8 of the distance
-  int benign = 0;
+  int benign = 0;             ///< queries with such a distance and motion
   // Counts of pairs that stay apart, by distance at the start [m]: below 1e-8, 1e-7, …, 1e-2, above.
   std::array<int, 8> apart{}, refused{};
 };
 
-/// Where the search for the separating planes of a step begins.
+/// Positions from which the search for separating planes of a step begins.
 enum class Watched {
   at_start,    ///< from the start of this step
-  on_the_way,  ///< from the middle of the step, after one check of its first quarter, so that directions are known
+  on_the_way,  ///< from the middle of the step, after a check of its first quarter has found directions
   elsewhere    ///< from other positions, as in an earlier step
 };
 
@@ -74,6 +75,7 @@ inline double relative_motion(const support::MotionQuery& q) {
   return max_motion;
 }
 
+/// Decides a query exactly, and adds the result to `tally`.
 inline void judge(const support::MotionQuery& query, bool refused, SeparationTally& tally) {
   const support::Contact contact = support::find_contact(query.a, query.b);
   ++tally.queries;
@@ -103,13 +105,14 @@ inline void judge(const support::MotionQuery& query, bool refused, SeparationTal
   }
 }
 
-/// Judges `count` queries of a family; the same seed gives the same queries.
+/// Judges `count` queries of a family. The same seed gives the same queries.
 inline SeparationTally judge_family(support::QueryFamily family, int count, unsigned seed) {
   std::mt19937 engine(seed);
   SeparationTally tally;
   int batches = 0;
   while (tally.queries < count) {
-    // Batch sizes differ: the coarse first check of eight pairs is as accurate as the largest coordinate allows.
+    // Batch sizes differ, because the coarse first check of eight pairs at once is only as accurate as their largest
+    // coordinate allows.
     const int size = std::array{1, 8, 3, 12}[batches / 3 % 4];
     const auto watched = static_cast<Watched>(batches++ % 3);
     std::vector<support::MotionQuery> queries;
@@ -124,7 +127,7 @@ inline SeparationTally judge_family(support::QueryFamily family, int count, unsi
   return tally;
 }
 
-/// Judges every family, prints a table and asserts what must hold.
+/// Judges every family, prints a table, and expects that nothing is missed.
 inline void expect_nothing_missed(int count_per_family, unsigned seed) {
   std::printf("%-18s %8s %8s %9s %8s %6s %6s | refused of those that stay apart, by distance at the start [m]\n",
               "family", "queries", "meeting", "certified", "integers", "missed", "at t0");

@@ -1,5 +1,5 @@
-// Compares separating planes with exact decisions for meshes: pairs with a common vertex, vertex star by vertex star,
-// and the result of corrections.
+// Compares separating planes with exact decisions for meshes: pairs with a common vertex, in each vertex star, and the
+// results of corrections.
 #pragma once
 
 #include <numbers>
@@ -77,11 +77,11 @@ struct MovingMesh {
 
 enum class StarKind {
   calm,         ///< closed and nearly flat, motions up to a thousandth: certified without exception
-  closed,       ///< one turn; flat, conical or wavy; every vertex moves on its own
+  closed,       ///< the triangles go once around the centre; flat, conical or wavy; every vertex moves on its own
   inverted,     ///< a cone or saddle that is turned inside out
   turned,       ///< rotated by up to half a turn about any axis, along straight lines
-  open,         ///< at a border; up to 1.8 turns, as in a spiral stair
-  collapsing,   ///< a spiral stair whose ends pass through each other
+  open,         ///< at a border; up to 1.8 turns, as a spiral staircase
+  collapsing,   ///< a spiral staircase whose ends pass through each other
   around_twice  ///< closed after two turns: intersects at the start, with all orientations positive
 };
 inline constexpr std::array kStarKinds = {StarKind::calm, StarKind::closed,     StarKind::inverted,    StarKind::turned,
@@ -91,7 +91,7 @@ inline const char* name(StarKind kind) {
   return kNames[static_cast<std::size_t>(kind)];
 }
 
-/// Vertex 0 is the centre. The size is 1.
+/// Makes a vertex star of size 1; vertex 0 is its centre.
 inline MovingMesh make_star_of_size_one(StarKind kind, std::mt19937& engine) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);
@@ -137,6 +137,7 @@ inline MovingMesh make_star_of_size_one(StarKind kind, std::mt19937& engine) {
   return mesh;
 }
 
+/// Makes a vertex star of random size, orientation and place.
 inline MovingMesh make_fan(StarKind kind, std::mt19937& engine) {
   MovingMesh mesh = make_star_of_size_one(kind, engine);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -153,7 +154,8 @@ struct StarTally {
   int fans = 0, queries = 0, meeting = 0, certified = 0, missed = 0, refused_apart = 0;
 };
 
-/// One query for each pair with a common vertex: the edge of either side against the other triangle.
+/// Makes one query for each side of each pair with a common vertex: the edge opposite to this vertex against the other
+/// triangle.
 inline void judge_star(const MovingMesh& mesh, Watched watched, StarTally& tally) {
   // An edge against a triangle, both as sets of vertices.
   using Key = std::pair<std::set<Index>, std::set<Index>>;
@@ -211,7 +213,7 @@ inline void expect_nothing_missed_in_fans(int fans_per_kind, unsigned seed) {
 
 // --- Corrections -----------------------------------------------------------------------------------------------------
 
-/// Adds a component if all pairs are 1e-5 m apart: below 1e-6 m nothing can be certified.
+/// Adds a component if all its pairs are at least 1e-5 m apart: below 1e-6 m, no pair can be certified.
 inline bool add_component(MovingMesh& mesh, const std::vector<Vec3>& x, const std::vector<Triangle>& triangles) {
   MovingMesh larger = mesh;
   const auto first = static_cast<Index>(mesh.x_t0.size());
@@ -260,13 +262,13 @@ inline MovingMesh make_cluster(std::mt19937& engine, double motion) {
   return cluster;
 }
 
-/// After enforce() no pair of a cluster meets at any time of the step.
+/// Expects that after enforce(), no pair of a cluster meets at any time of the step.
 inline void expect_nothing_meets_after_enforcement(int count, unsigned seed) {
   std::mt19937 engine(seed);
   int would_meet = 0, queries = 0, with_vertex = 0, given_up = 0;
   for (int k = 0; k < count; ++k) {
     MovingMesh cluster = make_cluster(engine, std::pow(10.0, -4 + 4.0 * k / count));
-    // One cluster in three is free, one has a moving obstacle as its first component, one has held vertices.
+    // One cluster in three is free; one has a moving obstacle as its first component; one has held vertices.
     const bool obstacle = k % 3 == 1, held = k % 3 == 2;
     for (Index v : cluster.triangles[0])
       if (obstacle) cluster.movable[v] = 0;
@@ -292,7 +294,7 @@ inline void expect_nothing_meets_after_enforcement(int count, unsigned seed) {
         EXPECT_EQ(cluster.x_t1[v], wanted[v]);
       }
     }
-    // An obstacle may leave no clearance; without obstacles, pairs that start apart can always return to the start.
+    // An obstacle may leave no clearance. Without obstacles, pairs that start apart can always return to the start.
     if (!obstacle) {
       EXPECT_TRUE(report.separated) << "cluster " << k;
     }

@@ -1,4 +1,4 @@
-// More than a million queries; separation_exact_test.cpp runs fewer of the same.
+// More than a million queries. separation_exact_test.cpp runs fewer queries of the same kind.
 #include "collision/response/separation_exact_meshes.hpp"
 
 namespace weft::collision {

@@ -1,4 +1,4 @@
-// Checks with an exact judge, at samples of the step, that no two triangles meet.
+// Checks with exact predicates, at samples of the step, that no two triangles meet.
 #include "physics/collision/response/separation.hpp"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,8 @@ struct LonePairs {
   }
 };
 
-/// Random triangles of up to 0.1 m, at least 1e-4 m and less than their size apart, which move by up to `motion` [m].
+/// Pairs of random triangles of up to 0.1 m. They are between 1e-4 m and their size apart, and move by up to `motion`
+/// [m].
 LonePairs random_pairs(int count, double motion, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -47,7 +48,7 @@ LonePairs random_pairs(int count, double motion, unsigned seed) {
     for (int k = 0; k < 6; ++k) corners.push_back(vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
     const Triangle a{0, 1, 2}, b{3, 4, 5};
     if (closest_features({a, b}, corners).points.distance_sq < 1e-8) continue;
-    // All features can be apart although an edge pierces a face.
+    // Features can be apart although an edge pierces a face.
     const std::array<Triangle, 1> face_a{a}, face_b{b};
     const support::JudgedObject objects[] = {{"a", true, corners, face_a}, {"b", true, corners, face_b}};
     if (!support::judge(objects).pairs.empty()) continue;
@@ -99,12 +100,12 @@ TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
 }
 
 TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
-  // With motions of a tenth of their size a few per cent meet; not many more may be refused a separating plane.
+  // With motions of a tenth of their size, a few per cent of the pairs meet; not many more may be refused.
   const LonePairs pairs = random_pairs(200, 0.005, 2);
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
 
-// The result for vertex stars depends on positions only: the remembered result must equal that of a fresh check.
+// The result for vertex stars depends only on positions, so a remembered result must equal that of a fresh check.
 TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
   constexpr Index kSide = 6;
   std::vector<Triangle> triangles;
@@ -153,7 +154,7 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
     EXPECT_TRUE(failing(pairs).empty());
     EXPECT_TRUE(meeting(pairs).empty());
 
-    // Only pairs that failed have moved.
+    // Only vertices of failing pairs have moved.
     double largest = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (wanted[i] == pairs.x_t1[i]) continue;
@@ -165,8 +166,8 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
   }
 }
 
-// A triangle slides by 25 mm onto a facet, and ends 0.01 mm too low. (Along the line between the closest points of the
-// start, it would be pushed back by 17 mm.)
+// A triangle slides by 25 mm onto a facet, and ends 0.01 mm too low. (A push along the line between the closest points
+// of the start would move it back by 17 mm.)
 TEST(Separation, PushesAlongTheShortestOfTheDirectionsThatSeparateAtTheStart) {
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
   const std::vector<TrianglePair> pairs{{0, 1}};
@@ -227,7 +228,7 @@ TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
 }
 
 TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
-  // A triangle between two plates that pass through each other.
+  // A triangle is between two plates that pass through each other.
   const auto triangle_at = [](double z) { return std::vector<Vec3>{{-1, -1, z}, {1, -1, z}, {0, 1, z}}; };
   const auto three = [&](double low, double middle, double high) {
     std::vector<Vec3> x;
@@ -248,7 +249,7 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
               report.unseparated_pair == (CornerPair{triangles[1], triangles[2]}));
   for (std::size_t i : {0u, 1u, 2u, 6u, 7u, 8u}) EXPECT_EQ(x_t1[i], wanted[i]);
 
-  // If some clearance remains, the triangle moves there.
+  // If some clearance remains between the plates, the triangle moves there.
   x_t1 = three(0.15, 0.1, 0.16);
   EXPECT_TRUE(separation.enforce(x_t0, x_t1, movable).separated);
   for (std::size_t i : {3u, 4u, 5u}) {
@@ -279,7 +280,7 @@ TEST(ClosestFeatures, AreThoseOfADenseSearch) {
         for (int k = 0; k <= kCuts; ++k)
           for (int l = 0; k + l <= kCuts; ++l) minimum = std::min(minimum, (point(a, i, j) - point(b, k, l)).norm());
     EXPECT_LE(distance, minimum + 1e-14);
-    // The sample nearest to a closest point is at most half a cut of an edge of 0.17 m away from it, on each triangle.
+    // On each triangle, a sample is at most half a cut of an edge of 0.17 m away from the closest point.
     EXPECT_GT(distance, minimum - 2 * 0.17 / kCuts);
   }
 }

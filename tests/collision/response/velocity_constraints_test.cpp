@@ -16,7 +16,7 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr double kStep = 0.01, kDMin = 0.001, kMass = 2e-4;
 
-/// One particle in front of walls; each test gives the forces on it.
+/// One particle in front of walls; each test sets the forces on it.
 struct OneParticle {
   VelocityConstraints constraints{{kMass}};
   std::vector<Vec3> x_t0{Vec3::Zero()}, x_t1{Vec3::Zero()};
@@ -26,7 +26,7 @@ struct OneParticle {
     constraints.add(0, normal, distance, kDMin, motion, friction);
   }
   void prepare() { constraints.prepare(x_t0, x_t1); }
-  /// Revises the constraints after a solve with end x_end and this constraint force.
+  /// Revises the constraints after a solve with the end x_end and the constraint force `force`.
   int revise(const Vec3& x_end, const Vec3& force) {
     const std::vector<Vec3> at{x_end};
     return constraints.revise(x_t0, at, [&](Index) { return force; });
@@ -81,7 +81,7 @@ TEST(VelocityConstraints, MoveWithTheObstacle) {
   EXPECT_NEAR(particle.prescribed().v_end.z(), motion.z() / kStep, 1e-13);
 }
 
-// A plate rises through a floor, found before or after it.
+// A plate rises through a floor. The particle meets the plate before or after the floor.
 TEST(VelocityConstraints, MoveWithTheStricterOfTwoParallelWalls) {
   const Vec3 motion(0.001, 0, 0.002);
   for (const bool plate_first : {false, true}) {
@@ -97,7 +97,7 @@ TEST(VelocityConstraints, MoveWithTheStricterOfTwoParallelWalls) {
 }
 
 TEST(VelocityConstraints, HoldAParticleInACornerByAllItsWalls) {
-  // A right-angled and an acute valley; the second needs both walls at once, not one after the other.
+  // A right-angled and an acute valley; in the acute one, both walls must act at once, not one after the other.
   for (double slope : {1.0, 3.0}) {
     const Vec3 left = Vec3(slope, 0, 1).normalized(), right = Vec3(-slope, 0, 1).normalized();
     OneParticle particle;
@@ -137,7 +137,7 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
       particle.x_t1[0] = Vec3(0, 0, -1e-4);
       particle.prepare();
     };
-    // At rest for three steps: the first finds the normal force, and two slow ones make the particle stick.
+    // The particle rests for three steps: the first gives the normal force; after two slow steps, the particle sticks.
     for (int step = 0; step < 3; ++step) {
       begin();
       particle.revise(Vec3::Zero(), weight * Vec3::UnitZ());
@@ -169,10 +169,10 @@ TEST(VelocityConstraints, AParticleBetweenTwoWallsSticksHoweverManyOtherWallsItH
     particle.wall(Vec3(-1, 0, 1).normalized(), kDMin, Vec3::Zero(), kMu);
     for (int k = 0; k < numerics.walls.max_walls; ++k)
       particle.wall(Vec3(std::cos(k), std::sin(k), 2).normalized(), 100 * kDMin, Vec3::Zero(), kMu);
-    particle.x_t1[0] = Vec3(0.001, 0, -0.01);  // passes the second wall farther
+    particle.x_t1[0] = Vec3(0.001, 0, -0.01);  // the particle passes the second wall by a larger distance
     particle.prepare();
   };
-  // The load presses more against the first wall, so that the order of the two walls changes between the projections.
+  // The force presses more against the first wall, so the order of the two walls changes between the projections.
   for (int step = 0; step < 3; ++step) {
     begin();
     particle.revise(Vec3::Zero(), kMass * kGravity * Vec3(0.3, 0, 1));
@@ -229,7 +229,7 @@ TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWh
   for (const bool goes_on : {true, false})
     for (const Vec3& slip : {Vec3(-0.001, 0.0004, 0), Vec3(3e-7, 4e-7, 0)}) {
       OneParticle particle;
-      // At rest for three steps, then pulled out of the friction cone, then sliding.
+      // The particle rests for three steps, then is pulled beyond the friction cone, then slides.
       for (int step = 0; step < 5; ++step) {
         particle.constraints.begin_step(kStep);
         particle.wall(Vec3::UnitZ(), kDMin, motion, kMu);

@@ -20,7 +20,8 @@ using Pairs = std::set<TrianglePair>;
 constexpr double kWidestReach = 0.02, kBudget = 0.01;
 constexpr int kSheet = 15;
 
-/// A folded sheet and one above it fall fast together and flutter slightly; a third rises from below.
+/// A folded sheet, and a second sheet above it, fall fast together and flutter slightly. A third sheet rises from
+/// below.
 class Falling {
  public:
   Falling() {
@@ -64,7 +65,7 @@ const std::vector<SurfacePair> kAllPairs{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2},
 
 class CoherentDetectionTest : public ::testing::Test {
  protected:
-  /// A separate search, which is independent of what the detection does to its own.
+  /// A separate search, independent of the search inside the detection.
   struct Search {
     BroadPhase broad_phase;
     ProximityFinder finder;
@@ -138,7 +139,7 @@ TEST_F(CoherentDetectionTest, MissesNothingWithinReachAndKeepsClosestPointsWithi
       EXPECT_TRUE(std::ranges::any_of(detection.proximities(), stands_for));
     }
   }
-  // The first two move together and the third arrives, so that steps with and without a new search occur.
+  // The first two sheets move together and the third arrives, so steps with and without a new search occur.
   EXPECT_GT(45 * 6 - found_anew, 60);
   EXPECT_GT(found_anew, 20);
   EXPECT_GT(largest_error, 1e-6);
@@ -158,7 +159,8 @@ TEST_F(CoherentDetectionTest, HoldsForAnySteadyCommonMotionAndNotForARelativeOne
   EXPECT_EQ(update(passing, moved({3, 0, 0}), moved({6, 0, 0})), 1);
 }
 
-// Near pairs that are reused for the predicted end hold for the solved end only within the velocity cones.
+// Near pairs that are reused for the predicted end are valid for the solved end only if it is within the velocity
+// cones.
 TEST_F(CoherentDetectionTest, UpdatedWithinAStepHoldsAllCandidatesOfTheMotionThatCameOut) {
   CoherentDetection detection = make_detection(kAllPairs);
   const std::vector<Vec3> x_t0 = motion_.at(30);
@@ -185,7 +187,7 @@ TEST_F(CoherentDetectionTest, LooksAtWantedPairsOfSurfacesOnly) {
     find(wanted, x_t0, x_t1, needed, fresh);
     expect_all(detection.candidates(), needed);
     ASSERT_FALSE(fresh.empty());
-    // After a fresh search they equal a search with the same detection distance.
+    // After a fresh search, the pairs equal those of a search with the same detection distance.
     const auto vertices = [](std::span<const Proximity> list) {
       std::multiset<std::array<Index, 4>> all;
       for (const Proximity& p : list) all.insert(p.vertices);
@@ -195,7 +197,7 @@ TEST_F(CoherentDetectionTest, LooksAtWantedPairsOfSurfacesOnly) {
   }
 }
 
-// Two triangles with a common edge, folded shut: candidate pairs do not include them.
+// Two triangles with a common edge, folded shut. Candidate pairs do not contain such pairs.
 TEST(CoherentDetectionOfAFold, LooksUpTrianglesWithACommonEdgeOfWhatMayMeetItself) {
   const TestMesh fold{{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 0.5, 0.01}}, {{0, 1, 2}, {1, 0, 3}}};
   const Surface surface = fold.surface();

@@ -72,8 +72,8 @@ SkippedPairs find_skipped_pairs(const TestMesh& mesh, double reach) {
   return find_skipped_pairs<6>(mesh.surface(), mesh.x, mesh.x, reach, {4, 4});
 }
 
-/// A strip of 4 × n vertices that winds around the z axis `turns` times and rises by `pitch` a turn: seen from above it
-/// covers itself, although all its normals are nearly upright.
+/// A strip of 4 × n vertices that winds around the z axis `turns` times, and rises by `pitch` in each turn. Seen from
+/// above, it covers itself, although all its normals are nearly vertical.
 TestMesh spiral_stair(int n, double turns, double pitch) {
   TestMesh mesh;
   for (int i = 0; i < n; ++i)
@@ -96,7 +96,7 @@ TestMesh slit_sheet(int n, int rows, double gap) {
   TestMesh mesh = folded_sheet(n, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   const Index middle = n / 2;
-  // Duplicates the vertices of the slit: triangles on its right get the copies.
+  // Duplicates the vertices of the slit; triangles to its right get the copies.
   for (Index j = 0; j < rows; ++j) {
     const Index left = middle + n * j, right = static_cast<Index>(mesh.x.size());
     mesh.x.push_back(mesh.x[left] + Vec3{gap / 2, 0, 0});
@@ -147,13 +147,13 @@ TEST(NormalCones, LeaveOutNothingWithinReachOfASheetThatCrumplesAtRandom) {
   EXPECT_GT(pairs, 100U);
 }
 
-// All normals are nearly upright; only the contour test shows that the strip covers itself.
+// All normals are nearly vertical; only the contour test detects that the strip covers itself.
 TEST(NormalCones, MissNothingThatLiesOverItselfOnASpiralStair) {
   const SkippedPairs result = find_skipped_pairs(spiral_stair(120, 3, 0.01), 0.02);
   EXPECT_EQ(result.within_reach, 0U);
 }
 
-// All normals are equal; only the border shows that there is a slit.
+// All normals are equal; only the border test detects the slit.
 TEST(NormalCones, MissNothingThatLiesAcrossASlit) {
   const SkippedPairs result = find_skipped_pairs(slit_sheet(17, 8, 0.004), 0.01);
   EXPECT_EQ(result.within_reach, 0U);
@@ -161,7 +161,8 @@ TEST(NormalCones, MissNothingThatLiesAcrossASlit) {
 }
 
 TEST(NormalCones, SeeWhatHappensOnlyDuringTheStep) {
-  // Half a turn in the plane along straight lines: the normals are equal at both ends, and all points coincide halfway.
+  // Half a turn in the plane, along straight lines: normals are equal at start and end, and all points coincide
+  // halfway.
   TestMesh mesh = folded_sheet(12, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   std::vector<Vec3> x_t1;
@@ -190,7 +191,8 @@ TEST(NormalCones, MissNothingAcrossANotchInAStarShapedBorder) {
   }
 }
 
-// Half a ball and the ring around it: all normals together point in all directions, those of small patches do not.
+// Half a ball, and the ring around it: the normals of all triangles together point in all directions; those of small
+// patches do not.
 TEST(NormalCones, EndAtARightAngle) {
   const mesh::Mesh ball = mesh::make_sphere(0.5, 24);
   const TestMesh mesh{ball.positions, {ball.topology.triangles.begin(), ball.topology.triangles.end()}};
@@ -226,7 +228,7 @@ TEST(StarShaped, HoldsForAChainThatRunsAroundItsCentreOnceAndAlwaysForward) {
   std::swap(hooked[4], hooked[5]);
   const std::vector<Vec3> hook = chain(hooked, radii);
   EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), hook, hook));
-  // Halfway through half a turn about the centre, all points coincide there.
+  // Halfway through half a turn about the centre, all points coincide with it.
   std::vector<double> turned;
   for (const double angle : once) turned.push_back(angle + M_PI);
   EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), star, chain(turned, radii)));
