@@ -30,7 +30,7 @@ TEST(Compare, CountsPixelsOnceAndNamesTheFirstOfTheLargest) {
   b.pixel(3, 2)[0] = 104;  // at the tolerance
   b.pixel(5, 2)[1] = 95;   // beyond it
   for (int c = 0; c < 3; ++c) b.pixel(7, 4)[c] = 90;
-  b.pixel(9, 4)[2] = 110;  // equally large, but later
+  b.pixel(9, 4)[2] = 110;  // as large, but later in the picture
   const Figures figures = compare(a, b, 4).figures;
   EXPECT_EQ(figures.pixels_changed, 4);
   EXPECT_EQ(figures.pixels_over, 3);
@@ -78,7 +78,7 @@ TEST(Compare, FiguresAreTheMeanAndTheLargestOfTheMap) {
   EXPECT_EQ(result.figures.spot, *std::max_element(result.flip.values.begin(), result.flip.values.end()));
 }
 
-// Verdict on a square of `size` × `size` pixels, `levels` brighter than the rest of a flat picture of 320x180.
+// Verdict on a flat picture of 320x180 in which a square of `size` × `size` pixels is `levels` brighter.
 Verdict verdict_of_speck(int size, int levels) {
   const image::Image flat = plain(320, 180, 110, 110, 110);
   image::Image speck = flat;
@@ -94,7 +94,7 @@ TEST(Compare, DefaultsPassOneSampleOfOnePixelAndNoSpeckOfSeveral) {
   EXPECT_EQ(verdict_of_speck(1, 120), Verdict::differs);
 }
 
-/// Blue cloth in front of a light floor, with an edge at (x + 0.3 y) = `at`, four samples per pixel.
+/// Blue cloth in front of a light floor. The edge is at (x + 0.3 y) = `at`, drawn with four samples per pixel.
 image::Image edge_at(double at, int width = 480, int height = 270) {
   image::Image image = plain(width, height, 200, 190, 180);
   for (int y = 0; y < height; ++y) {
@@ -108,8 +108,8 @@ image::Image edge_at(double at, int width = 480, int height = 270) {
   return image;
 }
 
-/// Moves one of the four samples of a pixel across the edge, in `count` pixels of the edge, `apart` rows from each
-/// other.
+/// Moves one of the four samples of a pixel to the other side of the edge, in `count` pixels that are `apart` rows from
+/// each other.
 image::Image with_flipped_samples(const image::Image& image, int count, int apart) {
   image::Image flipped = image;
   for (int i = 0, y = 2; i < count; ++i, y += apart) {
@@ -120,7 +120,7 @@ image::Image with_flipped_samples(const image::Image& image, int count, int apar
   return flipped;
 }
 
-// In our scenes another CPU type changes up to 27 of 129,600 pixels at edges, in groups of up to 3.
+// Another CPU type was measured to change up to 27 of 129,600 pixels at edges, in groups of up to 3.
 TEST(Compare, DefaultsPassSingleSamplesOfAnEdge) {
   const image::Image edge = edge_at(150.3);
   const Figures figures = compare(edge, with_flipped_samples(edge, 27, 8), 4).figures;
@@ -169,13 +169,13 @@ TEST(Compare, OnlyTheDefaultMeanIsWiderInSmallPictures) {
   EXPECT_EQ(for_size({}, figures).flip, Limits{}.flip);
 }
 
-// Noise of the size of the changes that another CPU type made in four pictures of our scenes.
+// Noise as large as the changes that another CPU type made in four pictures.
 TEST(Compare, DefaultsPassTheNoiseOfProcessors) {
   const image::Image picture = textured(320, 180, 1);
   EXPECT_EQ(verdict(compare(picture, with_noise(picture, 60, 1, 5), 4).figures, {}), Verdict::within);
 }
 
-// One level is invisible, but it is a change of light; the mean distinguishes it from noise.
+// One level is invisible, but everywhere it is a change of the light; the mean FLIP distinguishes it from noise.
 TEST(Compare, DefaultsCatchOneLevelEverywhere) {
   EXPECT_EQ(verdict(compare(plain(320, 180, 150, 150, 150), plain(320, 180, 151, 151, 151), 4).figures, {}),
             Verdict::differs);

@@ -9,7 +9,7 @@ namespace {
 
 using EncoderNoiseTest = support::TestFolder;
 
-/// A soft gradient with noise of a level or two, which encoders change most.
+/// A soft gradient with noise of one or two levels: encoders change such pictures most.
 image::Image gradient(std::uint32_t seed, int brighter) {
   image::Image image(320, 192);
   for (int y = 0; y < image.height; ++y) {

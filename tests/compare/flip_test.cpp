@@ -29,8 +29,8 @@ TEST(Flip, OpponentSpaceInverts) {
   }
 }
 
-// L*a*b* of the sRGB primaries from published tables; a* and b* are multiplied by L*/100. Tolerance 0.02: the tables
-// have two decimals.
+// L*a*b* of the sRGB primaries from published tables; a* and b* are multiplied by L*/100. Tolerance 0.02, since the
+// tables have two decimals.
 TEST(Flip, PrimariesHaveTheirLabShrunkByLightness) {
   const auto expect = [](const Color& linear, double lightness, double a, double b) {
     const Color lab = flip::hunt_lab(linear);
@@ -48,7 +48,7 @@ TEST(Flip, DistanceAddsLightnessAndChroma) {
   EXPECT_FLOAT_EQ(flip::hyab({50, 3, 0}, {40, 0, 4}), 10 + 5);
 }
 
-// The curve consists of two straight lines over distance^0.7; green to blue is the largest distance.
+// The curve consists of two straight lines over distance^0.7. Green and blue have the largest distance.
 TEST(Flip, RemappedDistancesMeetTheirThreePoints) {
   const float largest = flip::hyab(flip::hunt_lab({0, 1, 0}), flip::hunt_lab({0, 0, 1}));
   EXPECT_NEAR(flip::remap_distance(0), 0, 1e-6);
@@ -102,9 +102,9 @@ TEST(Flip, StepAgainstNothingIsTheLargestFeatureOfOneDirection) {
   EXPECT_NEAR(difference.row(20)[5], 0, 1e-3);
 }
 
-// Without edges the map is the remapped distance. Black to white: HyAB 100, and 100^0.7 = 25.12 is beyond the
-// point `bend` where the two lines of the curve meet. 203.3 is the HyAB distance of green and blue, from the shrunk
-// L*a*b* values of the test of the primaries.
+// Without edges, the map is the remapped distance. Black and white have the HyAB distance 100; 100^0.7 = 25.12 is
+// beyond the point `bend`, where the two lines of the curve meet. 203.3 is the HyAB distance of green and blue,
+// computed from the L*a*b* values in the test of the primaries.
 TEST(Flip, BlackAgainstWhiteIsTheDistanceOfItsColours) {
   const Plane<float> map = flip_map(plain(40, 30, 0, 0, 0), plain(40, 30, 255, 255, 255));
   const double largest = std::pow(203.3, 0.7), bend = 0.4 * largest;
@@ -124,7 +124,8 @@ struct Picture {
   double at(const Map& map, int x, int y) const {
     return map[std::clamp(y, 0, height - 1) * width + std::clamp(x, 0, width - 1)];
   }
-  /// Convolution with a kernel whose positive values are normalised to the sum 1, and negative ones, if any, to -1.
+  /// Convolution with a kernel whose positive values are scaled to the sum 1, and negative values, if any, to the sum
+  /// -1.
   template <class Kernel>
   Map filtered(const Map& map, int radius, const Kernel& kernel) const {
     double positive = 0, negative = 0;
@@ -142,7 +143,8 @@ struct Picture {
   }
 };
 
-// Table 1 and Section 4.1.1. The radius is three standard deviations of the widest Gaussian, exp(-pi^2 x^2 / 0.04).
+// As Table 1 and Section 4.1.1 state. The radius is three standard deviations of the widest Gaussian, exp(-pi^2 x^2 /
+// 0.04).
 Map as_seen(const Picture& picture, const Map& map, int channel) {
   struct {
     double a1, b1, a2, b2;
@@ -157,8 +159,8 @@ Map as_seen(const Picture& picture, const Map& map, int channel) {
                           kernel);
 }
 
-// Section 4.2: (|dF| / sqrt 2)^(1/2), where dF is the difference in edges or in points, whichever is larger. The
-// standard deviation is half of 0.082 degrees.
+// As Section 4.2 states: (|dF| / sqrt 2)^(1/2), where dF is the difference in edges or in points, whichever is larger.
+// The standard deviation is half of 0.082 degrees.
 Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
   const double sigma = 0.5 * 0.082 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));
@@ -183,7 +185,7 @@ Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
 }  // namespace paper
 
 // Tolerance 1e-3: ten times the expected error of float sums of a thousand terms under a square root (not measured). A
-// kernel constant that is 10 % off changes values by more.
+// kernel constant that is wrong by 10 % changes values by more.
 TEST(Flip, FeaturesAreThoseOfThePapersKernels) {
   const paper::Picture size{40, 32};
   Plane<float> planes[] = {{size.width, size.height}, {size.width, size.height}};

@@ -27,8 +27,8 @@ class Idiff : public support::TestFolder {
     if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "idiff is not here: apt-get install openimageio-tools";
   }
 
-  // The threshold is half a level above the tolerance, so that floating-point rounding does not matter. idiff warns of
-  // any pixel above it (exit code 1), so that it also prints the count if the pictures pass.
+  // The threshold is half a level above the tolerance, so that floating-point rounding does not matter. idiff warns
+  // about any pixel above the threshold (exit code 1), so that it prints the count even if the pictures pass.
   Judgement ask(int tolerance, double budget) const {
     const std::string command =
         fmt::format("idiff -warn {0:.9f} -warnpercent 0 -fail {0:.9f} -failpercent {1:.9f} '{2}' '{3}' 2>&1",

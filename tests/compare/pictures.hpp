@@ -35,7 +35,7 @@ class Noise {
   std::uint32_t state_;
 };
 
-/// Waves, an edge and some grain, the ingredients of a rendered picture.
+/// A picture with the features of a rendered one: waves, an edge and some grain.
 inline image::Image textured(int width, int height, std::uint32_t seed) {
   image::Image image(width, height);
   Noise noise(seed);

@@ -130,7 +130,7 @@ TEST_F(References, NewPictureGoesToDefaultWhereThatIsUsedElseIntoTheFolder) {
   EXPECT_EQ(level("other/name.png"), 30);
 }
 
-// All 256 pixels differ by 10 levels. The log states this in the words of `weft diff`.
+// All 256 pixels differ by 10 levels. The log states this in the same words as `weft diff`.
 TEST_F(References, EachChangeIsALineOfTheLogWithHashesDifferenceAndReason) {
   write("ref/a.png", 10);
   write("out/a.png", 20);

@@ -15,7 +15,7 @@ double luma(const std::uint8_t* p) {
   return 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
 }
 
-// SSIM of one window by its definition, with squared deviations from the mean.
+// SSIM of one window by its definition, from squared deviations from the mean.
 double window_similarity(const image::Image& a, const image::Image& b, int left, int top) {
   double total = 0, mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, cov = 0;
   const auto each = [&](const auto& body) {
@@ -60,7 +60,7 @@ TEST(Ssim, EqualImagesHaveOne) {
   EXPECT_NEAR(structural_similarity(a, a), 1, 1e-12);
 }
 
-// In flat images, only the first factor (luminance) of Eq. (13) differs from 1.
+// In flat images, all factors of Eq. (13) are 1, except the first (luminance).
 TEST(Ssim, FlatImagesDifferByTheirMeansAlone) {
   const double expected = (2 * 100.0 * 120 + kC1) / (100.0 * 100 + 120.0 * 120 + kC1);
   EXPECT_NEAR(structural_similarity(plain(20, 20, 100, 100, 100), plain(20, 20, 120, 120, 120)), expected, 1e-12);
