@@ -37,7 +37,7 @@ TEST(BoundedQueue, NeverHoldsMoreThanItsCapacity) {
   });
   while (queue.pop()) --inside;
   producer.join();
-  // Up to two more than the capacity: the test counts an item before push() has a place for it, and until after pop()
+  // The count can exceed the capacity by two: the test counts an item before push() has a place for it, and until pop()
   // has returned.
   EXPECT_LE(max_inside, 4);
   EXPECT_GE(max_inside, 1);

@@ -27,7 +27,7 @@ TEST_F(InputFileTest, GivesAllBytesOfARegularFileAndOfALinkToOne) {
   EXPECT_NO_THROW(check_is_file(folder_ / "link"));
 }
 
-// Reading any of these would wait for ever or never end.
+// If these files were opened and read, the program would wait without end, or read without end.
 TEST_F(InputFileTest, WhatIsNoRegularFileIsRefusedAtOnceByName) {
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0666), 0);
   fs::create_symlink("pipe", folder_ / "link");

@@ -1,4 +1,4 @@
-// Handlers of warnings, and what a terminal shows.
+// Tests handlers of messages, and the escaping of control characters for terminals.
 #include "core/log.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace weft::log {
 namespace {
 
-// A handler may log, or wait for a lock whose holder logs: neither may deadlock.
+// A handler may log, or wait for a lock whose holder logs; neither may cause a deadlock.
 TEST(Log, HandlerMayLogItself) {
   std::vector<std::string> texts;
   set_handler([&](std::string_view text) {
@@ -24,12 +24,12 @@ TEST(Log, HandlerMayLogItself) {
 TEST(Log, EscapesWhatTerminalsInterpret) {
   EXPECT_EQ(without_controls("a\x1b[2J\x7f\n\tb"), "a\\x1b[2J\\x7f\n\tb");
   EXPECT_EQ(without_controls("a\n\tb", ""), "a\\x0a\\x09b");
-  // U+009B begins a command as ESC [ does; U+00A0 and é are no control characters, and neither is half a character.
+  // U+009B begins a command, as ESC [ does. U+00A0, é and half a character are no control characters.
   EXPECT_EQ(without_controls("\xC2\x9B 2J \xC2\x85 \xC2\xA0 \xC3\xA9 \xC2"),
             "\\xc2\\x9b 2J \\xc2\\x85 \xC2\xA0 \xC3\xA9 \xC2");
 }
 
-// A program with a window has no use for standard error.
+// A program with a window has no use for standard error, so its handler receives information too.
 TEST(Log, HandlerGetsInformationToo) {
   std::string got;
   set_handler([&](std::string_view text) { got = text; });

@@ -58,7 +58,7 @@ TEST(Nesting, IsRefusedFromTheFirstLevelTooManyInWhateverWayItIsWritten) {
     EXPECT_TRUE(nests_too_deep(text)) << kind;
     EXPECT_THROW(parse_toml(text), toml::parse_error) << kind;
   }
-  // A parser or a destructor would overflow the stack with these.
+  // These texts would overflow the stack of a parser or of a destructor.
   for (const auto& [kind, text] : nested(200'000)) EXPECT_TRUE(nests_too_deep(text)) << kind;
 }
 
@@ -70,8 +70,8 @@ TEST(Nesting, CountsDotsInTextsAndCommentsForNothing) {
     EXPECT_FALSE(nests_too_deep(text)) << text.substr(0, 40);
 }
 
-// Random text of all characters that matter to the grammar. If the parser and nests_too_deep() accept it, its depth is
-// at most twice the limit, because headers and the keys below them count separately.
+// Random texts of all characters that matter to the grammar. If both the parser and nests_too_deep() accept a text, its
+// depth is at most twice the limit, since headers and the keys below them count separately.
 TEST(Nesting, NoTextThatTheParserTakesIsDeeperThanTwiceTheLimit) {
   const std::vector<std::string> pieces{
       "a", ".",  ".",  "\"",   "'",       "\"\"\"",           "'''",    "#", "=", "[", "]", "{", "}",

@@ -1,4 +1,4 @@
-// Loops that threads share.
+// Tests parallel loops.
 #include "core/parallel.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST_F(ParallelLoops, CallEachItemOnceHoweverManyFollowEachOther) {
 TEST_F(ParallelLoops, UseSeveralThreads) {
   std::atomic<int> inside = 0;
   std::atomic<bool> together = false;
-  // Each chunk waits until a second one runs. On one thread that never happens, so the chunk gives up after a while.
+  // Each chunk waits until a second one runs. With one thread this never happens, so the wait is limited.
   parallel_for(4, 1, [&](std::size_t, std::size_t) {
     ++inside;
     for (int k = 0; k < 100'000 && !together; ++k) {

@@ -128,7 +128,7 @@ TEST_F(TemporaryFileTest, AFileThatSomebodyMakesMeanwhileStays) {
   EXPECT_THROW(write_file(file, "new"), Error);
   EXPECT_NO_THROW(write_file(file, "precious")) << "nothing is lost where it holds the same";
   fs::remove(file);
-  // A process may replace the files that it has written itself.
+  // A process may replace files that it has written itself.
   write_file(file, "first");
   write_file(file, "second");
   EXPECT_EQ(content(file), "second");
@@ -216,7 +216,8 @@ TEST_F(TemporaryFileTest, OfALivingProcessStays) {
   EXPECT_EQ(content(folder_ / "a.txt"), "whole");
 }
 
-// A process that cleans up may lock a file that was just made, and may be interrupted before it removes the file.
+// A process that removes old files may lock a file that was just made, and may be interrupted before it removes the
+// file.
 TEST_F(TemporaryFileTest, WaitsForAProcessThatCleansUp) {
   const fs::path temporary = folder_ / fmt::format(".a.txt.weft-{}.tmp", ::getpid());
   const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
