@@ -1,4 +1,5 @@
-// Checks the documentation against the sources. Small made-up pages first show that each check detects its mistakes.
+// Checks the documentation against the sources. The first tests use small made-up pages, to show that each check
+// detects mistakes.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -117,7 +118,7 @@ TEST_F(MeasuredTables, HaveTheirCommandVersionMachineAndDateAbove) {
   }
 }
 
-// Returns "LINE: FIRST ROW" for each table that is not printed from a measured file.
+// Returns "LINE: FIRST ROW" for each table that is not generated from a measured file.
 std::string written_tables(const std::string& text) {
   std::string found;
   std::istringstream lines(text);
@@ -144,7 +145,7 @@ TEST(MeasuredPage, HasTablesOfNamedCommandsAlone) {
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 350);
 }
 
-// A measured file that no page shows would become out of date without notice.
+// A measured file that no page shows could become out of date unnoticed.
 TEST(MeasuredPage, ShowsOrLinksEachMeasuredFile) {
   const std::string text = read_file(kRoot / "tests/bench/README.md");
   for (const auto& entry : fs::directory_iterator(kRoot / "tests/bench/measured")) {

@@ -26,7 +26,7 @@ void write(const fs::path& file, const std::string& text) {
   if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
-// Runs `commands` in a shell, which stops at the first failure. `output` receives standard output and standard error.
+// Runs `commands` in a shell that stops at the first failure. `output` receives standard output and standard error.
 int run(const std::string& commands, const fs::path& folder, std::string& output) {
   write(folder / "commands.sh", commands);
   FILE* pipe = ::popen(

@@ -68,7 +68,7 @@ TEST(Guide, HasNoBlockThatIsNotRun) {
   for (const Fence& fence : page.fences) EXPECT_NE(fence.section, "") << "line " << fence.line;
 }
 
-// The scenes in README.md are only checked by `weft check`, not run.
+// The test only checks the scenes of README.md with `weft check`, and does not run them.
 TEST(Guide, StartsInTheReadmeWithScenesThatAreWell) {
   const fs::path folder = fs::path(::testing::TempDir()) / "weft_readme_scenes";
   fs::create_directories(folder);

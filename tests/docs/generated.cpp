@@ -42,7 +42,7 @@ struct Entry {
   std::string name, meaning;
 };
 
-// The entries below `heading`, up to an empty line. If a name is long, its meaning is on the next line.
+// The entries below `heading`, up to an empty line. The meaning of a long name is on the next line.
 std::vector<Entry> section(const std::vector<std::string>& lines, const std::string& heading) {
   std::vector<Entry> entries;
   auto line = std::find(lines.begin(), lines.end(), heading);
@@ -125,7 +125,7 @@ std::string fabrics() {
   return table;
 }
 
-// Estimates are marked with ~.
+// Table of the fabrics; estimates are marked with ~.
 std::string fabric_measurements() {
   std::string table =
       "| fabric | g/m² | extension at 490 N/m, weft, warp % | shear G N/m | B weft, warp µN·m | HB/B 1/m | mm | drape "
@@ -168,7 +168,7 @@ std::string rooms(const fs::path& root) {
   return table;
 }
 
-// What each module does and may use; for a page one level below the top.
+// Table of what each module does and may use; for a page one level below the top.
 std::string modules(const fs::path& root) {
   std::string table = "| module | does | may use |\n|---|---|---|\n";
   for (const architecture::Module& module : architecture::read_modules(root))
@@ -207,7 +207,8 @@ std::vector<std::string> chosen(const std::vector<std::string>& row, const std::
   return cells;
 }
 
-// Origin of a measured file: its first line (a heading with the command) and the line with program, machine and date.
+// Returns the origin of a measured file: its first line (a heading with the command), and the line with program,
+// machine and date.
 std::string origin(const fs::path& file) {
   static const std::regex kOrigin(
       R"(^# (`[^`]+`[^\n]*)\n\nweft ([0-9.]+) of commit ([0-9a-f]{7,40}), ([^\n]+), (20\d\d-\d\d-\d\d)\n\n)");
@@ -227,8 +228,9 @@ std::string origin(const fs::path& file) {
 
 std::string side_by_side(const fs::path& folder, const std::string& arguments);
 
-// Arguments: "FILE" or "FILE FILE ...: COLUMN, COLUMN". Prints the origin of each file, then a table: without columns
-// the first table of the file, with columns the rows that the first tables of all files have in common, side by side.
+// Arguments: "FILE" or "FILE FILE ...: COLUMN, COLUMN". Prints the origin of each file, then a table. Without columns,
+// this is the first table of the file. With columns, it has the rows that the first tables of all files have in common,
+// side by side.
 std::string measured(const fs::path& folder, const std::string& arguments) {
   std::istringstream files(arguments.substr(0, arguments.find(": ")));
   std::string text;

@@ -1,4 +1,4 @@
-// Content of a Markdown page that the tests of the documentation check.
+// Reads from a Markdown page what the tests of the documentation check.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct Page {
   std::vector<std::string> anchors;   ///< valid targets of #links: headings in lower case, hyphens for spaces
   std::vector<std::string> links;     ///< targets of links and pictures, as written
   std::vector<std::string> code;      ///< text between single backticks, spaces for line feeds
-  std::string mistakes;               ///< "12: what is wrong" for each
+  std::string mistakes;               ///< "12: what is wrong", one line for each
 };
 
 /// Mistakes are unclosed fences, indented code (which no test runs), and tables whose rows differ in their number of

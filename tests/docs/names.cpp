@@ -23,7 +23,7 @@ void add_words(const std::string& text, std::set<std::string>& words) {
     words.insert(match->str());
 }
 
-// Collects the names of the tests of all files; parameterised and typed tests are represented by their first instance.
+// Collects the names of tests. Of parameterised and typed tests, it collects the names of the first instance.
 class Tests {
  public:
   void read(const std::string& text) {
@@ -85,7 +85,7 @@ bool is_name(const std::string& name, const Known& known) {
   });
 }
 
-// test_mesh is the program of tests/mesh, test_mesh_slow that of its slow files.
+// `test_mesh` is the program of the tests in tests/mesh; `test_mesh_slow` is that of its slow tests.
 bool is_test_program(const std::string& name, const fs::path& root) {
   static const std::regex kProgram(R"(test_(\w+?)(?:_slow)?)");
   std::smatch match;

@@ -17,8 +17,8 @@ struct Known {
 /// Reads all hand-written files under root.
 Known read_known(const std::filesystem::path& root);
 
-/// Returns "page: name" for each code span of the page that looks like the name of a test, a file or an identifier and
-/// does not exist. In names of tests * is a wildcard.
+/// Returns "page: name" for each code span of the page that has the form of a test name, file name or identifier, but
+/// does not exist. In test names, * is a wildcard.
 std::string unknown_names(const std::filesystem::path& root, const std::filesystem::path& page, const Known& known);
 
 }  // namespace weft::docs

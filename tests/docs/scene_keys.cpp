@@ -34,7 +34,7 @@ std::string default_text(const Rule& rule, void* defaults) {
   return fmt::format("[{}]", fmt::join(*numbers, ", "));
 }
 
-// Prints a table, then the tables inside it.
+// Prints a table, then each table inside it.
 class Printer {
  public:
   std::string text;
@@ -81,7 +81,7 @@ class Printer {
     }
   }
 
-  std::map<const Table*, std::string> known_;  // printed already, under this heading
+  std::map<const Table*, std::string> known_;  // tables that are printed already, with their heading
 };
 
 }  // namespace

@@ -5,9 +5,9 @@
 
 namespace weft::docs {
 
-/// A section with a table for each table of the format.
+/// Returns a section for each table of the format, with a row for each key.
 std::string scene_keys();
-/// The same for sewing patterns.
+/// The same for the format of sewing patterns.
 std::string pattern_keys();
 
 }  // namespace weft::docs
