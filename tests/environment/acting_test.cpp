@@ -1,4 +1,4 @@
-// Characters of a scene, from small files that are made here.
+// Characters of a scene, from small files that the tests write.
 #include "film/environment/acting.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 namespace weft::environment {
 namespace {
 
-// Rounding of single-precision files, for coordinates of a few metres.
+// Tolerance for coordinates of a few metres from single-precision files [m].
 constexpr double kSingle = 1e-6;
 
 /// Indices of the vertices at the ends of the rod, at x = -0.1. The reader reverses faces, which changes the order of
@@ -61,7 +61,7 @@ TEST_F(Acting, TurnsTheFileUpScalesItAndPutsItInItsPlace) {
   character_.pose.rotation = Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitZ());
   const Actor actor = make();
   EXPECT_TRUE(actor.warnings.empty());
-  // y of the file points up; x of the file, turned by 90° about z, points along y.
+  // y of the file points up; x of the file is rotated by 90° about z, and points along y.
   EXPECT_LT((at(actor, 0)[kLow] - Vec3(10, -0.05, 0)).norm(), kSingle);
   EXPECT_LT((at(actor, 0)[kHigh] - Vec3(10, -0.05, 1)).norm(), kSingle);
   EXPECT_EQ(actor.mesh.positions, at(actor, 0));
@@ -88,11 +88,12 @@ TEST_F(Acting, GrowsFromItsBonesWhileItIsDressedAndThenMoves) {
   const Actor whole = make();
   character_.grow = 0.5;
   const Actor growing = make();
-  // The bone runs from the hips, at the origin, along y of the file to the spine and beyond.
+  // The bone runs from the hips, at the origin, along y of the file to the spine and beyond it.
   const Vec3 low = at(whole, -1)[kLow], on_bone(0, 0, 0);
   EXPECT_LT((at(growing, -1)[kLow] - (on_bone + 0.1 * (low - on_bone))).norm(), kSingle);
   EXPECT_LT((at(growing, -0.75)[kLow] - (on_bone + 0.55 * (low - on_bone))).norm(), 1e-4) << "half, between keys";
-  // The two motions have keys at different times, so that their splines differ where the motion starts at 2 m/s.
+  // The two motions have keys at different times, so their splines differ near the start of the motion, which has 2
+  // m/s.
   for (const double t : {-0.5, -0.2, 0.5, 1.7})
     EXPECT_LT((at(growing, t)[kLow] - at(whole, t)[kLow]).norm(), 0.02) << t;
   for (const double t : {-0.5, -0.3}) EXPECT_LT((at(growing, t)[kLow] - low).norm(), 1e-3) << t;
@@ -124,7 +125,7 @@ TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
 TEST_F(Acting, StoresAsManyKeysAsThePlanSays) {
   character_.source = file_;
   character_.keys_per_second = 30;
-  // Keys at 0, 1/30, ..., 2 s, and one more.
+  // There are keys at 0, 1/30, ..., 2 s, and one more.
   const KeyFrameCount count = count_key_frames(scene_, (make(), character_));
   EXPECT_EQ(count.keys, 62u);
   EXPECT_EQ(count.vertices, 5u);
@@ -239,7 +240,7 @@ TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
       low = std::min(low, body.mesh.positions[v].x());
       high = std::max(high, body.mesh.positions[v].x());
     }
-  // The right shoulder ends 0.25 m from the middle. Of the left arm, which hangs at 45 degrees, the upper part is kept.
+  // The right shoulder ends 0.25 m from the middle. The left arm hangs at 45 degrees; only its upper part is kept.
   EXPECT_GT(low, -0.25);
   EXPECT_GT(high, 0.3);
   EXPECT_LT(high, 0.45);
@@ -371,7 +372,8 @@ TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   EXPECT_NE(actor.warnings[0].find("it moves at up to 90 m/s; people who run reach 9 m/s"), std::string::npos)
       << actor.warnings[0];
 
-  // "Wave" moves Spine at 12 m/s, and 3 of the 5 vertices of the body with it. What is pinned to Spine does not count.
+  // "Wave" moves Spine at 12 m/s, and with it 3 of the 5 vertices of the body. Cloth that is pinned to Spine does not
+  // count.
   file_ = {};
   file_.path = folder_ / "rod.x";
   file_.clip = "Wave";
@@ -409,7 +411,7 @@ TEST_F(Acting, DoubtsABodyThatMissesTheFloor) {
   const std::string above =
       "scenes/a.toml:7:1: character.rod: it comes no nearer to the floor than 0.3 m; position puts it lower";
   EXPECT_EQ(warning(0.3), above);
-  // No warning: the character may stand on an obstacle, and below a moving floor there may be anything.
+  // There is no warning: the character may stand on an obstacle, and below a moving floor there may be other obstacles.
   scene_.obstacles.emplace_back();
   scene_.obstacles[1].shape = scene::BoxShape{};
   EXPECT_EQ(warning(0.3), "");

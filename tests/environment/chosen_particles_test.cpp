@@ -1,4 +1,5 @@
-// Selection of particles for pins and weights: by rows, pictures, colours and vertex groups, and the fade around them.
+// Selection of particles for pins and weights by rows, pictures, colours and vertex groups, and the fading of strength
+// around them.
 #include "film/environment/chosen_particles.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +38,7 @@ class ChosenParticles : public support::TestFolder {
     image::write_png(folder_ / "mask.png", picture, {});
     return (folder_ / "mask.png").string();
   }
-  /// A strip of two squares of 1 m along x. Its UVs run against x, red grows along x, blue is set at y = 1.
+  /// A strip of two squares of 1 m along x. Its u decreases along x; red increases along x; blue is 1 at y = 1.
   std::string strip() const {
     std::string text = "o strip\n";
     for (int y = 0; y < 2; ++y)
@@ -53,7 +54,8 @@ class ChosenParticles : public support::TestFolder {
   }
 };
 
-// A grid with a spacing of 0.1 m at rest. The strength fades with the distance from the row at warp 0, up to 0.25 m.
+// The spacing of the grid is 0.1 m at rest. The strength decreases with the distance from the row at warp 0, up to 0.25
+// m.
 TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
   for (const char* shape : {"quads", "aligned_triangles"}) {
     const model::Cloth cloth =
@@ -81,8 +83,8 @@ TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
   EXPECT_NEAR(shares.at(6), s * s * (3 - 2 * s), 1e-12);
 }
 
-// A mask of three pixels (white, a third of white, black) over five columns of particles. Grey values are exact at the
-// middles of pixels and interpolated between them.
+// The mask has three pixels (white, a third of white, black) over five columns of particles. Grey values are exact at
+// the middles of pixels, and interpolated between them.
 TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   const std::string mask = row_of({255, 85, 0});
   const auto pinned = [&](const std::string& more) {
@@ -92,7 +94,7 @@ TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
   ASSERT_EQ(soft.size(), 20u);
   EXPECT_EQ(soft.at(0), 1);
   EXPECT_NEAR(soft.at(1), 0.25 * 1 / 3.0 + 0.75,
-              1e-12);  // at 0.75 pixels from the left, 0.25 past the middle of a pixel
+              1e-12);  // 0.75 pixels from the left edge, 0.25 after the middle of a pixel
   EXPECT_NEAR(soft.at(2), 1 / 3.0, 1e-12);
   EXPECT_FALSE(soft.contains(4));
   const auto held = pinned(", high = [1, 0.5]");
@@ -134,7 +136,7 @@ TEST_F(ChosenParticles, OfMeshesAreTakenByUvsColoursAndGroups) {
   EXPECT_EQ(shares_of(cloth.weights[0].particles), red);
 }
 
-// Front and back lie one behind the other: one picture over both would select particles of the back as well.
+// In the picture, front and back would overlap: one picture over both would also select particles of the back.
 TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
   std::string pattern;
   for (const char* side : {"front", "back"})
@@ -154,7 +156,7 @@ TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
   std::map<Index, double> expected;
   for (std::size_t t = 0; t < details.panel_of.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      // The grey value is 1 up to the middle of the left pixel, and 0 from that of the right one.
+      // The fraction is 1 up to the middle of the left pixel, and 0 from the middle of the right pixel on.
       const Vec2 at = (details.paint_uv[t][k] + Vec2(0.2, 0)) / 0.4;
       const double fraction = std::clamp(1.5 - 2 * at.x(), 0.0, 1.0);
       if (details.panel_of[t] == 0 && at.y() < 0.5 + 1e-9 && fraction > 0.5 / 255)
@@ -199,7 +201,7 @@ TEST_F(ChosenParticles, OfCrossedTrianglesMayBeTheMiddleOfACell) {
   EXPECT_EQ(cloth.pins[0].particles.size(), 1U);
 }
 
-// The jacket lies bent around its wearer, whose feet point down the axis that is up in the scene.
+// The jacket is bent around its wearer, whose feet point against the up axis of the scene.
 TEST_F(ChosenParticles, OfABentPatternAreThoseAcrossAndUpItsWearer) {
   std::vector<Vec2> with_z_up;
   for (const scene::UpAxis up : {scene::UpAxis::z, scene::UpAxis::y}) {

@@ -1,4 +1,4 @@
-// Places where skin must leave clearance for cloth.
+// Where skin must make clearance for cloth.
 #include "film/environment/clearance.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace weft::environment {
 namespace {
 
-// One triangle of a metre: the queried places are far from its corners.
+// The cloth is one triangle of a metre; the tested places are far from its corners.
 TEST(Clearance, NearnessIsThatToTheSurfaceNotToItsParticles) {
   const std::vector<Vec3> cloth{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   const std::vector<mesh::Triangle> triangles{{0, 1, 2}};

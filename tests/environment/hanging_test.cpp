@@ -12,7 +12,7 @@ namespace {
 
 class HangingSheets : public support::TestFolder {};
 
-// The rod is 2 m tall, and stands through the middle of a horizontal sheet.
+// The rod is 2 m tall, and passes through the middle of a horizontal sheet.
 TEST_F(HangingSheets, MoveOffABodyWithoutArmsAndLegs) {
   support::write_bytes(folder_ / "rod.x", support::rod_file());
   scene::Scene scene;

@@ -13,7 +13,7 @@ namespace {
 
 class NamedJoints : public support::TestFolder {};
 
-// The node stayed the spine, which has a common name, and the chest held no skin.
+// A node that the scene names as the chest must not stay the spine as well, although its name is common for a spine.
 TEST_F(NamedJoints, AreNoOtherJoints) {
   support::write_bytes(folder_ / "rod.x", support::rod_file());
   scene::Scene scene;

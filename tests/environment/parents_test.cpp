@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPlaceRounding = 1e-13;  // a few rounding errors of coordinates of some metres
 
-/// An arm rises and turns about z by a quarter in a second, a hand slides along it, and the hand holds a ring.
+/// An arm rises and rotates about z by a quarter turn in a second. A hand slides along the arm, and holds a ring.
 const char* const kRobot = R"(
 [[obstacle]]
 name = "ring"
@@ -48,7 +48,7 @@ TEST(Parent, LeavesWhatFollowsWhereItsOwnPoseSaysUntilItMoves) {
 
 TEST(Parent, CarriesTheOwnMotionOfWhatFollowsThroughAChain) {
   const Environment environment(support::scene_of_text(kRobot));
-  // The hand slid 1.5 m along the arm, which now points to +y, and turned about the arm.
+  // The hand has slid 1.5 m along the arm, which now points to +y, and has rotated about the arm.
   const motion::PoseSample hand = environment.model.pose(2, 1);
   EXPECT_LT((hand.position - Vec3(1, 1.5, 2)).norm(), kPlaceRounding);
   EXPECT_LT(
@@ -125,7 +125,7 @@ follow = "man.head"
   EXPECT_LT((environment.model.pose(0, 0).position - Vec3(0, 0, 1.85)).norm(), 1e-9);
   const auto& parts = environment.bodies[1].parts;
   ASSERT_EQ(std::ranges::count(parts, "head", &Part::name), 1);
-  // Its highest vertex is the top of the head.
+  // The highest vertex of the head is its top.
   const std::vector<Vec3>& skin = environment.model.bodies[1].mesh.positions;
   const auto top =
       static_cast<std::size_t>(std::ranges::max_element(skin, {}, [](const Vec3& x) { return x.z(); }) - skin.begin());
@@ -145,7 +145,7 @@ follow = "man.head"
   EXPECT_LT(max_change, 1e-3);
 }
 
-// The followed part came after the settings of the scene and collided.
+// The bag follows the left hand, which thus becomes a part of its own. The hand must keep the setting of `hands`.
 TEST(Parent, ThatIsAPartOfACharacterStaysOutOfContact) {
   const std::string man = R"(
 [[character]]

@@ -9,7 +9,7 @@ namespace weft::environment {
 namespace {
 
 TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
-  // Hips with five child bones, all of which the clip turns; the mesh is bound to the hips.
+  // Hips with five child bones that the clip rotates; but the mesh is bound only to the hips.
   character::Character body;
   body.nodes.push_back({"hips", -1, character::Affine::Identity()});
   character::Clip clip;
@@ -30,7 +30,8 @@ TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
   EXPECT_EQ(warn_of_missing_skin(body, clip), std::nullopt) << "what turns may be something else";
 }
 
-// A jumping body is in the air most of the time, a rolling one is below the floor part of the time: no reason to warn.
+// A jumping body is in the air most of the time; a rolling body is below the floor part of the time. Neither is a
+// reason to warn.
 TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
   const auto doubts = [](std::vector<double> lowest, bool alone = true) {
     return warn_of_floor_distance(std::move(lowest), alone).value_or("");

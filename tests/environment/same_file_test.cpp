@@ -12,7 +12,7 @@
 namespace weft::environment {
 namespace {
 
-// Rounding of single-precision files, for coordinates of a few metres.
+// Tolerance for coordinates of a few metres from single-precision files [m].
 constexpr double kSingle = 1e-6;
 
 class SameFile : public support::TestFolder {
@@ -42,7 +42,7 @@ class SameFile : public support::TestFolder {
   scene::CharacterFile file_;
 };
 
-// Buried faces of a shell face into the shell around it, so they must not decide where the outside of that one is.
+// Faces of an inner shell face the shell around it. They must not affect which side of the outer shell is outside.
 TEST_F(SameFile, MakesEachShellALimbOfItsOwn) {
   support::write_bytes(file_.path, rod_with_dress());
   const Actor actor = make();

@@ -14,7 +14,7 @@ namespace {
 
 class Stance : public support::TestFolder {};
 
-// Without a rate of the clip, the body had one key, at time 0.
+// The clip has one pose and thus no rate of keys. The body must still get several keys.
 TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
   std::string text = support::rod_file();
   const std::string keys = "2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;;";
@@ -45,7 +45,8 @@ TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
   EXPECT_EQ(count_key_frames(scene, character).bytes, actor.keys.bytes());
 }
 
-// The pose was that at the end of the clip, 1 m above its start.
+// With a repeated clip, the stance must have the pose at the start of the round in which the clip begins, not at the
+// end of the clip, 1 m higher.
 TEST_F(Stance, WithRaisedArmsHasThePoseOfTheRoundInWhichTheClipStarts) {
   std::string text = support::rod_file();
   const std::string along = "10;3;1.0,1.0,0.0";

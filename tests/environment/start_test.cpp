@@ -72,7 +72,7 @@ TEST(Start, NoiseIsBoundedDifferentForEachParticleAndTheSameInEveryRun) {
     }
   EXPECT_EQ(offsets.size(), 3 * x.size());
   EXPECT_LE(most, 0.01);
-  EXPECT_GT(most, 0.009);  // for 135 numbers uniform in ±0.01, the probability of less is 7e-7
+  EXPECT_GT(most, 0.009);  // the largest of 135 uniform numbers in ±0.01 is less with a probability of 7e-7
 }
 
 }  // namespace

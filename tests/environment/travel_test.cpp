@@ -13,7 +13,7 @@ namespace {
 
 class TravelOfAMotion : public support::TestFolder {};
 
-/// Hips and spine that stand still, with a left leg.
+/// A skeleton of hips, spine and left leg, which stands still.
 std::string one_leg() {
   const std::string turns = "CHANNELS 3 Zrotation Yrotation Xrotation\n",
                     zeros = "0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0\n";
@@ -24,7 +24,7 @@ std::string one_leg() {
          "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + zeros + zeros;
 }
 
-// The ratio of the lengths of legs was 0, and the speed of the clip infinite.
+// The ratio of leg lengths is undefined here. It must not become 0, since the speed of the clip would be infinite.
 TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
   support::write_bytes(folder_ / "rod.x", support::rod_file());
   support::write_bytes(folder_ / "stand.bvh", one_leg());

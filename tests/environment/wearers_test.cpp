@@ -26,7 +26,7 @@ std::string frame_of(const std::string& name, const std::string& translation, co
   return "Frame " + name + " { FrameTransformMatrix { " + matrix(translation) + " }\n" + below + " }\n";
 }
 
-// Two arms in a T-pose, with forearms as their only skin, as ASCII X. The elbows are at x = ±0.5 m.
+// ASCII X file of two arms in a T-pose, with skin only at the forearms. The elbows are at x = ±0.5 m.
 std::string arms_without_hands() {
   const std::string arms = frame_of("LeftUpperArm", "0.2,1.4,0.0", frame_of("LeftLowerArm", "0.3,0.0,0.0", "")) +
                            frame_of("RightUpperArm", "-0.2,1.4,0.0", frame_of("RightLowerArm", "-0.3,0.0,0.0", "")) +
@@ -74,7 +74,7 @@ TEST(WearerMissing, IsSaidWithTheReasonForIt) {
 }
 
 // The patterns of scenes/patterns are drawn for a body like the mannequin: 1.75 m tall, 0.88 m around the chest and
-// 0.68 m around the waist. Sections are 10 mm apart, and the skin of the mannequin is stated to 1 cm.
+// 0.68 m around the waist. Sections are measured every 10 mm, and the measures of the mannequin are stated to 1 cm.
 TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
   const scene::Scene scene = support::scene_of_text(
       "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.03\nheight = 1.75\nstance = 'rest'\nblend "
