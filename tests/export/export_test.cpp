@@ -1,5 +1,5 @@
-// Exported files contain what the frames show. Independent readers check this: assimp reads meshes and animations, and
-// a small reader in this file reads point caches.
+// Exported files must contain what the frames show. Independent readers check this: assimp for meshes and animations,
+// and a small reader in this file for point caches.
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
@@ -124,7 +124,7 @@ TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
   EXPECT_EQ(vertex, positions.size());
 }
 
-// Two panels sewn along their common edge; the right one is placed separately in the drawing.
+// Two panels that are sewn along their common edge; in the drawing, the right panel lies apart.
 TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
   frame::Surface garment = *surfaces_[0];
   garment.quads.clear();
@@ -148,7 +148,7 @@ TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
   }
 }
 
-// A picture of two pixels, the right one half transparent, used once, turned by 90 degrees, 0.1 m wide.
+// A picture of two pixels, the right one half transparent. It occurs once, rotated by 90 degrees, 0.1 m wide.
 TEST_F(Exported, PicturesLieAndLookAsOurs) {
   frame::Surface printed = *surfaces_[0];
   frame::Paint& paint = printed.appearance.paint;
@@ -165,7 +165,7 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
   ASSERT_TRUE(mesh.HasTextureCoords(1));
   for (std::size_t v = 0; v < 6; ++v) {
     const Vec2& uv = printed.uv[v];
-    // The exported picture has one pixel more on every side: 4 by 3.
+    // The exported picture has one more pixel on every side: 4 by 3 pixels.
     EXPECT_NEAR(mesh.mTextureCoords[1][v].x, (2 * 10 * uv.y() + 1) / 4, 4 * kSingle);
     EXPECT_NEAR(mesh.mTextureCoords[1][v].y, (1 - 20 * uv.x() + 1) / 3, 4 * kSingle);
     EXPECT_NEAR(mesh.mTextureCoords[0][v].x, uv.x(), kSingle);
@@ -189,7 +189,7 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
   EXPECT_NE(support::read_bytes(file("cloth.mtl")).find("laid turned"), std::string::npos);
 }
 
-// A picture that is repeated and not turned is named in MTL too; its alpha makes holes.
+// MTL files also name a picture that is repeated and not rotated; its alpha cuts holes.
 TEST_F(Exported, MaterialFilesNameThePicture) {
   frame::Surface lace = *surfaces_[0];
   frame::Paint& paint = lace.appearance.paint;
@@ -205,7 +205,7 @@ TEST_F(Exported, MaterialFilesNameThePicture) {
   EXPECT_EQ(image::read_picture(file("cloth.png")).rgba[3], 128);
 }
 
-// Readers of MTL repeat a picture along both axes or clamp it along both.
+// Readers of MTL repeat a picture along both axes, or clamp it along both; they cannot mirror it.
 TEST_F(Exported, MaterialFilesSayThatAPictureIsMirrored) {
   frame::Surface mirrored = *surfaces_[0];
   mirrored.appearance.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
@@ -230,7 +230,7 @@ TEST_F(Exported, SurfacesWithoutTextureCoordinatesHaveTheirColorAlone) {
   EXPECT_EQ(support::read_bytes(file("flutter.usda")).find("UsdUVTexture"), std::string::npos);
 }
 
-// The second picture of an object does not take the name of that of an object called cloth_2.
+// An object called cloth_2 has a picture, whose name differs from that of the second picture of the object cloth.
 TEST_F(Exported, EveryPictureHasAFileOfItsOwn) {
   const auto painted = [](frame::Appearance& look, std::uint8_t red) {
     look.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {red, 0, 0, 255}});
@@ -256,7 +256,7 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-// Blender counts samples, so the cache has one for every frame from 1 on, and frames that are not exported are
+// Blender counts samples, so the cache has one sample for every frame from 1 on; those between exported frames are
 // interpolated. The axes are those of the OBJ files: y up, -z forward.
 TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem) {
   write(Format::pc2, {1, 4, 7});
@@ -282,7 +282,7 @@ TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem)
       }
     }
     EXPECT_TRUE(bytes.empty());
-    // Points of the cache and vertices of the mesh are in the same order.
+    // Points of the cache are in the order of the vertices of the mesh.
     std::ifstream mesh(file(surfaces_[s]->name + ".obj"));
     std::size_t vertex = 0;
     for (std::string line; std::getline(mesh, line);) {
@@ -365,7 +365,7 @@ TEST_F(Exported, SharpEdgesHaveANormalOnEitherSide) {
   EXPECT_NE(folded.of_corner[0][1], folded.of_corner[2][0]);
 }
 
-// The weights of an animated node at a time, by linear interpolation between keys, as the file specifies.
+// The weights of an animated node at a time, interpolated linearly between keys, as the file specifies.
 std::vector<double> weights_at(const aiMeshMorphAnim& channel, double time, std::size_t count) {
   std::vector<double> weights(count, 0.0);
   for (unsigned k = 0; k < channel.mNumKeys; ++k) {
@@ -429,7 +429,7 @@ TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
   }
 }
 
-// The weights alone would be 1 TB.
+// The weights alone would need 1 TB.
 TEST_F(Exported, GltfWithTooManyFramesIsRefusedBeforeItsWeightsAreAllocated) {
   const frame::SnapshotPtr first = snapshot(0);
   GltfFile gltf(*first);

@@ -10,7 +10,7 @@
 
 namespace weft::exporter {
 
-/// Rounding of single precision at a metre.
+/// Rounding error of single precision for coordinates of a metre [m].
 inline constexpr double kSingle = 1.2e-7;
 
 class MadeFrames : public support::TestFolder {

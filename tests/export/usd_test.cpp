@@ -1,5 +1,5 @@
 // Content of USD files and of scripts for Blender, parsed by small readers in this file. tests/export/blender_test.py
-// runs the script in Blender itself.
+// runs a script in Blender itself.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ class Staged : public MadeFrames {
     dress.parts = {{"front", dress.appearance}, {"back", {}}};
     dress.part_of_triangle = {0, 1};
     frame::Surface body;
-    body.name = "red_dress";  // the same name after conversion for USD
+    body.name = "red_dress";  // becomes the same name in USD
     body.kind = frame::ObjectKind::character;
     body.triangles = {{0, 1, 2}, {0, 2, 3}};
     add_surfaces({dress, body});
@@ -122,7 +122,7 @@ TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
     const auto place = static_cast<std::size_t>(at[c]);
     EXPECT_EQ(Vec2(st[2 * place], st[2 * place + 1]), uv) << c;
   }
-  // Cloth has one normal per vertex. A bent sheet with a sharp crease has normals per corner, those of its triangles.
+  // Cloth has one normal per vertex. A bent sheet with a sharp crease has one normal per corner: that of its triangle.
   EXPECT_EQ(value(dress, "normal3f[] normals").size(), 12U);
   const std::vector<double> normals = value(body, "normal3f[] normals");
   ASSERT_EQ(normals.size(), 18U);
@@ -167,7 +167,7 @@ TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
   EXPECT_NE(back.find("diffuseColor.connect = </_1st_film/materials/red_dress_1_back/picture.outputs:rgb>"),
             std::string::npos);
   EXPECT_EQ(image::read_picture(request_.folder / "red-dress.png").rgba, (std::vector<std::uint8_t>{10, 20, 30, 255}));
-  // Texture coordinates of the picture, and beside them weft and warp.
+  // The file has the texture coordinates of the picture and, in addition, weft and warp.
   const std::string mesh = block(text, "def Mesh \"red_dress\"");
   const std::vector<double> st = value(mesh, "primvars:st"), at = value(mesh, "primvars:st:indices");
   const std::vector<double> pattern = value(mesh, "primvars:weft_warp");
@@ -182,7 +182,7 @@ TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
 }
 
 TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
-  // With these lengths of the name, the padding in front of the text takes every possible length.
+  // With names of these lengths, the padding before the text takes every possible length.
   for (request_.name = "a"; request_.name.size() < 68; request_.name += 'a') {
     const std::string inner = request_.name + ".usda", name = request_.name + ".usdz";
     const std::string bytes = written(Format::usdz, name);
@@ -223,7 +223,7 @@ TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {
   ASSERT_EQ(samples.size(), 3U * 17);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_EQ(samples[17 * k], 2.0 + static_cast<double>(k));
-    // The last row of the matrix is the position.
+    // The last row of the matrix contains the position.
     EXPECT_EQ(Vec3(samples[17 * k + 13], samples[17 * k + 14], samples[17 * k + 15]), Vec3(samples[17 * k], 2, 3));
   }
 }
