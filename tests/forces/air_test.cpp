@@ -84,7 +84,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   const auto force_at = [&](const Positions& velocities) { return testing::force_of(air, x, velocities); };
   constexpr double kEpsilon = 1e-6;
   for (unsigned trial = 0; trial < 6; ++trial) {
-    // Moves all particles together, or each by itself.
+    // Changes all velocities by the same vector, or each by its own.
     Positions change = testing::random_vectors(x.size(), 1, 2 + trial);
     if (trial < 3) change.assign(x.size(), change[0]);
     Positions after = v, before = v, product(x.size(), Vec3::Zero());
@@ -96,7 +96,8 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
       of_matrix += change[i].dot(product[i]);
       of_force -= rate * change[i].dot(f_after[i] - f_before[i]) / (2 * kEpsilon);
     }
-    // The law has a kink only in its second derivative. Errors: ε², and rounding over ε.
+    // The law has a kink only in its second derivative. The tolerance covers errors of order ε², and rounding errors
+    // divided by ε.
     if (trial < 3)
       EXPECT_NEAR(of_matrix, of_force, 1e-6 * of_matrix);
     else

@@ -42,7 +42,7 @@ TEST(Bend, PlaneHasNoBendForceHoweverItsParticlesLie) {
 }
 
 TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
-  // Only inner particles have curvature: along weft the energy covers all but half a spacing at either end.
+  // Only inner particles have curvature: along weft, the energy does not cover half a spacing at either end.
   for (double angle : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
     const auto error_at = [&](int cells) {
       const mesh::Grid grid = grid_of(cells);
@@ -54,8 +54,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
       return std::abs(Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, angle)) / expected - 1);
     };
     for (int cells : {2, 4}) {
-      // On a circle a second difference is too small by the fraction l² / 12 R², the energy by twice that. If the
-      // differences are oblique, the error is smaller.
+      // On a circle, a second difference is too small by the fraction l² / 12 R², and the energy by twice that. The
+      // error is smaller if the differences are oblique.
       const double l = grid_of(cells).lu;
       EXPECT_LT(error_at(cells), 1.01 * l * l / (6 * kRadius * kRadius));
       EXPECT_NEAR(std::log2(error_at(cells) / error_at(2 * cells)), 2, 0.02) << "angle " << angle;
@@ -64,8 +64,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
 }
 
 TEST(Bend, ParabolaHasTheEnergyOfThePlateOnAGradedGridToRounding) {
-  // Second differences of parabolas are exact for any spacing. All of the plate but half a spacing at either end has
-  // the same curvature; the twist, measured in the cells, covers all of it.
+  // Second differences of parabolas are exact for any spacing. The plate has constant curvature except for half a
+  // spacing at either end; the twist, measured in the cells, covers all of it.
   mesh::Grid grid = grid_of(2);
   grid.weft_grading = 5, grid.warp_grading = 0.5;
   const double width = grid.u(grid.nu - 1), height = grid.v(grid.nv - 1);
@@ -85,7 +85,7 @@ TEST(Bend, CylinderApproachesHalfBAOverRSquaredAsTheGridIsRefined) {
     const double expected = 0.5 * kRigidity * 0.2 * 0.15 / (kRadius * kRadius);
     return 1 - Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, 0)) / expected;
   };
-  // First order: half a spacing at either free end has no curvature, 1/8 and 1/64 of the length.
+  // First order: half a spacing at either free end has no curvature; these ends are 1/8 and 1/64 of the length.
   EXPECT_NEAR(error_at(2), 1.0 / 8, 0.005);
   EXPECT_NEAR(error_at(16), 1.0 / 64, 0.0005);
 }
@@ -99,7 +99,7 @@ TEST(Bend, RestoresTowardsThePlane) {
   const Positions f = testing::force_of(bend, x, testing::zeros(x));
   EXPECT_LT(f[middle].z(), 0);
   EXPECT_NEAR(f[middle].x(), 0, 1e-16);
-  // −B Δ² of a spike at an inner particle; the 13-point stencil has −20 / l⁴ at its centre, times the area l².
+  // −B Δ² of a spike at an inner particle: the 13-point stencil has −20 / l⁴ at its centre, times the area l².
   const mesh::Grid large = grid_of(3);
   Positions spike = testing::flat(large);
   const auto centre = static_cast<std::size_t>(large.index(6, 4));
@@ -112,7 +112,8 @@ TEST(Bend, RestoresTowardsThePlane) {
 }
 
 TEST(Bend, FrictionIsAMomentOfConstantSizeAgainstTheChangeOfCurvature) {
-  // The curvature of a cylinder grows at rates far above and far below the one at which friction reaches its full size.
+  // The curvature of a cylinder grows, at rates far above and far below the rate at which friction reaches its full
+  // size.
   constexpr double kFriction = 3e-3;
   const Bend bend(testing::kGrid, 0, BendParameters{0, 0, kFriction});
   const double curvature = 2;

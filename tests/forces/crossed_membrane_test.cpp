@@ -35,7 +35,7 @@ Positions crumpled(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Cells become parallelograms; their middles are anywhere in the plane.
+/// Moves corners so that cells become parallelograms; the middle particles are anywhere in the plane.
 Positions parallelograms(const mesh::Sheet& sheet, double size) {
   Positions x = sheet.rest;
   const Positions noise = testing::random_vectors(x.size(), size, 5);
@@ -47,7 +47,7 @@ Positions parallelograms(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Shears each cell in its plane until its corners span `area_ratio` of their area.
+/// Shears each cell in its plane until its area is `area_ratio` times that at rest.
 Positions fold_up(const mesh::Sheet& sheet, double area_ratio) {
   Positions x = crumpled(sheet, 0.001);
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -71,7 +71,7 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
       for (int axis = 0; axis < 3; ++axis) {
         Positions more = x, less = x;
         more[i][axis] += kStep, less[i][axis] -= kStep;
-        // Error of the difference: third derivatives × kStep², and rounding of 1e-2 J / kStep, 1e-9 N together.
+        // Error of the difference: third derivatives × kStep², and rounding of 1e-2 J / kStep; together 1e-9 N.
         EXPECT_NEAR(f[i][axis], (membrane.energy(less) - membrane.energy(more)) / (2 * kStep), 1e-7 * largest);
       }
     }
@@ -80,8 +80,9 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   }
 }
 
-// The diagonals of a cell span only 1e-6 of its area, so their normal is undefined. Its length is 1e-6 / (½ S₀) = 4e-6
-// instead of 1, with S₀ = 0.5 (kFoldedSize). Forces thus differ by a few times 1e-6 of stiffness × cell width.
+// The diagonals of a cell span only 1e-6 of its area, so its normal is undefined. The length of the normal is 1e-6 / (½
+// S₀) = 4e-6 instead of 1, with S₀ = 0.5 (kFoldedSize). Forces thus differ by a few times 1e-6 of stiffness × cell
+// width.
 TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
@@ -98,14 +99,15 @@ TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-5 * largest);
 }
 
-// In a cell that is folded about a diagonal the threads keep their lengths.
+// If a cell folds about a diagonal, its threads keep their lengths.
 TEST(CrossedMembrane, LetsThreadsAtOppositeSidesOfACellBeSkew) {
   const mesh::Sheet sheet =
       mesh::make_sheet_from_mesh(mesh::make_triangle_sheet({2, 2, 0.02, 0.02}, mesh::Pattern::crossed));
   const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
   Positions x = sheet.rest;
   const double angle = 0.8, half = 0.02 * std::sqrt(0.5);
-  // Corners in grid order: (0, 0), (1, 0), (0, 1), (1, 1); the fold runs from the second to the third.
+  // Corners in the order of the grid: (0, 0), (1, 0), (0, 1), (1, 1). The fold is the line from the second to the third
+  // corner.
   x[0] = {-half * std::cos(angle), 0, half * std::sin(angle)},
   x[3] = {half * std::cos(angle), 0, half * std::sin(angle)};
   x[1] = {0, -half, 0}, x[2] = {0, half, 0};

@@ -20,7 +20,7 @@ using testing::Positions;
 
 constexpr double kRate = 150;  // dv/dx of a scheme [1/s]
 
-/// As kGrid, with spacings from 10 to 29 mm along weft and from 42 to 19 mm along warp.
+/// As kGrid, but with spacings from 10 to 29 mm along weft and from 42 to 19 mm along warp.
 const mesh::Grid kGraded{5, 4, 0.02, 0.03, 3, 0.45};
 
 struct Case {
@@ -43,7 +43,7 @@ const Case kCases[] = {
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 0});
      }},
-    // These velocities change the curvature at about 1e4 1/(m·s), where friction has its full size.
+    // These velocities change the curvature by about 1e4 1/(m·s), at which friction has its full size.
     {"bend_with_friction",
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 1000 * viscous});
@@ -84,7 +84,7 @@ const Case kCases[] = {
        membrane->interpolate_rest_shape(0.4);
        return membrane;
      }},
-    // Of the crumpled threads some are below the onset, some lock, some exceed the limit.
+    // Of the crumpled threads, some are below the onset, some lock, and some exceed the limit.
     {"stretch_limit",
      [](double, double) { return std::make_unique<StretchLimit>(kGrid, 0, StretchParameters{}, 0.1, 0.1); }},
     {"stretch_limit_of_triangles",
@@ -119,9 +119,9 @@ const Case kCases[] = {
 
 class Derivatives : public ::testing::TestWithParam<Case> {};
 
-// Central differences at ε = 4e-7 m and at half of it, extrapolated so that the error of order ε² cancels. The
-// direction of a slight curvature κ turns by ε / (l² κ) = 1e-3. Without extrapolation the error would be the square of
-// this, with it the error is below 1e-10.
+// Central differences with ε = 4e-7 m and half of it, extrapolated so that the error of order ε² cancels. The direction
+// of a slight curvature κ turns by ε / (l² κ) = 1e-3. Without extrapolation, the error would be the square of this;
+// with it, the error is below 1e-10.
 constexpr double kDifference = 4e-7;
 constexpr double kRelative = 5e-8;
 
@@ -138,7 +138,7 @@ TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
         x[i][axis] = place - kDifference;
         const double below = force->energy(x);
         x[i][axis] = place;
-        // The last term is the rounding of the energies.
+        // The last term is the rounding error of the energies.
         EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kDifference),
                     kRelative * testing::largest(f) + 1e-15 * above / kDifference);
       }
@@ -177,7 +177,7 @@ TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
     const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate);
     const double scale = k.cwiseAbs().maxCoeff();
     EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
-    // A few dozen roundings in each of 60 rows.
+    // Tolerance: a few dozen roundings in each of 60 rows.
     EXPECT_GT(k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
   }
 }
@@ -194,7 +194,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   if (GetParam().name.starts_with("bend")) {
-    // The projected damping is as stiff across the curvature as along it: projecting only adds stiffness.
+    // Projection only adds stiffness: the projected damping is as stiff across the curvature as along it.
     const Eigen::MatrixXd added = definite - exact;
     EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * added.cwiseAbs().maxCoeff());
     return;
@@ -204,7 +204,8 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
 }
 
 TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
-  // If the sheet was lifted from a plane, all curvature vectors point up. Damping along them is equal in both matrices.
+  // A sheet that was lifted from a plane has curvature vectors that all point up. Damping along them is equal in both
+  // matrices.
   const mesh::Sheet sheet = mesh::make_sheet_from_mesh(testing::delaunay_sheet(kGrid, 0.3, 3));
   Positions x = sheet.rest;
   for (Vec3& point : x) point.z() = 3 * point.x() * point.x() - 5 * point.x() * point.y();
@@ -231,7 +232,7 @@ TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
 }
 
 TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
-  // Shows why a projected Hessian is needed; bending alone needs none.
+  // This test shows why a projected Hessian is needed; only bending needs none.
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 3);
   const Eigen::MatrixXd k = testing::jacobian_of(*force, x, testing::zeros(x), kRate);

@@ -43,7 +43,7 @@ TEST(EnclosedVolume, IsThatOfAPolyhedronWhicheverWayItsFacesLookAndWhereverItIs)
   for (mesh::Triangle& t : box.topology.triangles) std::swap(t[0], t[1]);
   EXPECT_NEAR(volume_of(box), 0.06, 1e-16);
   for (Vec3& x : box.positions) x += Vec3(1e4, -2e4, 3e4);
-  EXPECT_NEAR(volume_of(box), 0.06, 1e-12);  // 7e-14 measured: positions are rounded
+  EXPECT_NEAR(volume_of(box), 0.06, 1e-12);  // measured: 7e-14, from rounded positions
   const mesh::Mesh sphere = mesh::make_sphere(0.2, 96);
   EXPECT_NEAR(volume_of(sphere) / (4.0 / 3 * std::numbers::pi * 0.008), 1, 3e-3);
 }
@@ -69,7 +69,7 @@ TEST(EnclosedVolume, OfAnOpenTubeCountsAsClosedByFlatLids) {
 
 TEST(EnclosedVolume, HasAsDerivativeForcesThatBalanceAndAreItsCentralDifferences) {
   mesh::Mesh mesh = bowl(0.07);
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i)  // breaks the symmetry
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)  // makes the mesh asymmetric
     mesh.positions[i] += 0.02 * Vec3(std::sin(3.0 * i), std::sin(5.0 * i + 1), std::sin(7.0 * i + 2));
   const EnclosedVolume volume(mesh.topology.triangles, mesh.positions);
   ASSERT_EQ(volume.openings(), 1u);

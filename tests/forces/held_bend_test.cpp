@@ -42,7 +42,7 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
       return Vec3(u, v, in_front(s, clamp));
     });
     bend.set_held(held);
-    // Area of the bent part: the free sheet, less half a spacing at its end, which is flat.
+    // Area of the bent part: the free part of the sheet, without half a spacing at its end, which is flat.
     const double area = (end - clamp - (along_weft ? grid.width_u(8) : grid.width_v(8))) * across;
     const double expected = 0.5 * kRigidity * kCurvature * kCurvature * area;
     EXPECT_NEAR(bend.energy(x), expected, 1e-12 * expected);
@@ -70,7 +70,7 @@ TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
   }
 }
 
-/// A crumpled Delaunay mesh with its first quarter held: a ragged clamp.
+/// A crumpled Delaunay mesh whose first quarter is held, so that the border of the clamp is ragged.
 struct RaggedClamp {
   mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kHeldSize, 5), 0.35, 3);
   mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
@@ -105,7 +105,8 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
   const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0);
   clamp.bend.set_held(clamp.none);
   EXPECT_GT(held, 1.05 * clamp.bend.energy(clamp.x));
-  // Equal up to weights of rounding size, which the program drops only from stencils away from pins.
+  // The two energies are equal up to weights of the size of rounding errors, which the program drops only from stencils
+  // away from pins.
   EXPECT_NEAR(clamp.bend.energy(clamp.x), never.energy(clamp.x), 1e-12 * held);
   clamp.bend.set_held(clamp.held);
   EXPECT_EQ(clamp.bend.energy(clamp.x), held);

@@ -12,7 +12,7 @@ namespace {
 using testing::kRigidity;
 using testing::Positions;
 
-/// A flat mesh rolled about the warp without stretch; positive curvature bends toward the front.
+/// A flat mesh that is rolled about the warp without stretch. Positive curvature bends it toward its front.
 Positions rolled(const mesh::Mesh& flat, double curvature) {
   Positions x;
   for (const Vec2& uv : flat.uv) {
@@ -37,7 +37,7 @@ TEST(RestCurvature, RestShapeHasNeitherForceNorEnergyWhicheverWayItBends) {
     const mesh::Sheet sheet = rest_of(strip(6), curvature);
     const TriangleBend bend(sheet, 0, {kRigidity, 1e-5, 1e-4});
     for (const Positions& x : {sheet.rest, testing::moved_rigidly(sheet.rest)}) {
-      // B / l² = 1 N/m times the rounding of coordinates, 4e-16 m, and as much again from the weights.
+      // Tolerance: B / l² = 1 N/m times the rounding of coordinates, 4e-16 m; the rounding of weights adds as much.
       EXPECT_LT(testing::largest(testing::force_of(bend, x, testing::zeros(x))), 1e-13);
       EXPECT_LT(bend.energy(x), 1e-20);
     }
@@ -45,8 +45,8 @@ TEST(RestCurvature, RestShapeHasNeitherForceNorEnergyWhicheverWayItBends) {
 }
 
 TEST(RestCurvature, EnergyIsThatOfTheChangeOfCurvatureWithItsSign) {
-  // ½ B (κ − κ0)² A: turning the sheet inside out changes the curvature twice as much as flattening it. First order in
-  // the spacing: the two free ends bear no moment over half a cell each, as on quads.
+  // ½ B (κ − κ0)² A: turning the sheet inside out changes the curvature twice as much as flattening it. The error is of
+  // first order in the spacing, as on quads: over half a cell at either free end, there is no moment.
   for (double rest : {4.0, -4.0})
     for (double now : {0.0, 2.0, -4.0, 6.0}) {
       const auto error_at = [&](int cells) {
@@ -61,7 +61,7 @@ TEST(RestCurvature, EnergyIsThatOfTheChangeOfCurvatureWithItsSign) {
 }
 
 TEST(RestCurvature, FlattenedStripPullsBackWithTheAnalyticMoment) {
-  // dE/dκ = B (κ − κ0) A over all intermediate shapes: the moment that holds a strip at κ. Per width it is B (κ − κ0).
+  // dE/dκ = B (κ − κ0) A for each shape between the two: the moment that holds a strip at κ is B (κ − κ0) per width.
   const mesh::Mesh mesh = strip(20);
   for (double rest : {4.0, -4.0}) {
     const TriangleBend bend(rest_of(mesh, rest), 0, {kRigidity, 0});

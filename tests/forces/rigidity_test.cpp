@@ -1,4 +1,4 @@
-// The stiffness of rigid bodies: force against energy, stiffness against force, no force on rigid motion.
+// The stiffness of rigid bodies: force against energy, stiffness against force, and no force on rigid motions.
 #include "physics/forces/rigidity.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kMass = 2, kStiffness = 1e6;  // [kg], [1/s²]
 
-/// A plate of 300 × 200 × 10 mm; its smallest standard deviation of mass is a thirtieth of its largest.
+/// A plate of 300 × 200 × 10 mm. The standard deviation of its mass along the shortest axis is a thirtieth of that
+/// along the longest.
 mesh::RigidFrame plate() {
   const mesh::Mesh mesh = mesh::make_box(Vec3(0.3, 0.2, 0.01), 0, 8);
   return {mesh.topology.triangles, mesh.positions};
@@ -103,13 +104,14 @@ TEST(Rigidity, HasOneFrequencyForStretchesOfThinAndThick) {
     const Frame x = moved(frame, stretch), start = moved(frame, Mat3::Identity());
     double moved_sq = 0;  // mass-weighted mean square of the displacement [m²]
     for (std::size_t k = 0; k < 4; ++k) moved_sq += 0.25 * (x[k] - start[k]).squaredNorm();
-    // ½ κ m times the mean square of the displacement; the strain has a term of order ε².
+    // ½ κ m times the mean square of the displacement; the strain has an additional term of order ε².
     EXPECT_NEAR(rigidity.energy(x) / (0.5 * kStiffness * kMass * moved_sq), 1, 2 * kStrain);
   }
 }
 
 TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
-  // A turn of 0.4 rad: halfway, the straight paths have shrunk the body; at the end it has its shape again.
+  // The plate rotates by 0.4 rad. Halfway along straight paths, the body is smaller; at the end, it has its shape
+  // again.
   const mesh::RigidFrame frame = plate();
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
   const Frame from = moved(frame, Mat3::Identity()),

@@ -1,4 +1,4 @@
-// Rest shapes of sewn sheets between start and pattern, and elastic bands along their edges.
+// Rest shapes of sewn sheets between start and pattern; elastic bands along edges.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -70,7 +70,7 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
   bool ended = false;
   for (int step = 1; step <= 100; ++step) {
     const double progress = step * kStep;
-    sewn.interpolate_rest_shape(0.5 * (2 * progress - kStep));  // an attempt that was rejected
+    sewn.interpolate_rest_shape(0.5 * (2 * progress - kStep));  // an attempt that is rejected
     sewn.interpolate_rest_shape(progress);
     EXPECT_FALSE(ended);
     ended = sewn.accept_rest_shape(held, kOnset);
@@ -86,7 +86,8 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
   }
   EXPECT_TRUE(ended);
   EXPECT_FALSE(sewn.accept_rest_shape(held, kOnset));
-  // The width ends within two steps (twice the speed of 1 / 100 of the start's excess) of that at which threads lock.
+  // The width ends at the onset of locking, within two steps: a step changes it by 1 / 100 of the start's excess, at up
+  // to twice the mean speed.
   EXPECT_NEAR(sewn.max_strain(held), kOnset, 2 * kStep * kHeld);
   EXPECT_NEAR(sewn.widening().fraction, kHeld / (1 + kOnset) - 1, 2 * kStep);
   EXPECT_EQ(free.widening().fraction, 0);
@@ -130,7 +131,7 @@ TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
   sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0, 0});
   const Bands bands(sheet, 0, 1000);
   const Positions f = testing::force_of(bands, sheet.rest, testing::zeros(sheet.rest));
-  // The band is 20 mm long and 16 mm at rest: 50 N · 0.25.
+  // The band is 20 mm long, and 16 mm at rest: 50 N · 0.25.
   EXPECT_NEAR(f[0].x(), 12.5, 1e-12);
   EXPECT_NEAR(f[1].norm(), 0, 1e-12);
   EXPECT_NEAR(f[2].x(), -12.5, 1e-12);

@@ -25,7 +25,7 @@ TEST(Shear, UniformShearHasTheEnergyOfTheContinuum) {
 }
 
 TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
-  // A curved, sheared surface around the point (0.3, 0.2), and ⟨s_u, s_v⟩ there from its derivatives.
+  // A curved and sheared surface around the point (0.3, 0.2); ⟨s_u, s_v⟩ there follows from its derivatives.
   const auto surface = [](double u, double v) {
     return Vec3(u + 0.2 * std::sin(2 * v + u), v + 0.1 * u * v * v, 0.3 * std::cos(3 * u) * std::sin(2 * v));
   };
@@ -35,7 +35,7 @@ TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
   const Vec3 sv(0.4 * c, 1 + 0.2 * u * v, 0.6 * std::cos(3 * u) * std::cos(2 * v));
   const double exact = 0.5 * kModulus * su.dot(sv);
 
-  // One cell around the point; its stress ½ μ ⟨s_u, s_v⟩ follows from its energy ¼ μ ⟨s_u, s_v⟩² A.
+  // One cell around the point. Its stress ½ μ ⟨s_u, s_v⟩ follows from its energy ¼ μ ⟨s_u, s_v⟩² A.
   const auto error_at = [&](double l) {
     const mesh::Grid cell{2, 2, l, l};
     const Positions x =
@@ -44,7 +44,7 @@ TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
     return std::abs(stress - std::abs(exact));
   };
   for (double l : {0.04, 0.02, 0.01})
-    // The next term of the error is of order l⁴: here below 1 % of the first.
+    // The next term of the error is of order l⁴: here less than 1 % of the first.
     EXPECT_NEAR(std::log2(error_at(l) / error_at(l / 2)), 2, 0.02) << "l = " << l;
 }
 

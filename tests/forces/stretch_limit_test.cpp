@@ -21,7 +21,8 @@ const double kSine = std::sin(0.5);
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr StretchParameters kBelow{2000, 1000};
 
-// A sheet with these thread lengths along weft and warp; `sine`: sine of their deviation from the right angle.
+// A sheet whose threads have these lengths along weft and warp, relative to rest. `sine`: sine of the deviation of
+// their angle from the right angle.
 Positions drawn(double weft, double warp, double sine = 0) {
   const double cosine = std::sqrt(1 - sine * sine);
   return testing::shaped(kGrid,
@@ -37,7 +38,7 @@ std::vector<std::unique_ptr<StretchLimit>> both(double stretch, double shear) {
   return limits;
 }
 
-// Integrates the stress by the midpoint rule; only the third derivative of the law is not continuous.
+// Integrates the stress by the midpoint rule. Only the third derivative of the law is discontinuous.
 double integral(const Lock& lock, double to) {
   constexpr int kPieces = 10000;
   double sum = 0;

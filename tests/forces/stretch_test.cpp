@@ -34,7 +34,7 @@ TEST(Stretch, BorderOfAUniformlyStrainedSheetPullsWithTheStressTimesItsWidth) {
   for (int i = 0; i < kGrid.nu; ++i) low += f[kGrid.index(i, 0)];
   EXPECT_NEAR(left.x(), 1000 * 0.03 * kHeight, 1e-12);
   EXPECT_NEAR(low.y(), -700 * 0.02 * kWidth, 1e-12);
-  // Inside the sheet, the forces of both sides cancel.
+  // Inside the sheet, the forces of both sides of a particle cancel.
   EXPECT_LT(f[kGrid.index(2, 1)].norm(), 1e-12);
 }
 

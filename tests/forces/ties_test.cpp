@@ -69,7 +69,7 @@ TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   EXPECT_EQ(held(kNever, 1, 0.99), 0);
   EXPECT_NEAR(held(kNever, 1, 1 + 0.5 * Ties::kClosing), 0.5 * kPull, 1e-6);
   EXPECT_NEAR(held(kNever, 1, kAfter), kPull, 1e-6);
-  // First closed, then opened again; then opened and closed again.
+  // Ties that close first and open later; then ties that open first and close later.
   EXPECT_EQ(held(3, 1, 0), 0);
   EXPECT_NEAR(held(3, 1, kAfter), kPull, 1e-6);
   EXPECT_EQ(held(3, 1, 3), 0);

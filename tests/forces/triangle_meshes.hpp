@@ -45,8 +45,8 @@ inline void make_delaunay(std::vector<mesh::Triangle>& triangles, const std::vec
   }
 }
 
-/// The particles of a grid, each moved by up to `jitter` cells (border particles only along the border), with the
-/// Delaunay triangles in grid coordinates (i, j): if the cells are not square, the triangles are stretched likewise.
+/// The particles of a grid, each moved by up to `jitter` cells (border particles only along the border). The triangles
+/// are Delaunay in grid coordinates (i, j), so triangles of cells that are not square are stretched like the cells.
 inline mesh::Mesh delaunay_sheet(const mesh::Grid& grid, double jitter, unsigned seed) {
   mesh::Mesh sheet = mesh::make_triangle_sheet(grid, mesh::Pattern::aligned);
   std::mt19937 engine(seed);
@@ -69,7 +69,8 @@ inline mesh::Mesh delaunay_sheet(const mesh::Grid& grid, double jitter, unsigned
   return sheet;
 }
 
-/// A kind of mesh for a sheet of `size` metres with `cells` cells along its shorter side (crossed: as many particles).
+/// A kind of mesh for a sheet of `size` metres with `cells` cells along its shorter side. Crossed meshes have fewer
+/// cells, but as many particles.
 struct Meshing {
   const char* name;
   mesh::Mesh (*make)(const Vec2& size, int cells);
@@ -83,7 +84,7 @@ inline mesh::Grid grid_of_squares(const Vec2& size, double cells) {
   return grid_with(size, static_cast<int>(size.x() / l + 0.5), static_cast<int>(size.y() / l + 0.5));
 }
 
-/// Twice as many cells along warp and half as many along weft: aspect ratio 4.
+/// Grid with twice as many cells along warp and half as many along weft: cells have an aspect ratio of 4.
 inline mesh::Grid grid_of_aspect_4(const Vec2& size, int cells) {
   const double l = size.minCoeff() / cells;
   return grid_with(size, static_cast<int>(size.x() / (2 * l) + 0.5), static_cast<int>(size.y() / (0.5 * l) + 0.5));

@@ -1,4 +1,4 @@
-// Triangle cloth is exact on any mesh if the continuum solution is simple.
+// Triangle cloth must be exact on any mesh if the continuum solution is simple.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,7 +41,7 @@ std::vector<char> inside(const mesh::Sheet& sheet, int rings) {
 TEST(TriangleMembrane, DefiniteFormLeavesOutWhatCompressionSoftens) {
   const mesh::Mesh mesh = mesh::make_triangle_sheet(mesh::Grid{3, 3, 0.1, 0.1}, mesh::Pattern::aligned);
   TriangleMembrane membrane(mesh::make_sheet_from_mesh(mesh), 0, {1000, 0, 0}, {0, 0});
-  // Energy when the weft turns out of the plane, s_u = (stretch, 0, θ).
+  // Second derivative of the energy when the weft turns out of the plane: s_u = (stretch, 0, θ).
   const auto stretched = [&](double stretch) {
     return mapped(mesh, [&](double u, double v) { return Vec3(stretch * u, v, 0); });
   };
@@ -113,7 +113,7 @@ TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
       for (Index e : edges.of_triangle[t]) free = free || edges.edges[e].triangles[1] < 0;
       if (free) continue;
       ++exact;
-      // Rounding of weights 1/l², 1e4 to 1e6, times values of one.
+      // Tolerance: rounding of weights 1/l² (1e4 to 1e6) times values of size one.
       EXPECT_LT((curvature - Vec3(1.4, 0.8, -1.1)).norm(), 2e-9) << meshing.name << ", triangle " << t;
     }
     EXPECT_GT(exact, static_cast<int>(stencils.size()) / 2);
@@ -131,13 +131,13 @@ TEST(TriangleBend, ConstantMomentLeavesNoForceInside) {
     double largest = 0;
     for (std::size_t i = 0; i < f.size(); ++i)
       if (inner[i]) largest = std::max(largest, f[i].norm());
-    // Relative to the forces at the border.
+    // The tolerance is relative to the forces at the border.
     EXPECT_LT(largest, 1e-9 * testing::largest(f)) << meshing.name;
   }
 }
 
 TEST(TriangleBend, OnlyRigidMotionsAndStretchCostNothing) {
-  // Lowest frequency of a free square plate (ν = 0): 15.57 √(B/ρ)/L², to which these meshes converge under refinement;
+  // The lowest frequency of a free square plate (ν = 0) is 15.57 √(B/ρ)/L². The meshes converge to it under refinement;
   // no mesh may have a softer mode.
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make({1, 1}, 10);
