@@ -67,7 +67,8 @@ TEST(Cords, AreClosedSurfacesOfTheDiameterAroundTheChain) {
       }
       // The spline is outside the chords by kPiece² / 8 R, 1 mm.
       EXPECT_NEAR(farthest, 0.5 * kDiameter, 1.1e-3);
-      // Faces point outward. Furrows remove a fifth of the circle's area, ten sides a sixteenth, twisted strands more.
+      // Faces point outward. Relative to a circle, furrows between strands remove a fifth of the area, ten sides a
+      // sixteenth, and twisted strands some more.
       const double length = kPiece * (closed ? 24 : 23);
       EXPECT_GT(volume, 0.65 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
       EXPECT_LT(volume, 1.3 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
