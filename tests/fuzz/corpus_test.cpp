@@ -1,4 +1,4 @@
-// Inputs that fuzzing found and kept, read in every build. tests/fuzz/run searches for more.
+// Inputs that fuzzing has found, read in every build. tests/fuzz/run searches for more inputs.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -55,7 +55,8 @@ std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A file in memory, for readers that need a name: a million files a minute would wear out a disk.
+/// A file in memory, for readers that need a file name. Files on a disk would wear it out: there are a million a
+/// minute.
 class MemoryFile {
  public:
   explicit MemoryFile(Bytes bytes) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
@@ -88,7 +89,7 @@ void may_refuse(std::initializer_list<ExitCode> codes, const Read& read) {
   }
 }
 
-// This file need not exist. The scenes of the corpus name files relative to its folder.
+// The scenes of the corpus name files relative to the folder of this file, which need not exist.
 constexpr const char* kSceneFile = WEFT_SOURCE_DIR "/tests/scene/fuzz.toml";
 
 void read_scene(Bytes bytes) {
@@ -133,9 +134,9 @@ int depth_of(const nlohmann::ordered_json& json) {
   return deepest;
 }
 
-// nests_too_deep() limits the parts of a header to kMaxDepth, and separately the keys and values below it. Each part
-// of a header can be an array of tables, which has two levels. The 3 allows for levels that the check does not count,
-// such as the first part of a key.
+// nests_too_deep() limits the parts of a header to kMaxDepth, and separately the keys and values below it. Each part of
+// a header can be an array of tables, which counts as two levels. The constant 3 is for levels that the check does not
+// count, such as the first part of a key.
 void read_toml(Bytes bytes) {
   try {
     require(depth_of(parse_toml(text_of(bytes))) <= 3 * kMaxDepth + 3, "TOML nests as deep as it may");
@@ -216,7 +217,7 @@ void read_outline(Bytes bytes) {
   require(garment::Arclength(parsed.outline).length() >= 0, "a length is no less than zero");
 }
 
-/// Corrects the checksums of a PNG file, so that damage reaches the code behind the check.
+/// Corrects the checksums of a PNG file, so that the fuzzer reaches the code after the check.
 std::vector<std::uint8_t> with_right_sums(Bytes bytes) {
   std::vector<std::uint8_t> mended(bytes.begin(), bytes.end());
   for (std::size_t chunk = 8; chunk + 12 <= mended.size();) {
@@ -255,8 +256,8 @@ void read_layers(Bytes bytes) {
   });
 }
 
-// Decodes the answer of a Weft child process. The child reads arbitrary files, which may corrupt the child, so its
-// answer is not trusted.
+// Decodes the answer of a Weft child process. The child reads arbitrary files, which may corrupt it, so its answer
+// cannot be trusted.
 template <auto decode>
 void read_answer(Bytes bytes) {
   try {
@@ -265,7 +266,7 @@ void read_answer(Bytes bytes) {
   }
 }
 
-// Corrects the sizes and the checksum of the header, so that damage reaches the code behind the check.
+// Corrects sizes and checksum of the header, so that the fuzzer reaches the code after the check.
 void read_container(Bytes bytes) {
   constexpr std::size_t kStoredSizeAt = 40, kSumAt = 48, kHeaderSize = 56;
   std::string file(text_of(bytes));

@@ -7,8 +7,8 @@
 
 namespace weft::fuzz {
 
-/// Reads any bytes, which are accepted or refused as the reader's header states. Anything else, including a result that
-/// breaks a promise of the reader, is thrown as std::logic_error or found by a sanitizer.
+/// Reads any bytes. The reader must accept or refuse them as its header states. Any other result is an error:
+/// std::logic_error if a promise of the reader is broken, or a report of a sanitizer.
 struct Target {
   std::string_view name;  ///< its corpus is the folder corpus/<name>
   void (*read)(std::span<const std::uint8_t> bytes);

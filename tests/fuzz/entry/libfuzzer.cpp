@@ -1,4 +1,4 @@
-// One program of libFuzzer for each target: what the fuzzer calls for each input.
+// Entry point of libFuzzer: the function that the fuzzer calls for each input. There is one program for each target.
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
