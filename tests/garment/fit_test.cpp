@@ -1,4 +1,4 @@
-// A pattern for one body on another: measurements, and the resulting scale.
+// A pattern that is drawn for one body, on another body: measurements, and the resulting scale.
 #include "film/garment/fit.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace weft::garment {
 namespace {
 
-// Radii of a rotationally symmetric body of 1.7 m: knees, hips, waist, chest, shoulders, neck [m].
+// Radii of a rotationally symmetric body of 1.7 m [m], at the heights of knees, hips, waist, chest, shoulders and neck.
 double radius(double z) {
   const std::vector<std::pair<double, double>> places{{0, 0.08},    {0.5, 0.09}, {0.9, 0.16}, {1.1, 0.11}, {1.28, 0.15},
                                                       {1.34, 0.15}, {1.42, 0.2}, {1.5, 0.06}, {1.7, 0.06}};
@@ -45,7 +45,7 @@ Wearer round_wearer() {
   return wearer;
 }
 
-// The shoulders are wider than the chest and must not count as chest. Tolerances: sections are 10 mm apart, so that the
+// The shoulders are wider than the chest, and must not count as chest. Tolerances: sections are 10 mm apart, so the
 // girth is off by up to 19 mm where the radius has a slope of 0.3; polygons of 96 corners are shorter than circles by
 // 0.02 %.
 TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
@@ -56,7 +56,8 @@ TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   EXPECT_NEAR(*measures.height, 1.7, 0.011);
 }
 
-// Between chest and hips, a puppet has a ball. Below the ball, its sections shrink to a point.
+// A puppet has a ball between chest and hips. At the bottom of the ball, its sections shrink to a point, which is no
+// waist.
 TEST(Fit, TakesNoTipOfAPartForTheWaist) {
   constexpr double kBall = 0.13, kBottom = 1.02;
   Wearer wearer = round_wearer();
@@ -77,7 +78,7 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
   Pattern pattern;
   pattern.measures = {*own.chest / 1.1, *own.waist / 1.3, *own.hip / 0.9, {}, {}};
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.3, 1)).norm(), 1e-12);
-  // Heights are compared at the neck: a head of any size leaves the garment where it is.
+  // Heights are compared at the neck, so the size of the head does not move the garment.
   const double height = wearer.neck / kNeckHeightRatio / 1.2;
   pattern.measures = {{}, {}, *own.hip / 0.9, {}, height};
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(0.9, 1.2)).norm(), 1e-12);
@@ -88,7 +89,7 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
-// Arms like tubes, 0.3 m around where the chest is: as thick as those of a figure with a short trunk.
+// Arms are tubes, 0.3 m around near the chest: as thick as the arms of a figure with a short trunk.
 TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   constexpr double kGirth = 0.3, kLength = 0.6;
   constexpr int kAround = 64, kAlong = 61;
@@ -122,7 +123,7 @@ TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").rise, 0, 1e-12);
 }
 
-// A figure of paper: each arm is one rectangle, whose sections are lines.
+// A flat figure: each arm is one rectangle, whose sections are lines.
 TEST(Fit, MeasuresNoFlatArms) {
   Wearer wearer = round_wearer();
   for (const double side : {1.0, -1.0}) {
@@ -139,7 +140,7 @@ TEST(Fit, MeasuresNoFlatArms) {
   EXPECT_EQ(*measure(wearer).chest, *measure(round_wearer()).chest);
 }
 
-// The outline of a panel can itself be at the height at which it is worn; the panel then states no position.
+// The outline of a panel can be drawn at the height at which it is worn. The panel then has no position.
 TEST(Fit, RaisesFlatPanelsWithoutAPositionToo) {
   Pattern pattern;
   pattern.panels.resize(2);
@@ -155,7 +156,7 @@ TEST(Fit, RaisesFlatPanelsWithoutAPositionToo) {
   EXPECT_FALSE(pattern.panels[0].position.has_value());
 }
 
-// What is across in the drawing of a panel that lies on its side is up on the wearer.
+// A panel that lies on its side in the drawing is worn upright: its horizontal direction is vertical on the wearer.
 TEST(Fit, ScalesPanelsThatTurnAsTheyAreWorn) {
   Pattern pattern;
   Panel& panel = pattern.panels.emplace_back();
@@ -167,7 +168,7 @@ TEST(Fit, ScalesPanelsThatTurnAsTheyAreWorn) {
   EXPECT_LT((pattern.panels[0].edges[0].curves[0].end() - Vec2(6, 8)).norm(), 1e-12);
 }
 
-// The waist of the round body is at 1.1 m. A skirt hangs there, whatever the height of the neck.
+// The waist of the round body is at 1.1 m. A skirt hangs there, independently of the height of the neck.
 TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
   Wearer wearer = round_wearer();
   wearer.neck = 1.40;
@@ -235,8 +236,8 @@ TEST(Fit, RefusesABodyInMillimetres) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
-// If hips are hardly wider than the waist of a garment, the garment falls to the feet, unless it also hangs from the
-// shoulders.
+// If hips are hardly wider than the waist of a garment, the garment slips to the feet, unless it hangs from the
+// shoulders too.
 TEST(Fit, TellsOfHipsThatHoldNothingUp) {
   const Wearer wearer = round_wearer();
   const double hip = *measure(wearer).hip;

@@ -59,7 +59,8 @@ TEST(PanelMeshes, FillTheirOutlineExactly) {
       }
 }
 
-// The circumcircle of each triangle contains no point that is visible from it; for a convex outline, no point at all.
+// The circumcircle of each triangle contains no point that is visible from the triangle; for a convex outline, no point
+// at all.
 TEST(PanelMeshes, AreDelaunay) {
   const std::vector<Vec2> outline = cut_sides({{0, 0}, {1, 0.1}, {0.9, 0.7}, {0.2, 0.8}}, 0.05);
   const FlatMesh mesh = mesh_panel(outline, {0, 1}, 0.05);
@@ -68,7 +69,7 @@ TEST(PanelMeshes, AreDelaunay) {
     Eigen::Matrix2d sides;
     sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
     const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());
-    // To make the choice of diagonals unique, the mesher shifts rows by less than 1e-4 spacings in total.
+    // The mesher shifts rows by less than 1e-4 spacings in total, to make the choice of diagonals unique.
     const double radius = (a - centre).norm() - 1e-4 * 0.05;
     for (const Vec2& p : mesh.points) EXPECT_GT((p - centre).norm(), radius - 1e-9);
   }
@@ -97,7 +98,7 @@ TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
   EXPECT_GT(inner, 150);
 }
 
-// Triangles at corners of the outline may have smaller angles, because corners keep theirs.
+// Triangles at corners of the outline may have smaller angles, because the angles of corners are given.
 TEST(PanelMeshes, AnglesOfThePatternsThatShipAreAtLeast23Degrees) {
   for (const char* name : {"dress", "skirt", "tshirt"}) {
     const Pattern pattern = load_pattern(std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml", "a test");

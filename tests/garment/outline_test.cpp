@@ -36,13 +36,13 @@ TEST(Outlines, LinesInEveryFormGiveTheSamePolygon) {
 }
 
 TEST(Outlines, ArcsAreCircles) {
-  // A cubic that approximates a quarter circle is off by 2.7e-4 of the radius at most. Areas have smaller errors.
+  // A cubic that approximates a quarter circle deviates by at most 2.7e-4 of the radius. Areas have smaller errors.
   const double disc = std::numbers::pi * 0.25;
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 0 1 0.5 0 A 0.5 0.5 0 0 1 -0.5 0 Z"), disc, 3e-4 * disc);
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 1 0 0.5 0 A 0.5 0.5 0 1 0 -0.5 0 Z"), -disc, 3e-4 * disc);
-  // Three quarters of the disc, then the corner: the larger arc.
+  // The larger arc, three quarters of the circle, then lines to the centre.
   EXPECT_NEAR(area_of("M 0.5 0 A 0.5 0.5 0 1 0 0 0.5 L 0 0 Z"), -0.75 * disc, 3e-4 * disc);
-  // An ellipse turned by 30 degrees; radii that are too small for the distance are scaled up.
+  // An ellipse rotated by 30 degrees. If radii are too small for the distance of the end points, they are scaled up.
   EXPECT_NEAR(std::abs(area_of("M 0.433012701892 0.25 A 0.5 0.2 30 0 1 -0.433012701892 -0.25 A 0.5 0.2 30 0 1 "
                                "0.433012701892 0.25 Z")),
               std::numbers::pi * 0.1, 3e-4);
@@ -54,7 +54,7 @@ TEST(Outlines, SmoothCommandsReflectTheHandleBefore) {
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0T4 0L4 2L0 2Z"), area_of("M0 0Q1 1 2 0Q3-1 4 0L4 2L0 2Z"), 1e-12);
   // The area under a quadratic is two thirds of its control triangle.
   EXPECT_NEAR(area_of("M0 0Q1 1 2 0Z"), -2.0 / 3, 1e-4);
-  // The handle before is that of another outline.
+  // The second outline begins with a smooth curve, but the control point before it belongs to the first outline.
   const ParsedPaths two = parse_paths("M9 9L9 8C6 8 5 5 9 9M0 0S2-1 3 0L3 2L0 2Z");
   ASSERT_EQ(two.outlines.size(), 2u) << two.mistake;
   EXPECT_NEAR(polygon_area(sampled(two.outlines[1])), area_of("M0 0S2-1 3 0L3 2L0 2Z"), 1e-12);

@@ -1,4 +1,4 @@
-// Patterns sewn into one mesh around the wearer: topology, dimensions, start shape.
+// Patterns that are sewn to one mesh around the wearer: topology, dimensions and start shape.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ std::size_t openings(const mesh::Sheet& sheet) {
   return rims.size();
 }
 
-// Each garment has the expected number k of openings. A sphere with k holes has the Euler characteristic 2 − k.
+// Each garment has the expected number k of openings: a sphere with k holes has the Euler characteristic 2 − k.
 TEST(Garments, AreSurfacesWithTheOpeningsOfWhatTheyAre) {
   for (double spacing : {0.03, 0.02}) {
     for (const auto& [name, count] : {std::pair("dress", 4L), {"tshirt", 4L}, {"skirt", 2L}}) {
@@ -65,9 +65,9 @@ TEST(Garments, KeepAreaAndMeasuresOfTheirPanels) {
     EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
     area += mesh::rest_area(garment.sheet, t);
   }
-  // Two quarter rings. Chords of c = 10 mm lie up to c² / (8 R) inside their arcs: the ring loses this width at the hem
-  // and gains it at the waist, below 1e-4 of its width of 0.45 m. The curves are off their arcs by at most 2.7e-4 of a
-  // radius.
+  // Two quarter rings. The middle of a chord of c = 10 mm is up to c² / (8 R) inside its arc. The ring loses this width
+  // at the hem, and gains it at the waist: less than 1e-4 of its width of 0.45 m. The curves deviate from their arcs by
+  // at most 2.7e-4 of a radius.
   const double inner = 0.72 / std::numbers::pi, outer = inner + 0.45;
   EXPECT_NEAR(area, 0.5 * std::numbers::pi * (outer * outer - inner * inner), 3e-4 * area);
   ASSERT_EQ(garment.seams.size(), 2U);
@@ -103,7 +103,7 @@ TEST(Garments, AreTheSameInEveryRun) {
   EXPECT_EQ(a.sheet.rest, b.sheet.rest);
 }
 
-// A hand-written pattern: a panel with a dart, and a longer edge eased into a shorter one.
+// A hand-written pattern: a panel with a dart, and a long edge that is sewn to a shorter one (eased in).
 const std::string kDart = R"(
 [[panel]]
 name = "front"
@@ -153,7 +153,7 @@ TEST_F(SewingText, ADartClosesAndALongerSideIsEasedIn) {
   EXPECT_NEAR(area, 0.4 * 0.3 - 0.02 * 0.15 + 0.4 * 0.34, 1e-12);
 }
 
-// The warp of the back runs across it.
+// The warp of the back runs across the panel.
 TEST_F(SewingText, TheGrainTurnsTheWarp) {
   const Garment garment = sew_text(kDart + kDartSeams);
   for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
@@ -179,7 +179,7 @@ TEST_F(SewingText, BandsFollowTheirEdges) {
   EXPECT_GT(garment.sheet.bands[4].mass, 0);
 }
 
-// Two rectangles, one on the other, sewn along all four sides or three: the first pattern that users try.
+// Two rectangles, one on the other, sewn along three or all four sides: many users try this pattern first.
 TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   const std::string path = "path = 'M -0.25 -0.2 L 0.25 -0.2 L 0.25 0.2 L -0.25 0.2 Z'\nedges = 'low right top left'\n";
   const std::string panels =
@@ -206,7 +206,7 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_EQ(openings(open.sheet), 1U) << spacing;
     EXPECT_EQ(euler_characteristic(open.sheet), 1) << "a disk, at " << spacing;
   }
-  // A round pillow has one seam, along edges without ends. With a zip there, the same places of both edges are tied.
+  // A round pillow has one seam, along edges without ends. A zip there ties corresponding places of both edges.
   std::string round = panels + "[[seam]]\na = 'front.rim'\nb = 'back.rim'\n";
   for (std::size_t at = round.find(path); at != std::string::npos; at = round.find(path))
     round.replace(at, path.size(),
@@ -218,7 +218,7 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_NEAR(zipped.rest[tie.a].x(), zipped.rest[tie.b].x(), 1e-6);
     EXPECT_NEAR(zipped.rest[tie.a].z(), zipped.rest[tie.b].z(), 1e-6);
   }
-  // The rim has no end that could have a second tie.
+  // The edge has no end at which a second tie could be.
   std::set<Index> tied;
   for (const mesh::Tie& tie : zipped.ties) EXPECT_TRUE(tied.insert(tie.a).second) << tie.a;
   const mesh::Sheet buttoned = sew_text(round + "buttons = 2\n", 0.03).sheet;
@@ -229,8 +229,8 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
 }
 
-// The half is on the wearer's left. Its fold line is slanted, so that the reflection must do more than change the sign
-// of x.
+// The drawn half is that on the wearer's left. Its fold line is oblique, so that the reflection must do more than
+// change the sign of x.
 TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
   const auto panel = [&](const std::string& text) {
     support::write_bytes(folder_ / "p.toml", "[[panel]]\nname = 'p'\n" + text);
@@ -303,17 +303,17 @@ TEST_F(SewingText, MistakesAreAllNamedWithTheirPlaces) {
 }
 
 TEST_F(SewingText, WhatCannotBeSewnIsRefused) {
-  // Three panels at one edge.
+  // Three panels meet at one edge.
   std::string three = kDart + kDartSeams;
   three += "[[panel]]\nname = 'third'\npath = 'M0 0L0.4 0L0.4 0.3L0 0.3Z'\n";
   three += "[[seam]]\na = 'third.2'\nb = 'third.3'\n[[seam]]\na = 'third.1'\nb = 'third.4'\n";
   EXPECT_ANY_THROW(sew_text(three));
-  // A panel upside down: its seams would join the front to the back of the cloth.
+  // A panel is upside down: its seams would join the front of the cloth to the back.
   std::string turned = kDart + kDartSeams;
   turned.replace(turned.find("grain = 90"), 10, "rotation = 180");
   expect_mistake(turned, "whose triangles face both ways");
-  // A quarter of a ring, sewn along its straight sides: the sides can meet only if the rest folds over. Eleven twelfths
-  // of a ring are accepted: the gap closes as a dart does.
+  // A quarter of a ring, sewn along its straight sides: the sides can meet only if the rest of the panel folds over.
+  // Eleven twelfths of a ring are accepted, since the gap closes like a dart.
   const std::string ring =
       "[[seam]]\na = 'hat.a'\nb = 'hat.b'\n[[panel]]\nname = 'hat'\nedges = 'a low b top'\npath = ";
   expect_mistake(ring + "'M 0.1 0 L 0.3 0 A 0.3 0.3 0 0 1 0 0.3 L 0 0.1 A 0.1 0.1 0 0 0 0.1 0 Z'\n",

@@ -14,8 +14,8 @@
 namespace weft::garment {
 namespace {
 
-// A skirt, a trouser leg and a sleeve. As in GarmentCode, fronts run counter-clockwise, backs clockwise. The sleeve
-// lies along the x axis of its drawing, with its cap to the left.
+// A skirt, a trouser leg and a sleeve. As in GarmentCode, fronts are drawn counter-clockwise and backs clockwise. The
+// sleeve lies along the x axis of its drawing, with its cap at the left.
 const char* const kSpecification = R"({
   "pattern": {
     "panels": {
@@ -45,7 +45,7 @@ const char* const kSpecification = R"({
   "properties": { "curvature_coords": "relative", "units_in_meter": 100 }
 })";
 
-// Trousers: the inside of a leg is sewn front to back.
+// Trousers: along the inside of a leg, the front is sewn to the back.
 const char* const kLegs = R"({ "pattern": { "panels": {
   "a": { "translation": [0, 10, 20], "vertices": [[2, 0], [24, 0], [26, 80], [2, 80]],
     "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] }, { "endpoints": [3, 0] } ] },
@@ -85,7 +85,7 @@ TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
   EXPECT_NEAR(length_of(pattern, "skirt_front.0"), 0.3 * (std::sqrt(1 + q * q) + std::asinh(q) / q), 1e-6);
   // 60° of a circle of 0.6 m; cubic curves approximate arcs to 3e-4 of the radius.
   EXPECT_NEAR(length_of(pattern, "skirt_front.2"), 0.6 * std::numbers::pi / 3, 2e-4);
-  // Without "right" the arc runs clockwise: the top of the front, drawn to the left, curves downward.
+  // Without "right", the arc is clockwise: the top of the front, drawn from right to left, curves downward.
   const auto& top = pattern.panels[2].edges[pattern.find("skirt_front.2").second].curves[0];
   EXPECT_LT(top.at(0.5).y(), 0.5);
   for (const Seam& seam : pattern.seams) EXPECT_FALSE(seam.is_closure());
@@ -121,13 +121,13 @@ TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
   EXPECT_EQ(legs.panels[0].around, Around::left_leg);
   EXPECT_EQ(legs.panels[1].around, Around::left_leg);
   EXPECT_LT((*legs.panels[0].position - Vec2(0, 0.1)).norm(), 1e-12);
-  // In a skirt of two halves, such seams join the other half.
+  // In a skirt of two halves, such seams join one half to the other.
   const Pattern skirt =
       read(changed(kLegs, R"("b": { "translation": [0, 10, -20])", R"("b": { "translation": [-28, 10, -20])")).pattern;
   EXPECT_EQ(skirt.panels[0].around, Around::torso);
 }
 
-// Files of the predecessor of GarmentCode have other units, quadratic curves as lists, and heights relative to a point
+// Files of the predecessor of GarmentCode have other units, lists for quadratic curves, and heights relative to a point
 // of the body 1.12 m above the floor.
 TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
   std::string old = changed(kSpecification, R"({ "type": "quadratic", "params": [[0.5, -0.1]] })", "[0.5, -0.1]");
@@ -140,7 +140,7 @@ TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
   EXPECT_EQ(this->read(kSpecification).pattern.measures.height, 1.72);
 }
 
-// Its body may stand with its legs apart.
+// The body of a specification may stand with its legs apart.
 TEST_F(Specification, LegsApartAreWornAlongTheLegs) {
   std::string apart = changed(kLegs, R"("a": { "translation": [0, 10, 20],)",
                               R"("a": { "translation": [30, 10, 20], "rotation": [0, 0, 20],)");
@@ -188,7 +188,7 @@ TEST_F(Specification, IsSewnAroundTheWearer) {
     for (const Vec3& x : made.model.cloths[0].start) box.extend(x);
     return box;
   };
-  // The hem is 40 cm above the floor and curved by 3 cm; joining the panels moves it a little more.
+  // The hem is 40 cm above the floor, and curved by 3 cm; sewing moves it a little more.
   const Box3 box = spans();
   EXPECT_NEAR(box.min().z(), 0.40, 0.05);
   EXPECT_NEAR(box.max().z(), 0.90, 0.05);
@@ -198,7 +198,7 @@ TEST_F(Specification, IsSewnAroundTheWearer) {
   EXPECT_NEAR(spans().max().z(), 1.2 * box.max().z(), 0.03);
 }
 
-// A flap 15 cm wide, drawn lying on its side. Its right side continues from the wrong side of the front's top.
+// A flap, 15 cm wide, is drawn lying on its side. A seam joins its right side to the wrong side of the front's top.
 TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   std::string folded = changed(kSpecification, R"("left_sleeve_f": {)", R"("flap": { "translation": [0, 150, 60],
         "vertices": [[0, 60], [0, 0], [15, 0], [15, 60]],
@@ -217,14 +217,14 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   EXPECT_TRUE(flap.turned);
   EXPECT_EQ(flap.layer, 1);
   for (const std::size_t other : {1, 2}) EXPECT_FALSE(read.pattern.panels[other].turned);
-  // The front's top goes from (0.3, 0.9) to (-0.3, 0.9); the flap hangs down in front of it.
+  // The front's top is the line from (0.3, 0.9) to (-0.3, 0.9). The flap hangs down in front of the front.
   const std::vector<Vec2> corners{{0.3, 0.9}, {-0.3, 0.9}, {-0.3, 0.75}, {0.3, 0.75}};
   for (std::size_t e = 0; e < 4; ++e) {
     const Vec2 start = flap.edges[read.pattern.find("flap." + std::to_string(e)).second].curves[0].start();
     const Vec2 worn = *flap.position + Eigen::Rotation2Dd(flap.rotation * std::numbers::pi / 180) * start;
     EXPECT_LT((worn - corners[e]).norm(), 1e-9) << e;
   }
-  // It is sewn as one surface, lies in front of the front panel, and shows its back there.
+  // The flap is sewn to the front as one surface, lies in front of it, and shows its back there.
   const environment::Environment made(support::scene_of_text(
       "[[character]]\nname = 'model'\nsource = 'mannequin'\nstance = 'rest'\nblend = 1\nedge_length = 0.05\n"
       "[[cloth]]\nname = 'skirt'\nshape = 'pattern'\nfile = '" +
@@ -250,7 +250,8 @@ TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
   EXPECT_LT(front_faces.y(), -0.5 * front_faces.norm());
 }
 
-// The outline has an edge of 2 mm, far shorter than the mesh. Narrow triangles at such an edge would be very stiff.
+// The outline has an edge of 2 mm, far shorter than the spacing of the mesh. Narrow triangles at such an edge would be
+// very stiff.
 TEST_F(Specification, EdgesShorterThanTheMeshBecomePoints) {
   const std::string with_corner = changed(
       changed(changed(kLegs, "[26, 80], [2, 80]]", "[26, 80], [2, 80], [2, 79.8]]"), R"({ "endpoints": [3, 0] } ] },
@@ -287,7 +288,7 @@ TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
     EXPECT_TRUE(first(changed(kSpecification, "\"units_in_meter\": 100", std::string("\"units_in_meter\": ") + units))
                     .starts_with("1:1: properties.units_in_meter: expected a number from 0.001 to 1e+06, got "))
         << units;
-  // Values of the wrong type, in every place: the JSON library's exceptions never reach the caller.
+  // Tries values of the wrong type in every place. Exceptions of the JSON library must not reach the caller.
   for (const char* value : {"\"q\"", "7", "null", "{}", "[]", "[7]", "[[]]", "true"}) {
     const std::string text = std::string("{\"pattern\": {\"panels\": {\"a\": ") + value + "}, \"stitches\": []}}";
     EXPECT_NE(first(text), "none") << text;

@@ -37,7 +37,7 @@ class Drawings : public support::TestFolder {
 
 TEST_F(Drawings, LengthsAreThoseOfTheSheet) {
   const std::string path = "<path id='p' d='M10 20h100v50z'/></svg>";
-  // One unit is a millimetre, a tenth of an inch, or a pixel; y points down in the file.
+  // One unit is a millimetre, a tenth of an inch, or a pixel. In the file, y points down.
   expect_corners("<svg width='210mm' height='297mm' viewBox='0 0 210 297'>" + path,
                  {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
   expect_corners("<svg width='20in' viewBox='0 0 200 300'>" + path,
@@ -80,7 +80,7 @@ TEST_F(Drawings, RectanglesMayHaveRoundCorners) {
         radii + "/></svg>");
     return std::abs(polygon_area(sample_points(outline)));
   };
-  // Corners of radii a and b lack (4 - π) a b of the area.
+  // Elliptic corners with radii a and b remove (4 - π) a b of the area.
   const double corner = 4 - std::numbers::pi;
   EXPECT_NEAR(area(""), 0.08, 1e-12);
   EXPECT_NEAR(area("rx='0' ry='50'"), 0.08, 1e-12);
@@ -104,8 +104,8 @@ TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
 }
 
 TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
-  // A bodice and another panel. The neck of the bodice has two pieces; its hem continues into the side without a
-  // corner.
+  // A bodice and another panel. The neck of the bodice consists of two pieces; its hem continues into the side without
+  // a corner.
   const std::string sheet = R"(<svg width='1000mm' viewBox='0 0 1000 1000' xmlns:inkscape='x'>
     <g inkscape:label='front' transform='translate(100 0)'>
       <path class='fabric sa' d='M-10 -10H210V310H-10Z'/>
@@ -141,7 +141,7 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   refused("odd", "text: expected edge: and a name of letters");
 }
 
-// Illustrator places texts by transforms, without x and y.
+// Illustrator places texts by a transform, without x and y.
 TEST_F(Drawings, TextsWithoutCoordinatesStandAtTheirOrigin) {
   const auto load_with = [&](const std::string& texts) {
     support::write_bytes(folder_ / "d.svg",
@@ -207,7 +207,7 @@ TEST_F(Drawings, OfOldVersionsOfInkscapeHaveNinetyUnitsPerInch) {
     EXPECT_NEAR(width(other), 0.0254 * 90 / 96, 1e-12) << other;
 }
 
-// As Valentina and Seamly write them.
+// Valentina and Seamly write such outlines.
 TEST_F(Drawings, WithAnAllowanceAroundTheSeamLineGiveTheSeamLine) {
   const std::string head = "<svg width='1000mm' viewBox='0 0 1000 1000'><path id='p' d='", tail = "'/></svg>";
   const std::string seam_line = "M100,100 L400,100 L400,600 L100,600 L100,100 ";
@@ -224,7 +224,7 @@ TEST_F(Drawings, WithAnAllowanceAroundTheSeamLineGiveTheSeamLine) {
 TEST_F(Drawings, MayBeNested) {
   const double px = 0.0254 / 96;
   const std::string path = "<path id='p' d='M5 5h50v10z'/></svg></svg>";
-  // Enlarged twice and centred in its height of 300.
+  // The inner drawing is enlarged by two, and centred in its height of 300.
   expect_corners("<svg><svg x='10' y='20' width='100' height='300' viewBox='5 5 50 100'>" + path,
                  {{10 * px, -70 * px}, {110 * px, -70 * px}, {110 * px, -90 * px}});
   expect_corners("<svg><svg y='20'>" + path, {{5 * px, -25 * px}, {55 * px, -25 * px}, {55 * px, -35 * px}});

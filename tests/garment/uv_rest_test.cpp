@@ -26,13 +26,13 @@ struct Textured {
 };
 
 // A tube of two pleated panels. A pattern point (u, v) lies at arc length u along a regular zigzag around a circle, so
-// that all mesh edges along u or v are as long as in the pattern. The second panel is mirrored in the pattern.
+// all mesh edges along u or v have the same lengths as in the pattern. In the pattern, the second panel is mirrored.
 Textured pleated_tube() {
   constexpr int kAround = 24, kUp = 6;
   constexpr double kStep = 0.02;
   Textured tube;
   const double angle = 2 * std::numbers::pi / kAround;
-  // Alternating radii for which neighbours are one step apart.
+  // The two radii for which neighbouring points are one step apart.
   const double inner = 0.07,
                outer = inner * std::cos(angle) + std::sqrt(kStep * kStep - std::pow(inner * std::sin(angle), 2));
   for (int j = 0; j <= kUp; ++j)
@@ -96,7 +96,7 @@ TEST(UvRest, TheSizeIsMeasuredOrAUnitOrGiven) {
   EXPECT_NEAR(given.stretch_quantile_95, 1 - 1.0 / 3, 1e-9);
 }
 
-// One row of edges that is stretched far must not change the scale of the rest shape.
+// One row of edges is stretched far. It must not change the scale of the rest shape.
 TEST(UvRest, SeamsThatAreStretchedDoNotCount) {
   Textured tube = pleated_tube();
   for (std::size_t v = 0; v < 24; ++v) tube.mesh.positions[v].z() -= 0.5;  // the lowest ring

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTrunk = 0.15, kArm = 0.05;  // radii [m]
 
-// An upright cylinder 1.8 m tall, and as its left arm a horizontal cylinder that starts at (0.2, 0, 1.4).
+// The trunk is an upright cylinder 1.8 m tall; the left arm is a horizontal cylinder that starts at (0.2, 0, 1.4).
 Wearer stick_figure() {
   Wearer wearer;
   const auto add = [&](const mesh::Mesh& mesh, const Eigen::Isometry3d& placed, Region region) {
@@ -40,16 +40,16 @@ Wearer stick_figure() {
   return wearer;
 }
 
-// Relative errors: a ring of 96 chords is shorter than its circle by 1.8e-4, and lies up to 5.4e-4 inside it.
+// Relative errors: a polygon of 96 chords is shorter than its circle by 1.8e-4, and is up to 5.4e-4 inside of it.
 constexpr double kChords = 1e-3;
 
 TEST(Tubes, HaveTheGirthOfWhatTheyAreAround) {
   const Tube torso(stick_figure(), Around::torso), arm(stick_figure(), Around::left_arm);
   EXPECT_NEAR(torso.girth(1, 0), 2 * std::numbers::pi * kTrunk, kChords);
   EXPECT_NEAR(torso.girth(1, 0.02), 2 * std::numbers::pi * (kTrunk + 0.02), kChords);
-  EXPECT_NEAR(torso.girth(3, 0), torso.girth(1.7, 0), kChords);  // continues above the crown
+  EXPECT_NEAR(torso.girth(3, 0), torso.girth(1.7, 0), kChords);  // the tube continues above the head
   EXPECT_NEAR(arm.girth(-0.3, 0.01), 2 * std::numbers::pi * (kArm + 0.01), kChords);
-  EXPECT_GT(Tube(stick_figure(), Around::body).girth(1.4, 0), 2);  // around the arm, and below it
+  EXPECT_GT(Tube(stick_figure(), Around::body).girth(1.4, 0), 2);  // around the arm; below, at heights under the arm
   EXPECT_GT(Tube(stick_figure(), Around::body).girth(0.5, 0), 2);
 }
 
@@ -65,7 +65,7 @@ TEST(Tubes, HaveTheFrontAtTheAngle0AndTheLeftAt90) {
   EXPECT_LT((arm.along(-0.3) - Vec3(-1, 0, 0)).norm(), 1e-9);
 }
 
-// A tube of two panels for the trunk, with a hole at the left for a sleeve, and the sleeve.
+// A vest of two panels around the trunk, with a hole at the left, and a sleeve.
 const std::string kVest = R"(
 [[panel]]
 name = "front"
@@ -127,10 +127,11 @@ TEST_F(Wrapping, ASleeveStartsAtItsHoleAroundTheArmWithItsFrontOutside) {
     EXPECT_GT(normal.dot(out), 0);
     if (sleeve && middle.x() > 0.32) nearest = std::min(nearest, out.norm()), farthest = std::max(farthest, out.norm());
   }
-  // The sleeve is 0.36 m around, a circle of 57 mm radius. Chords and bending deviate from it by less than 15 mm.
+  // The sleeve has a girth of 0.36 m: a circle of 57 mm radius. Chords and bending change the radius by less than 15
+  // mm.
   EXPECT_GT(nearest, kArm);
   EXPECT_LT(farthest, 0.072);
-  // The middle of the cuff lies above the arm and 0.3 m from the cap, which is at the trunk.
+  // The middle of the cuff is above the arm, and 0.3 m from the cap, which is at the trunk.
   const std::vector<Index>& cuff = garment.edges.at("sleeve.cuff");
   EXPECT_GT(x[cuff[cuff.size() / 2]].z(), 1.4 + kArm);
   EXPECT_NEAR(x[cuff[cuff.size() / 2]].x(), kTrunk + 0.3, 0.06);
@@ -145,7 +146,7 @@ TEST_F(Wrapping, RingsWiderThanTheBodyStandOffIt) {
   EXPECT_NEAR(radius, 4 * 0.40 / (2 * std::numbers::pi), 0.01);
 }
 
-// A ring whose hem is wider than its top starts as it does alone if another ring lies below it, apart.
+// A ring whose hem is wider than its top. Another ring, which lies below it and apart, must not change its start.
 TEST_F(Wrapping, RingsThatLieApartHaveTheirOwnWidths) {
   const auto ring = [](const std::string& name, const std::string& position, const std::string& path) {
     std::string text;
@@ -164,7 +165,7 @@ TEST_F(Wrapping, RingsThatLieApartHaveTheirOwnWidths) {
   EXPECT_GT(alone.sheet.rest[a[a.size() / 2]].head<2>().norm(), 0.23);
 }
 
-// Front and back are a ring wider than the body, 1 cm off its middle.
+// Front and back form a ring wider than the body, 1 cm away from its middle.
 TEST_F(Wrapping, SlitsStartOpen) {
   std::string text;
   for (const std::string side : {"front", "back"})
@@ -226,13 +227,13 @@ TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
   for (const mesh::Tie& tie : closed.sheet.ties) {
     EXPECT_EQ(tie.open, 2);
     const Vec3 &a = closed.sheet.rest[tie.a], &b = closed.sheet.rest[tie.b];
-    EXPECT_NEAR(a.z(), b.z(), 0.02);  // the ends that are sewn together
+    EXPECT_NEAR(a.z(), b.z(), 0.02);  // the two ends that are sewn together
     EXPECT_GT((a - b).norm(), 0.005);
   }
 }
 
-// A closure widens a ring by 3 cm, and its radius by 4.8 mm. A closure between trunk and sleeve is in the ring of
-// neither, whichever of its edges is named first.
+// A closure widens a ring by 3 cm, and thus its radius by 4.8 mm. A closure between trunk and sleeve belongs to neither
+// ring, whichever of its edges is named first.
 TEST_F(Wrapping, ClosuresBetweenTwoPartsWidenNoRing) {
   std::string from_sleeve = kVest, from_trunk = kVest;
   for (const std::string side : {"front", "back"}) {
@@ -253,7 +254,7 @@ TEST_F(Wrapping, SeamsThatTearAreTiesOfTheirLoadPerLength) {
   const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
   std::string text = kVest;
   text.replace(text.find(seam), seam.size(), seam + "tearing_load = 300\n");
-  // More buttons than particles share the load among those that there are.
+  // If there are more buttons than particles, the existing ties share the load.
   std::string buttoned = kVest;
   buttoned.replace(buttoned.find(seam), seam.size(), seam + "tearing_load = 300\nbuttons = 100\n");
   for (const std::string& each : {text, buttoned}) {
@@ -299,7 +300,8 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
          "p.toml: panel a: expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
 }
 
-// Garments as in the gallery. Seams decide on which side a hood lies; otherwise 16 pairs of triangles would cross.
+// Garments of the gallery. The seams determine on which side a hood lies; on the wrong side, 16 pairs of triangles
+// would cross.
 TEST(ShippedPatterns, StartOnTheMannequinWithoutIntersections) {
   for (const std::string name : {"jacket", "poncho"}) {
     const auto file = std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/gallery" / (name + ".toml");
