@@ -19,7 +19,7 @@ double lightness(const Vec3& linear) {
   return y > std::pow(6.0 / 29, 3) ? 116 * std::cbrt(y) - 16 : y * 903.3;
 }
 
-// Tolerance 0.05: the luminance weights above have four digits, the matrix of the program seven.
+// Tolerance 0.05, since the luminance weights above have four digits, and the matrix of the program seven.
 TEST(Color, HeatLightnessRisesEvenlyFrom15To90) {
   for (int i = 0; i <= 20; ++i) EXPECT_NEAR(lightness(heat_color(i / 20.0)), 15 + 75 * i / 20.0, 0.05) << i;
 }

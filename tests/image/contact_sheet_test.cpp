@@ -58,7 +58,7 @@ TEST(ContactSheet, TextIsWrittenBesideThePicturesNotOnThem) {
   for (const SheetPicture& picture : all) EXPECT_EQ(find(with, picture.image), find(without, picture.image));
 }
 
-// Ink, the number of dark pixels, in each row of the sheet below a picture, within the width of the picture.
+// Number of dark pixels (ink) in each row of the sheet below a picture, within the width of the picture.
 std::vector<int> ink_below(const Image& sheet, const Image& picture) {
   const auto place = find(sheet, picture);
   std::vector<int> ink;
@@ -88,7 +88,7 @@ TEST(ContactSheet, WrapsLongTextAndCutsNothing) {
     for (int i = 0; i < 30; ++i) all[0].left += (i > 0 ? blank : "") + std::string("a=1");
     const Image sheet = contact_sheet(all, 1, "");
     EXPECT_GT(sheet.height, short_sheet + 5 * 11);
-    // Letters lie at fractions of pixels, so their ink differs (measured: up to 4 %).
+    // Letters begin at fractions of pixels, so their ink differs (measured: up to 4 %).
     EXPECT_NEAR(sum(ink_below(sheet, all[0].image)), 30 * once, 0.1 * 30 * once) << '"' << blank << '"';
   }
 }

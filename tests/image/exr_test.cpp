@@ -1,4 +1,4 @@
-// Read back by OpenImageIO.
+// OpenEXR files, read back by OpenImageIO.
 #include "film/image/exr.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ class ExrTest : public support::TestFolder {
   }
 };
 
-// Values that are exact in 16 bits, all different.
+// Values that 16 bits represent exactly, all different.
 Layers patterned_layers(int width, int height) {
   Layers layers{width, height, {}};
   for (const char* name : {"R", "A", "depth.Z", "normal.X"}) {
@@ -83,7 +83,7 @@ TEST_F(ExrTest, HeaderIsReadBackAndBrokenFilesAreRefused) {
   expect_error(ExitCode::asset_unreadable, "c.exr", [&] { read_exr_header(folder_ / "c.exr"); });
 }
 
-// Other programs may store the lines from the bottom up.
+// Other programs may store the lines from bottom to top.
 TEST_F(ExrTest, AFileThatIsCutOffIsRefusedWhateverTheOrderOfItsLines) {
   write_exr(folder_ / "a.exr", patterned_layers(8, 64));
   for (const std::string order : {"increasingY", "decreasingY"}) {

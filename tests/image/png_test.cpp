@@ -18,7 +18,7 @@ using support::write_bytes;
 
 using PngTest = support::TestFolder;
 
-// A picture whose neighbouring pixels differ, so that swapped rows, columns or channels are detected.
+// A picture in which neighbouring pixels differ, so that the test detects swapped rows, columns or channels.
 Image patterned(int width, int height) {
   Image image(width, height);
   for (int y = 0; y < height; ++y) {
@@ -96,7 +96,8 @@ TEST_F(PngTest, GrayIsReadAsThreeEqualChannels) {
 }
 
 TEST_F(PngTest, AlphaIsLaidOverWhite) {
-  // Opaque, clear, and 102/255 = 0.4 of (200, 100, 0): 0.4 * 200 + 0.6 * 255 = 233, 0.4 * 100 + 153 = 193, 153.
+  // Three pixels: opaque; transparent; (200, 100, 0) with alpha 102/255 = 0.4, which gives 0.4 * 200 + 0.6 * 255 = 233,
+  // 0.4 * 100 + 153 = 193, and 153.
   const std::uint8_t rgba[] = {10, 20, 30, 255, 10, 20, 30, 0, 200, 100, 0, 102};
   write_other_layout(folder_ / "alpha.png", 3, 1, PNG_FORMAT_RGBA, rgba);
   const std::vector<std::uint8_t> expected = {10, 20, 30, 255, 255, 255, 233, 193, 153};
@@ -141,7 +142,7 @@ TEST_F(PngTest, EveryChangedByteIsAnError) {
 }
 
 TEST_F(PngTest, HugeSizesInTheHeaderAreRefusedBeforeMemoryIsTaken) {
-  // A header with a valid checksum that claims 16000x16000 pixels in a file of a few bytes.
+  // The header has a valid checksum, and claims 16000x16000 pixels in a file of a few bytes.
   png_byte header[] = {'I', 'H', 'D', 'R', 0, 0, 0x3e, 0x80, 0, 0, 0x3e, 0x80, 8, 2, 0, 0, 0};
   std::uint32_t crc = 0xffffffffu;
   for (const png_byte byte : header) {
@@ -158,7 +159,7 @@ TEST_F(PngTest, HugeSizesInTheHeaderAreRefusedBeforeMemoryIsTaken) {
                [&] { read_png(folder_ / "huge.png"); });
 }
 
-// A text chunk of 2 GB, the largest length that PNG allows, in a file of a hundred bytes.
+// A text chunk claims 2 GB, the largest length that PNG allows, in a file of a hundred bytes.
 TEST_F(PngTest, PromisedLengthOfAChunkIsRefusedBeforeMemoryIsTaken) {
   write_png(folder_ / "a.png", Image(2, 2), {{"key", "text"}});
   std::string bytes = read_bytes(folder_ / "a.png");
