@@ -1,4 +1,5 @@
-// Estimates of the local truncation error, the resulting step lengths, and the allowed growth of BDF2 steps.
+// Estimates of the local truncation error, the step lengths that follow from them, and the allowed growth of BDF2
+// steps.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,10 +13,10 @@ namespace {
 
 using testing::kMethods;
 
-// Newton tolerance above the rounding of x / h², and far below the measured errors.
+// Newton tolerance: larger than the rounding error of x / h², and much smaller than the measured errors.
 constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
-// State of the hardening spring after a time t, which may be negative, by classical Runge-Kutta; error below 1e-14.
+// State of the hardening spring after a time t, which may be negative. Classical Runge-Kutta; its error is below 1e-14.
 State moved(State now, double t) {
   constexpr int kSteps = 200;
   const auto a = [](const Vec3& x) { return testing::HardeningSpring::force_at(x); };
@@ -36,7 +37,7 @@ struct Errors {
   double estimated, made;
 };
 
-// One step from a point of the exact motion, with an exact history or without one (r = 0).
+// Errors of one step from a point of the exact motion. The history is exact; r = 0: there is none.
 Errors errors_of_one_step(Method method, double h, double r) {
   testing::HardeningSpring spring;
   const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
@@ -49,10 +50,10 @@ Errors errors_of_one_step(Method method, double h, double r) {
 }
 
 TEST(LocalError, OfOneStepIsEstimatedUpToTermsOfTheNextOrder) {
-  // Tolerance: the next term of the error is h times the first, times a small factor.
+  // Tolerance: the next term of the error is h times the first term, times a small factor.
   for (Method method : kMethods) {
     for (double r : {0.5, 1.0, 1.9}) {
-      // The error of one BDF2 step grows by half in the steps that follow; the estimate includes this.
+      // The error of one BDF2 step grows by half in the following steps; the estimate includes this growth.
       const double whole = method == Method::bdf2 ? 1.5 : 1;
       for (double h : {0.02, 0.01, 0.005}) {
         const Errors errors = errors_of_one_step(method, h, r);
@@ -76,7 +77,7 @@ TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
 }
 
 TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
-  // In free fall Euler's method moves every free particle too far by ½ g h².
+  // In free fall, Euler's method moves every free particle too far, by ½ g h².
   testing::Spring nothing(0, {1, 3, 2});
   nothing.linear_system().blocks = {{0, 2}, {2, 3}};
   const Vec3 g(0, 0, -10);
@@ -96,7 +97,7 @@ TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   EXPECT_EQ(error_with({0, 1, 2}), 0);
 }
 
-// Returns the lengths of the accepted steps, if a step over h that starts at time t has the error error(t, h).
+// Returns the lengths of the accepted steps if a step of length h from time t has the error error(t, h).
 std::vector<double> lengths(Method method, double tolerance, const std::function<double(double t, double h)>& error,
                             double end) {
   StepControl control(method, tolerance, 1e-3);
@@ -122,14 +123,14 @@ TEST(StepControl, BringsTheErrorOfSmoothMotionJustBelowTheTolerance) {
     for (double tolerance : {1e-3, 1e-6}) {
       const double h = lengths(method, tolerance, error, 3).back();
       EXPECT_LE(error(0, h), tolerance);
-      // The target is 0.7 of the tolerance. The controller keeps a length that would change by less than a tenth.
+      // The target is 0.7 of the tolerance. The controller does not change a length by less than a tenth.
       EXPECT_GT(error(0, h), 0.7 / std::pow(1.1, power) * tolerance);
     }
   }
 }
 
 TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
-  // The factor of the error alternates between 50 and 0.05.
+  // The factor of the error jumps between 50 and 0.05.
   const auto error = [](double t, double h) { return (std::fmod(t, 0.4) < 0.2 ? 50 : 0.05) * h * h * h; };
   const std::vector<double> steps = lengths(Method::bdf2, 1e-5, error, 5);
   double largest = 0;
@@ -140,8 +141,8 @@ TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
 
 TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
   // The step that contains t = 0.5 has the error of a velocity jump of 10 m/s. Only steps below 5e-5 s meet the
-  // tolerance there. A try is at least a fifth as long as the rejected one before it, and a step at most 1.5 times as
-  // long as the accepted one: 5 tries down and 17 steps up.
+  // tolerance there. A try is at least a fifth as long as the rejected try before it; a step is at most 1.5 times as
+  // long as the accepted step before it. This takes 5 tries down and 17 steps up.
   int tries = 0;
   const auto error = [&](double t, double h) {
     ++tries;
@@ -149,7 +150,7 @@ TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
   };
   lengths(Method::implicit_euler, 5e-4, error, 1);
   EXPECT_LT(tries, 200);
-  // If no step meets the tolerance, the shortest step is accepted.
+  // If no step meets the tolerance, a step of the minimum length is accepted.
   const auto wall = [&](double t, double h) { return t <= 0.5 && t + h > 0.5 ? 1 : 5 * h * h; };
   EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), numerics.steps.min_step);
 }
@@ -174,8 +175,8 @@ TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
   EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
 }
 
-// The step loop replaces the midpoint rule by BDF2 while contacts act. A resumed run limits its next step as if it had
-// not been interrupted.
+// The step loop uses BDF2 in place of the midpoint rule while contacts act. A resumed run must limit its next step like
+// the run that was not interrupted.
 TEST(Bdf2Ratio, SavedHistoryBoundsTheNextStepOfAnotherMethod) {
   Stepper saved(Method::implicit_midpoint, kAboveRounding), restored(Method::implicit_midpoint, kAboveRounding);
   saved.set_method(Method::bdf2);
@@ -188,8 +189,8 @@ TEST(Bdf2Ratio, SavedHistoryBoundsTheNextStepOfAnotherMethod) {
   EXPECT_TRUE(reader.bytes.empty());
 }
 
-// Starts BDF2 with a history that is wrong by kOff while steps grow by the factor r, from y = ω h = 1e-4 to 1e-2.
-// Returns the difference of the last two states relative to kOff: by the BDF2 formula, and by the Stepper.
+// Starts BDF2 with a history that is wrong by kOff, while steps grow by the factor r, from y = ω h = 1e-4 to 1e-2.
+// Returns the difference of the last two states relative to kOff: that of the BDF2 formula, and that of the Stepper.
 struct Growth {
   double formula, stepper;
   int steps;
@@ -197,7 +198,7 @@ struct Growth {
 Growth change_while_growing(double r) {
   constexpr double kOmega = 1e4, kOff = 0.1;
   testing::Spring spring(kOmega * kOmega);
-  // The step solves for x − x̂ = −β² ω² x, about 1e-8 x. Six digits of it are above the rounding of x.
+  // The step solves for x − x̂ = −β² ω² x, about 1e-8 x. Its first six digits are above the rounding error of x.
   Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
   double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
   stepper.return_to({{{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h});
@@ -221,7 +222,7 @@ Growth change_while_growing(double r) {
 TEST(Bdf2Ratio, UpToTheBoundErrorsOfTheHistoryFadeAndBeyondTheyGrow) {
   for (double r : {1.5, Stepper::kMaxStepRatio, 1 + std::sqrt(2.0), 3.0}) {
     const Growth growth = change_while_growing(r);
-    // Each step multiplies the difference by r² / (1 + 2r); the motion itself changes it by at most y² / 2.
+    // Each step multiplies the difference by r² / (1 + 2r). The motion itself changes it by at most y² / 2.
     const double expected = std::pow(r * r / (1 + 2 * r), growth.steps);
     EXPECT_NEAR(growth.formula, expected, 0.01) << "r = " << r;
     if (r <= Stepper::kMaxStepRatio) {
@@ -248,7 +249,7 @@ TEST(Bdf2Ratio, AStepTooLongForTheLastOneIsOneOfEuler) {
 }
 
 TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
-  // Steps that double seven times and then return to the first length, with y = ω h from 1 to 128.
+  // Steps double seven times, and then return to the first length: y = ω h from 1 to 128.
   constexpr double kOmega = 1e3;
   testing::Spring spring(kOmega * kOmega);
   Stepper stepper(Method::bdf2, kAboveRounding);

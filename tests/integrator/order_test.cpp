@@ -9,14 +9,15 @@
 namespace weft::integrator {
 namespace {
 
-// Newton tolerance above the rounding of x / h², 2e-11, and far below the error of the methods, 1e-6.
+// Newton tolerance: larger than the rounding error of x / h², 2e-11, and much smaller than the error of the methods,
+// 1e-6.
 constexpr NewtonParameters kSolved{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
 const Vec3 kStartX(1, 0.2, -0.3), kStartV(0.1, 0.8, 0.4);
 constexpr double kEnd = 1.5;  // [s]
 using Law = std::function<Vec3(const Vec3& x, const Vec3& v)>;
 
-// Classical Runge-Kutta with steps so small that its error, of order h⁴ = 3e-14, is negligible.
+// Classical Runge-Kutta with small steps: its error, of order h⁴ = 3e-14, is negligible.
 Vec3 reference(const Law& acceleration) {
   constexpr int kSteps = 4000;
   const double h = kEnd / kSteps;
@@ -49,7 +50,7 @@ std::vector<double> equal_steps(int count) {
   return std::vector<double>(static_cast<std::size_t>(count), kEnd / count);
 }
 
-// Short and long steps in turn, with a ratio of two, as if steps were halved and lengthened again.
+// Alternately short and long steps with a ratio of two, as if steps were halved and then doubled.
 std::vector<double> uneven_steps(int count) {
   std::vector<double> steps;
   for (int s = 0; s < count; ++s) steps.push_back(kEnd / count * (s % 2 ? 4.0 / 3 : 2.0 / 3));
@@ -63,7 +64,7 @@ void expect_order(testing::Particles&& system, const Law& law, Method method, do
   double coarse = (run(system, method, steps(80)) - exact).norm();
   for (int count : {160, 320}) {
     const double fine = (run(system, method, steps(count)) - exact).norm();
-    // The next term of the error is h times the first: a few per cent with these steps.
+    // The next term of the error is h times the first term: a few per cent with these steps.
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.1) << count << " steps";
     coarse = fine;
   }

@@ -1,7 +1,7 @@
 // Compares every method with its exact damping and phase on x'' = −ω² x.
 //
-// With w = ω x + i v the equation is w' = −i ω w, and every method of the stepper is w(next) = z w. Damping is ‖z‖ and
-// phase −arg(z) / y with y = ω h; both are 1 for the exact solution.
+// With w = ω x + i v, the equation is w' = −i ω w, and each step of a method is w(next) = z w. Damping is ‖z‖ and phase
+// is −arg(z) / y with y = ω h. Both are 1 for the exact solution.
 #include <gtest/gtest.h>
 
 #include <complex>
@@ -17,12 +17,12 @@ using namespace std::complex_literals;
 using Complex = std::complex<double>;
 using testing::kTight;
 
-// The measured error is below 1e-12; the tolerance states the requirement.
+// The measured error is below 1e-12; the tolerance is what the test requires.
 constexpr double kTolerance = 1e-6;
 constexpr double kStep = 0.01;  // [s]
 constexpr double kProducts[] = {0.1, 1, 10, 100};
 
-// State with the given w, along a slanted direction, so that all three axes take part.
+// State with the given w, along an oblique direction, so that all three axes contribute.
 const Vec3 kDirection = Vec3(1, -2, 2) / 3;
 State state_of(Complex w, double omega) {
   return {{Vec3(w.real() / omega * kDirection)}, {Vec3(w.imag() * kDirection)}};
@@ -48,7 +48,7 @@ void expect_damping_and_phase(Complex z, double damping, double phase, double y)
   EXPECT_NEAR(-std::arg(z) / y, phase, kTolerance * phase) << "y = " << y;
 }
 
-// Root of (3 + 2iy) z² − 4z + 1 = 0 that tends to 1 as y tends to 0.
+// Root of (3 + 2iy) z² − 4z + 1 = 0 that approaches 1 as y approaches 0.
 Complex principal_root(double y) {
   return (2.0 + std::sqrt(1.0 - 2i * y)) / (3.0 + 2i * y);
 }
@@ -73,7 +73,7 @@ TEST(Oscillator, Bdf2DampsAndTurnsAsThePrincipalRootOfItsCharacteristicPolynomia
   for (double y : kProducts) {
     const Complex root = principal_root(y);
     ASSERT_LT(std::abs((3.0 + 2i * y) * root * root - 4.0 * root + 1.0), 1e-13 * (3 + 2 * y));
-    // Two states of the sequence 1, z, z², ... are the history.
+    // The history consists of two states of the sequence 1, z, z², ...
     const Complex before = kStart, now = root * kStart;
     const Complex z = stepped(Method::bdf2, y / kStep, kStep, now, &before, kStep) / now;
     expect_damping_and_phase(z, std::abs(root), -std::arg(root) / y, y);
@@ -114,7 +114,7 @@ TEST(Oscillator, Bdf2WithVariableStepsDifferentiatesTheParabolaThroughThreeState
   }
 }
 
-// Detects swapped methods: at y = 1 all three differ clearly.
+// Detects exchanged methods: at y = 1, all three differ clearly.
 TEST(Oscillator, NoMethodIsAnotherInDisguise) {
   const Complex root = principal_root(1), before = kStart, now = root * kStart;
   const Complex euler = stepped(Method::implicit_euler, 100, kStep, now) / now;
@@ -128,7 +128,7 @@ TEST(Oscillator, NoMethodIsAnotherInDisguise) {
 }
 
 TEST(Oscillator, ExactFiguresOfTheThreeMethodsAtATenth) {
-  // Values computed by hand from the formulas to six digits: an independent check of the expressions above.
+  // Values computed by hand from the formulas, to six digits: an independent check of the expressions above.
   EXPECT_NEAR(std::abs(stepped(Method::implicit_euler, 10, kStep, kStart)), 0.995037, 5e-7);
   EXPECT_NEAR(std::abs(stepped(Method::implicit_midpoint, 10, kStep, kStart)), 1.0, 5e-7);
   const Complex before = kStart, now = principal_root(0.1) * kStart;

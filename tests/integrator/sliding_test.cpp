@@ -1,4 +1,4 @@
-// Error of the friction on a diagonal block as a whole, compared with the theory of a block on a floor.
+// Error of friction for a whole diagonal block, compared with the theory of a block on a floor.
 #include "physics/integrator/sliding.hpp"
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ double friction_error(const Contacts& contacts, const Vec3& missing) {
 // The normal force is 10 N, the friction limit 3 N (coefficient 0.3).
 TEST(Sliding, FrictionOfABlockAtRestIsRight) {
   EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, Vec3::Zero()), 0);
-  // A residual hardly moves a block that sticks; and without friction there is no error of friction.
+  // A residual hardly moves a block that sticks. Without friction, there is no error of friction.
   EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, {-0.5, 0, 0}), 0);
   EXPECT_EQ(friction_error({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);
 }

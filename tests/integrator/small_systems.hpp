@@ -11,13 +11,13 @@
 
 namespace weft::integrator::testing {
 
-/// Solves to rounding, so that only the error of the method remains.
+/// Solves to rounding accuracy, so that only the error of the method remains.
 inline const NewtonParameters kTight{
     .tolerance = 1e-12, .max_iterations = 40, .linear_tolerance = 1e-12, .max_linear_iterations = 1000};
 
 inline constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
 
-/// Uncoupled particles.
+/// Particles without coupling, each with its own force.
 class Particles : public System {
  public:
   explicit Particles(std::vector<double> masses) : masses_(std::move(masses)) {
@@ -49,7 +49,7 @@ class Particles : public System {
   solver::LinearSystem system_;
 };
 
-/// f = −k x on one particle of 1 kg, or on several.
+/// f = −k x for each particle; by default one of 1 kg.
 class Spring : public Particles {
  public:
   explicit Spring(double k, std::vector<double> masses = {1}) : Particles(std::move(masses)), k_(k) {}

@@ -1,4 +1,4 @@
-// Held particles, free fall, and the reports of the stepper.
+// Tests held particles, free fall, and the reports of the stepper.
 #include "physics/integrator/stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
       stepper.accept(now, next, h);
       std::swap(now, next);
       const double t = n * h;
-      // Relative to ½ g t²: Euler falls too far by ½ g h t; BDF2 keeps the error of its first step, an Euler step.
+      // Differences from ½ g t²: Euler falls too far by ½ g h t; BDF2 keeps the error of its first step, which is an
+      // Euler step.
       Vec3 expected = x0 + t * v0 + 0.5 * t * t * g;
       if (method == Method::implicit_euler) expected += 0.5 * h * t * g;
       if (method == Method::bdf2) expected += 0.75 * h * h * (1 - std::pow(3, -n)) * g;
@@ -48,7 +49,7 @@ TEST(Stepper, HeldParticleEndsExactlyAtItsTarget) {
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {&held, 1}, next).verdict, Verdict::solved);
     EXPECT_EQ(next.x[1], held.x_end);
     EXPECT_EQ(next.v[1], held.v_end);
-    // The other particle is unaffected.
+    // The other particle moves as if no particle were held.
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {}, alone).verdict, Verdict::solved);
     EXPECT_LT((next.x[0] - alone.x[0]).norm(), 1e-14);
     EXPECT_GT((next.x[1] - alone.x[1]).norm(), 0.1);
@@ -66,7 +67,7 @@ TEST(Stepper, ParticleHeldInAPlaneIsFreeWithinIt) {
     State next, alone;
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {&held, 1}, next).verdict, Verdict::solved);
     ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {}, alone).verdict, Verdict::solved);
-    // Along n as prescribed; across n as if free, because the spring is isotropic.
+    // Along n, the particle moves as prescribed; across n, as if it were free, because the spring is isotropic.
     EXPECT_NEAR(n.dot(next.x[0] - held.x_end), 0, 1e-15);
     EXPECT_NEAR(n.dot(next.v[0] - held.v_end), 0, 1e-14);
     EXPECT_LT((free * (next.x[0] - alone.x[0])).norm(), 1e-13);
@@ -110,7 +111,7 @@ TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
 }
 
 TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
-  // The particle is 1e-6 m from rest: the motion is too small to be worth an exact solve.
+  // The particle is 1e-6 m from rest: this motion is below the visibility threshold.
   testing::HardeningSpring spring;
   const State now{{Vec3(1e-6, 0, 0)}, {Vec3::Zero()}};
   State next;
@@ -214,7 +215,7 @@ TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
     EXPECT_EQ(rest.verdict, Verdict::solved);
     EXPECT_EQ(rest.newton_iterations, at_once.newton_iterations - 2);
     EXPECT_LT((continued.x[0] - whole.x[0]).norm(), 1e-12);
-    // If the last iteration before the pause solves the step, it counts as solved, not as unfinished.
+    // If the last iteration before the pause solves the step, the step counts as solved.
     EXPECT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, continued, start, at_once.newton_iterations).verdict,
               Verdict::solved);
   }
@@ -245,7 +246,7 @@ TEST(Stepper, DoesNotContinueAStepThatItHasReturnedFromOrDiscarded) {
   }
 }
 
-/// Needs 5 ms to find that there is no impact.
+/// A system that takes 5 ms to find that there is no impact.
 class SlowImpacts final : public Spring {
  public:
   using Spring::Spring;
