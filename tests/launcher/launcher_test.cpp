@@ -1,5 +1,5 @@
-// Runs a copy of the launcher in which apt-get, dpkg-query, cmake, ninja and id are replaced by scripts that log their
-// arguments: nothing is installed or built.
+// Runs a copy of the launcher. Scripts that log their arguments replace apt-get, dpkg-query, cmake, ninja and id, so
+// that nothing is installed or built.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -187,7 +187,7 @@ TEST_F(Launcher, SaysHowFarTheBuildIsEvery15SecondsWhereNoTerminalShowsIt) {
   const Outcome outcome = launch();
   EXPECT_EQ(outcome.status, 7);
   EXPECT_EQ(read_bytes(folder_ / "fakes/status"), "[%f/%t] %e s: \n");
-  // 30 s for 24 files: 90 s for 72 more. 45 s for 36: 75 s for 60 more.
+  // 24 files take 30 s: 72 more take 90 s. 36 files take 45 s: 60 more take 75 s.
   EXPECT_EQ(outcome.err,
             "weft: building\n"
             "weft: 24 of 96 files, about 2 min left\n"
