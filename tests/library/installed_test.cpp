@@ -1,4 +1,4 @@
-// A program that does not know the source tree uses what `cmake --install` installs.
+// A program outside of the source tree uses what `cmake --install` installs.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 class InstalledLibrary : public support::TestFolder {
  protected:
-  // Output of `command`, run in the folder of the test; standard output and error if it fails.
+  // Output of `command`, run in the folder of the test; if it fails, standard output and standard error.
   std::string run(const std::string& command) {
     const std::string line = "cd '" + folder_.string() + "' && { " + command + "; } 2>errors";
     FILE* pipe = ::popen(line.c_str(), "r");
@@ -64,12 +64,12 @@ TEST_F(InstalledLibrary, OfThePhysicsStepsAModelWithoutAnInstallation) {
   ASSERT_EQ(got.size(), 81U);
   EXPECT_EQ(got[0], Vec3(0, 0, 0));
   EXPECT_EQ(got[8], Vec3(1, 0, 0));
-  // Free fall of 0.4 s is 0.8 m; the far side swings about the pinned corners.
+  // A free fall of 0.4 s would be 0.8 m long; the far side swings about the pinned corners.
   EXPECT_LT(got[76].z(), -0.4);
   EXPECT_GT(got[76].z(), -1);
 }
 
-// The physics has neither files nor looks: its library needs none of their packages.
+// The physics reads no files and draws nothing, so its library needs no packages for that.
 TEST_F(InstalledLibrary, OfThePhysicsNeedsNoFilesAndNoPictures) {
   const std::string needed = needed_by(WEFT_PHYSICS_LIBRARY);
   EXPECT_NE(needed.find("libtbb"), std::string::npos) << needed;

@@ -152,7 +152,7 @@ TEST(LibrarySimulation, ThreadsDoNotDisturbEachOther) {
   EXPECT_EQ(two, expected);
 }
 
-// Keys of the scene and the equivalent calls of move() cause the same motion.
+// Keys of the scene, and the equivalent calls of move(), must cause the same motion.
 TEST(LibraryMove, IsMotionBetweenLinearKeys) {
   const Scene scene = Scene::parse(kDrape);
   const auto written = [](double number) { return std::to_string(number); };

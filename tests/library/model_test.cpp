@@ -87,7 +87,7 @@ TEST(LibraryModel, HasTheBitsOfTheSceneThatSaysTheSame) {
   EXPECT_TRUE(std::ranges::equal(body, same));
 }
 
-// Every value of a model differs from its default, and the ball, of 20 g, is struck by the sheet.
+// Every value of this model differs from its default. The sheet hits the ball, which has a mass of 20 g.
 TEST(LibraryModel, PassesOnEachOfItsValues) {
   Model model;
   model.fps = 50, model.step = 0.005, model.method = Method::bdf2, model.newton_tolerance = 0.2;
@@ -187,7 +187,7 @@ TEST(LibraryModel, TakesItsRestShapeFromTheFlatFabric) {
   EXPECT_NEAR(simulation.frame().report().max_strain, 0.1, 1e-9);
 }
 
-// The spans of a frame are those of its own data.
+// The spans of a frame point to its own data.
 TEST(LibraryModel, HasFramesThatOutliveTheirSimulation) {
   std::optional<Frame> kept;
   std::vector<Vector> before;
@@ -261,7 +261,7 @@ TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
   }
 }
 
-// Joined by commas, both lists of names are "a,b,c".
+// If names are joined by commas, both lists are "a,b,c".
 TEST(LibraryModel, RefusesAStateOfOtherDrivenBodiesWhoseNamesHaveCommas) {
   Model model;
   model.cloths = {sheet()};
@@ -278,7 +278,8 @@ TEST(LibraryModel, RefusesAStateOfOtherDrivenBodiesWhoseNamesHaveCommas) {
   expect_refused("with the same driven bodies", model, {.driven = {"a,b", "c"}, .state = state});
 }
 
-// Without air, the sheet falls freely for 0.2 s and then keeps its velocity, which no warning takes for a gain.
+// Without air, the sheet falls freely for 0.2 s, and then keeps its velocity. This must not cause a warning of gained
+// energy.
 TEST(LibraryWeather, ChangesGravityBetweenFrames) {
   Model model;
   model.air_density = 0;
@@ -294,7 +295,8 @@ TEST(LibraryWeather, ChangesGravityBetweenFrames) {
   EXPECT_THROW(simulation.set_weather({}, {0, 1001, 0}), std::invalid_argument);
 }
 
-// Wind that is set before the first frame is that of a model that has it from the start, and is in the saved state.
+// Wind that is set before the first frame acts like the wind of a model that has it from the start. The saved state
+// contains it.
 TEST(LibraryWeather, ChangesTheWindAndIsSaved) {
   Model still, windy;
   still.cloths = windy.cloths = {sheet()};
@@ -309,7 +311,7 @@ TEST(LibraryWeather, ChangesTheWindAndIsSaved) {
   EXPECT_EQ(positions_after(resumed, 5), positions_after(changed, 5));
 }
 
-// Whenever a frame is interrupted, it can be computed again, with the same bits.
+// A frame can be interrupted at any time and computed again, with the same bits.
 TEST(LibraryInterrupt, EndsAFrameThatCanBeComputedAgain) {
   Model model;
   model.cloths = {sheet()};
@@ -428,8 +430,8 @@ TEST(LibraryModel, WithAValueThatCannotBeIsRefusedByName) {
   expect_refused("driven: expected bodies (ball), got bal", with([](Model&) {}), {.driven = {"bal"}, .state = {}});
 }
 
-// Meshes of others are often like that: two triangles in one place. The faces of the ball are 98.3 mm from its middle
-// where they are nearest: 0.1 m times the cosine of half a segment, 7.5°, twice.
+// Meshes of other programs often have two triangles in one place. The faces of the ball are at least 98.3 mm from its
+// middle: 0.1 m times the square of the cosine of half a segment, 7.5°.
 TEST(LibraryModel, TakesBodiesWhoseEdgesAreOfThreeTriangles) {
   Model model;
   model.cloths = {sheet()};

@@ -1,4 +1,4 @@
-// Simulates a sheet made in memory with the library of the physics alone, and prints where its particles are.
+// Simulates a sheet that is made in memory, with the physics library alone, and prints the positions of its particles.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
