@@ -31,8 +31,8 @@ TEST(Caps, CloseASphereThatWasCutTwice) {
   const TopologyReport report = inspect(kept, sphere.positions.size());
   EXPECT_TRUE(report.border.empty());
   EXPECT_TRUE(report.manifold());
-  // Volume of a unit sphere between -h and h: 2 π (h - h³/3). h is between 0.5 and 0.61, one row of 7.5 degrees more.
-  // 48 segments reduce the volume by 1 %.
+  // The volume of a unit sphere between -h and h is 2 π (h - h³/3). h is between 0.5 and 0.61, one row of 7.5 degrees
+  // more. The volume with 48 segments is smaller by 1 %.
   EXPECT_GT(volume(kept, sphere.positions), 0.98 * 2 * 3.1416 * (0.5 - 0.125 / 3));
   EXPECT_LT(volume(kept, sphere.positions), 2 * 3.1416 * (0.61 - 0.61 * 0.61 * 0.61 / 3));
 }
@@ -54,7 +54,7 @@ TEST(Caps, AddNothingWhereNothingWasCut) {
   EXPECT_TRUE(kept.empty());
 }
 
-// Two openings touch in a vertex: both loops of the figure eight are closed separately.
+// Two openings touch in a vertex. Both loops of this figure eight must be closed separately.
 TEST(Caps, CloseRingsThatMeetInAVertex) {
   const std::vector<Vec3> x{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
   // A square pyramid with apex 5, whose base is split at vertex 0. Two opposite faces at the apex are missing.

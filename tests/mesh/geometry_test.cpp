@@ -29,7 +29,7 @@ TEST(Volume, OfATetrahedronIsASixthOfItsBoxAndNegativeInsideOut) {
 }
 
 TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
-  // A third of a millimetre, rounded so that adding the distance is exact: only the sum can lose digits.
+  // The size is a third of a millimetre, rounded so that adding the distance is exact: only the sum can lose digits.
   const double size = std::round(std::ldexp(1.0 / 3, 30)) * std::ldexp(1.0, -40);
   auto far = kCorners;
   for (Vec3& x : far) x = size * x + Vec3(1024, -2048, 4096);
@@ -37,7 +37,7 @@ TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
 }
 
 TEST(VertexNormals, WeighTrianglesByTheirArea) {
-  // Two upright triangles at vertex 0: area 2 facing +z, area 1 facing +x.
+  // Two upright triangles at vertex 0: one of area 2 faces +z, one of area 1 faces +x.
   const std::vector<Vec3> x{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   std::vector<Vec3> normals(4);

@@ -74,7 +74,7 @@ TEST(Isosurface, RemeshedSphereHasEvenTrianglesOnTheSurface) {
       EXPECT_GT(std::acos((b - a).normalized().dot((c - a).normalized())), 25 * std::numbers::pi / 180);
     }
   }
-  // An inscribed polyhedron with edges of 0.1 r lacks a few thousandths of the volume.
+  // A polyhedron that is inscribed into a sphere and has edges of 0.1 r lacks a few thousandths of the volume.
   EXPECT_NEAR(support::enclosed_volume(triangles, x), std::numbers::pi / 6, 0.005);
 }
 

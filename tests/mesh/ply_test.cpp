@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Triangles = std::vector<std::array<Index, 3>>;
 
-// Values that show any change of a bit.
+// Values that reveal a change of any bit.
 const std::vector<Vec3> kPositions{
     {0, -0.0, 1.0 / 3}, {1e-310, std::numeric_limits<double>::max(), -1}, {0.1, 0.2, 0.30000000000000004}};
 const Triangles kTriangles{{0, 1, 2}, {2, 1, 0}};

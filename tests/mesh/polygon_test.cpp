@@ -67,7 +67,7 @@ TEST(Polygon, ThatIsRegularIsCutWithoutAFan) {
   for (int k = 0; k < n; ++k)
     corners.emplace_back(std::cos(2 * std::numbers::pi * k / n), std::sin(2 * std::numbers::pi * k / n), 0);
   expect_covered(corners, 0.5 * n * std::sin(2 * std::numbers::pi / n), Vec3(0, 0, 1));
-  // No corner is in more than 2 log2(n) triangles, the bound of a recursive halving.
+  // No corner belongs to more than 2 log2(n) triangles, the bound of recursive halving.
   std::vector<int> around(n);
   for (const Triangle& triangle : triangulate(corners))
     for (const Index v : triangle) ++around[v];

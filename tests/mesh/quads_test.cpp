@@ -25,8 +25,8 @@ TEST(QuadSplit, TakesTheFirstDiagonalOnATie) {
 }
 
 TEST(QuadSplit, StaysInsideAnArrowheadEvenIfThatDiagonalIsLonger) {
-  // The reflex corner is corner 3 at (0, -0.5). Its diagonal to corner 1 has length 3.5; the other diagonal lies
-  // outside and has length 2.
+  // The reflex corner is corner 3 at (0, -0.5). Its diagonal, to corner 1, has length 3.5. The other diagonal lies
+  // outside, and has length 2.
   const std::vector<Vec3> arrow{{-1, 0, 0}, {0, -4, 0}, {1, 0, 0}, {0, -0.5, 0}};
   EXPECT_EQ(split_quads(kQuad, arrow), kSecondDiagonal);
 }

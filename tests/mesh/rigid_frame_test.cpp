@@ -1,4 +1,4 @@
-// Frames of rigid bodies, compared with the moments of solids.
+// Frames of rigid bodies, compared with the second moments of solids.
 #include "physics/mesh/rigid_frame.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ RigidFrame frame_of(const Mesh& mesh) {
   return {mesh.topology.triangles, mesh.positions};
 }
 
-/// Second moments of four quarters of a unit mass at the particles, about their centre.
+/// Second moments about the centre of four particles, each with a quarter of a unit mass.
 Mat3 second_moments(const RigidFrame& frame) {
   Mat3 sum = Mat3::Zero();
   for (const Vec3& x : frame.particles()) sum += 0.25 * (x - frame.centre()) * (x - frame.centre()).transpose();
@@ -52,7 +52,7 @@ TEST(RigidFrame, HasTheMomentsOfACylinderWhereverItIs) {
 TEST(RigidFrame, CarriesAllVertices) {
   const Mesh mesh = make_sphere(0.2, 16);
   const RigidFrame frame = frame_of(mesh);
-  // The vertices follow the particles through any affine motion.
+  // The vertices must follow the particles in any affine motion.
   Mat3 deform;
   deform << 1, 0.2, 0, -0.1, 0.9, 0.3, 0, 0, 1.2;
   std::vector<Vec3> particles;
@@ -72,7 +72,7 @@ TEST(RigidFrame, RefusesWhatEnclosesNothing) {
   EXPECT_THROW(frame_of(open), std::invalid_argument);
 }
 
-// One side of a cube faces inward. Without a refusal, its volume would be a third of that of the cube.
+// One side of a cube faces inward. If it were accepted, the volume would be a third of that of the cube.
 TEST(RigidFrame, RefusesTrianglesThatFaceDifferentWays) {
   Mesh cube = make_box(Vec3(1, 1, 1), 0, 8);
   const std::vector<Vec3>& x = cube.positions;

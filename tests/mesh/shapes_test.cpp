@@ -29,7 +29,7 @@ double polygon(int corners) {
   return 0.5 * corners * std::sin(2 * kPi / corners);
 }
 
-/// Largest height of a vertex above the plane of any triangle; for a convex body at most rounding.
+/// Largest height of a vertex above the plane of any triangle; for a convex body, this is at most a rounding error.
 double bulge_over_faces(const Mesh& mesh) {
   double highest = -std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.topology.triangles) {
@@ -162,8 +162,8 @@ TEST(Box, HasItsSizesVolumeAndTwelveTriangles) {
 TEST(Box, WithOneBevelFaceLosesPrismsAtEdgesAndTetrahedraAtCorners) {
   const double b = 0.1;
   const Mesh box = make_box({1, 2, 3}, b, 8);
-  // The bevel removes a prism with cross-section b²/2 from each edge. Of the cube b³ at each corner, a tetrahedron of
-  // b³/6 remains.
+  // The bevel removes a prism with the cross-section b²/2 from each edge. From the cube b³ at each corner, it leaves a
+  // tetrahedron of b³/6.
   const double edges = 4 * (1 + 2 + 3 - 3 * 2 * b) * b * b / 2;
   EXPECT_NEAR(volume(box), 6 - edges - 8 * (b * b * b * 5 / 6), kRoundingOfSums);
   EXPECT_LT(bulge_over_faces(box), kRoundingOfSums);
@@ -172,7 +172,8 @@ TEST(Box, WithOneBevelFaceLosesPrismsAtEdgesAndTetrahedraAtCorners) {
 TEST(Box, WithManyBevelFacesConvergesToTheRoundedBox) {
   const double b = 0.1;
   const Vec3 inner(1 - 2 * b, 2 - 2 * b, 3 - 2 * b);
-  // Steiner's formula: inner box, slabs, quarter cylinders, one ball.
+  // Steiner's formula: inner box, slabs on its faces, quarter cylinders at its edges, and parts of a ball at its
+  // corners.
   const double rounded = inner.prod() +
                          2 * b * (inner.x() * inner.y() + inner.y() * inner.z() + inner.z() * inner.x()) +
                          kPi * b * b * inner.sum() + 4 * kPi / 3 * b * b * b;
@@ -225,11 +226,12 @@ TEST(Cone, IsThePyramidOverItsPolygonWithItsTipUp) {
 TEST(Torus, HasTheVolumeOfItsTurnedPolygon) {
   const double radius = 0.5, tube = 0.2;
   const Mesh torus = make_torus(radius, tube, 48);
-  // The cell width at the outer equator fits 13.7 times around the tube; the nearest multiple of four is used.
+  // The width of a cell at the outer equator fits 13.7 times around the tube; the program takes the nearest multiple of
+  // four.
   const int around_tube = 12;
   ASSERT_EQ(torus.positions.size(), 48u * around_tube);
-  // Pappus: length of the centroid's path times area. With 48 steps instead of a circle, the factor is 2 polygon(48)
-  // instead of 2 π.
+  // Pappus: volume = length of the path of the centroid times area. With 48 steps in place of a circle, the factor is 2
+  // polygon(48) in place of 2 π.
   EXPECT_NEAR(volume(torus), 2 * polygon(48) * radius * polygon(around_tube) * tube * tube, kRoundingOfSums);
   for (const Vec3& x : torus.positions)
     EXPECT_NEAR(std::hypot(std::hypot(x.x(), x.y()) - radius, x.z()), tube, kRoundingOfSums);

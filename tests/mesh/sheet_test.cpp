@@ -63,7 +63,7 @@ TEST(TriangleSheet, MaterialCoordinatesKeepLengthsHoweverTheTriangleIsTurned) {
 
 TEST(TriangleSheet, LeastHeightIsThatOfTheNarrowestTriangle) {
   const Sheet sheet = make_sheet_from_mesh(make_triangle_sheet(kGrid, Pattern::aligned));
-  // Legs 0.5 and 0.25: height over the hypotenuse.
+  // Height above the hypotenuse of a triangle with legs 0.5 and 0.25.
   EXPECT_NEAR(min_height(sheet), 0.125 / std::hypot(0.5, 0.25), 1e-15);
 }
 
