@@ -1,4 +1,4 @@
-// Gusts of wind: strength, zero divergence, length scale and duration.
+// Tests of gusts: strength, zero divergence, length scale and duration.
 #include "physics/model/gusts.hpp"
 
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@ namespace {
 const Gusts kGusts{.speed = 2, .size = 1.5, .seed = 7};
 const Vec3 kWind(6, 1, 0);
 
-// Relative tolerance of means over 8,000 places, which are several length scales apart and thus independent: a few
-// times 1/√8000.
+// Relative tolerance of means over 8,000 places. The places are several length scales apart and thus independent; the
+// tolerance is a few times 1/√8000.
 constexpr double kOfMeans = 0.05;
 
-/// Calls body(x) for places on a lattice that is no multiple of any wave length.
+/// Calls body(x) for places on a lattice. Its spacings are no multiples of any wave length.
 template <class Body>
 void for_places(const Body& body) {
   for (int i = 0; i < 20; ++i)
@@ -54,7 +54,7 @@ TEST(Gusts, HaveNoDivergence) {
   EXPECT_GT(largest, 1) << "there is something to cancel";
 }
 
-// Integral length scale: the correlation of each component along its own direction, integrated until it vanishes.
+// The integral length scale is the correlation of each component along its own direction, integrated until it vanishes.
 TEST(Gusts, AreOfTheSizeThatIsSaid) {
   constexpr int kFields = 10, kPlaces = 400, kSteps = 40;
   const double d = 0.15 * kGusts.size;

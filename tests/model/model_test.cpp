@@ -1,4 +1,4 @@
-// Parts of a model, and bodies that another program moves.
+// Tests models of some cloths, and bodies that another program moves.
 #include "physics/model/model.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ const std::string kThree =
     "[[attach]]\nname = 'ab'\ncloth = 'a'\nto = 'b'\n[[attach]]\nname = 'ca'\ncloth = 'c'\nto = 'a'\n"
     "[[attach]]\nname = 'cb'\ncloth = 'c'\nto = 'ball'\n";
 
-// With the cloths a and c alone, c has the number 1, and what ties to b is left out.
+// The part with only the cloths a and c: c has the number 1 there, and attachments to b are removed.
 TEST(Model, WithSomeClothsHasTheirAttachmentsAndTheirNumbers) {
   const Model whole = model_of(kThree);
   ASSERT_EQ(whole.attachments.size(), 3U);

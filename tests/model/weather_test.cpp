@@ -1,4 +1,4 @@
-// Key-framed gravity and air, and the jet of a fan.
+// Gravity and air with keys, and the jet of a fan.
 #include "physics/model/weather.hpp"
 
 #include <gtest/gtest.h>
