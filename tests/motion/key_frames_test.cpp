@@ -39,7 +39,7 @@ Motion at(const KeyFrames& keys, std::size_t vertices, double t) {
   return motion;
 }
 
-/// The natural cubic spline without limits. Spline equals it only where it stays between the values of its keys.
+/// The natural cubic spline without limits. Spline is equal to it only where it stays between the values of the keys.
 Spline<3>::Sample natural_at(const std::vector<double>& times, const std::vector<Vec3>& values, double t) {
   std::vector<double> lengths;
   std::vector<Vec3> chords;

@@ -28,7 +28,7 @@ PoseTrack tumbling(Interpolation interpolation) {
            {3.0, {{0, 0, 1}, about({0, 1, 0}, -0.4)}}}};
 }
 
-/// Spin about one axis through the given angles [rad].
+/// Rotation about one axis through the given angles [rad].
 PoseTrack spin(Interpolation interpolation, const Vec3& axis, const std::vector<double>& times,
                const std::vector<double>& angles) {
   PoseTrack track{interpolation, {}};
@@ -40,7 +40,7 @@ PoseTrack spin(Interpolation interpolation, const Vec3& axis, const std::vector<
 TEST(Pose, BestRotationIsFoundThroughStretchAndIsNoMirrorImage) {
   const Mat3 turn = about({1, 2, 3}, 0.7).toRotationMatrix();
   EXPECT_LT((best_rotation(turn * Vec3(1.2, 0.9, 1).asDiagonal()) - turn).norm(), kRoundingOfTurns);
-  // Of a mirror image, the axis of the smallest stretch is the one that is not mirrored.
+  // In a mirror image, the axis with the smallest stretch is the one that is not mirrored.
   EXPECT_LT((best_rotation(turn * Vec3(3, 2, -1).asDiagonal()) - turn).norm(), kRoundingOfTurns);
 }
 
@@ -132,8 +132,8 @@ TEST(LinearTrack, TurnsEvenlyTheShortestWay) {
 }
 
 TEST(Track, TurnsByAllOfTheChangeOfOneAngle) {
-  // Three turns about x, 290 degrees about y (the longer way), or 2.5 turns back about z. The other two angles stay
-  // constant and tilt the axis.
+  // Three turns about x; 290 degrees about y (the longer way); 2.5 turns backward about z. The other two angles are
+  // constant, and tilt the axis.
   const double change[3] = {1080, 290, -900};
   const Vec3 held(20, -40, 70);
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
@@ -188,8 +188,8 @@ TEST(Track, GoesOnThroughHalfTurnsInTheSameDirection) {
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     for (const double way : {1.0, -1.0}) {
       const double quarter = way * 90 * kDegree;
-      // From the second key to the third the body turns by half a turn plus a rounding error. The shortest rotation
-      // there would be backward.
+      // From the second key to the third, the body rotates by half a turn plus a rounding error. The shortest rotation
+      // between these keys would be backward.
       const double more = 3 * quarter + way * 1e-9;
       const Track track(spin(interpolation, {0, 0, 1}, {0, 1, 3, 5, 7}, {0, quarter, more, 5 * quarter, 7 * quarter}));
       for (const double t : {0.5, 1.5, 2.5, 4.0, 6.5})
