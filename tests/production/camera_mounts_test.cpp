@@ -1,4 +1,4 @@
-// Cameras that follow a body, and focal lengths in millimetres, as snapshots contain them.
+// Cameras that follow a body, and focal lengths in millimetres, as they appear in snapshots.
 #include "film/production/camera_mounts.hpp"
 
 #include <gtest/gtest.h>

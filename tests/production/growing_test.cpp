@@ -1,4 +1,4 @@
-// Bodies that garments do not fit at the start: wearers that grow into patterns, and capes that move off a back.
+// Bodies that garments do not fit at the start: wearers that grow into their patterns, and capes that move off a back.
 #include "film/environment/growing.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ std::vector<std::string> notes_of(const Action& action) {
   return notes;
 }
 
-// The arms hang through the wall of the skirt.
+// At the start, the arms hang through the wall of the skirt.
 TEST(Growing, ArmsThatCrossASkirtAreHeldOffIt) {
   const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", pattern("skirt.toml"));
   const auto posed = environment::with_arms_in_sleeves(scene, environment::Environment(scene));
@@ -52,7 +52,7 @@ TEST(Growing, ArmsThatCrossASkirtAreHeldOffIt) {
   EXPECT_EQ(crossing_pairs(*production::view_start(*posed).snapshot), 0U);
 }
 
-// Both are crossed by the arms, and only the sleeves decide where arms can be.
+// The arms cross both the shirt and the skirt. Only the sleeves determine where the arms can be.
 TEST(Growing, ArmsThatCrossAShirtAndASkirtAreInTheSleeves) {
   const std::string shirt = pattern("tshirt.toml"), skirt = "[[cloth]]\nname = \"skirt\"\n" + pattern("skirt.toml");
   for (const std::string& cloths : {shirt + skirt, pattern("skirt.toml") + "[[cloth]]\nname = \"shirt\"\n" + shirt}) {
@@ -75,7 +75,7 @@ TEST(Growing, ABodyThatAGarmentCannotBeMovedOutOfGrowsIntoIt) {
   })) << (notes.empty() ? "no notes" : notes.back());
 }
 
-// Its sleeves point down by 33 degrees.
+// The sleeves of the shirt point down by 33 degrees.
 TEST(Growing, AWearerGrowsWithItsArmsInTheSleeves) {
   const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", pattern("tshirt.toml"));
   std::vector<std::string> notes;
@@ -85,7 +85,7 @@ TEST(Growing, AWearerGrowsWithItsArmsInTheSleeves) {
   EXPECT_NEAR(scene::acting_of(growing->characters[0])->stance_arms.value_or(0), 57, 10);
 }
 
-// The wearer and its garment are well; a second cloth touches a ball.
+// The wearer and its garment are valid; a second cloth touches a ball.
 TEST(Growing, IsNotSaidIfOtherClothIsRefused) {
   const scene::Scene scene = dressed_mannequin(
       "dressing = 0.2\nblend = 0.1\nwalk = 1\nstance_arms = 57\n",
@@ -98,7 +98,7 @@ TEST(Growing, IsNotSaidIfOtherClothIsRefused) {
   for (const std::string& note : notes) EXPECT_EQ(note.find("the body grows into it"), std::string::npos) << note;
 }
 
-// Without `dressing`, the body would grow in sight.
+// Without `dressing`, the viewer would see the body grow.
 TEST(Growing, NoWearerGrowsWithoutTimeForIt) {
   const scene::Scene scene = dressed_mannequin("walk = 1\n", pattern("tshirt.toml"));
   std::vector<std::string> notes;

@@ -1,4 +1,4 @@
-// The plan says of a scene what the physics finds in its model.
+// The plan of a scene must name the parts that the physics uses for its model.
 #include "film/production/plan.hpp"
 
 #include <gtest/gtest.h>
