@@ -1,4 +1,4 @@
-// Cameras that are computed from all frames of a run.
+// Cameras that the program computes from all frames of a run.
 #include "film/render/camera_path.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ CameraPath path_of(const std::vector<frame::FrameSnapshot>& run) {
   return path;
 }
 
-/// Largest |x| or |y| of a surface in the picture; the edges are at 1.
+/// Largest |x| or |y| of a surface in the picture; the edges of the picture are at 1.
 double extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, std::size_t surface) {
   const View view = make_view(camera, Vec3::UnitZ(), kAspect, subject_bounds(snapshot), std::nullopt);
   double largest = 0;
@@ -87,7 +87,7 @@ TEST(CameraPath, FollowKeepsItsSubjectInTheMiddleWithoutTakingOverItsSteps) {
   EXPECT_NEAR(largest, 0.86, 1e-9);
   for (std::size_t k = 1; k + 1 < eyes.size(); ++k) {
     EXPECT_NEAR((eyes[k] - eyes[k - 1]).x(), 1.5 / kFps, 1e-9) << "an even walk is followed evenly, from the start";
-    // A Gaussian of half a second damps 1 Hz to exp(-(pi)^2 / 2) = 0.7 percent; at the ends a little more is left.
+    // A Gaussian of half a second damps 1 Hz to exp(-(pi)^2 / 2) = 0.7 percent; at both ends of the run, it damps less.
     const double bend = (eyes[k + 1] - 2 * eyes[k] + eyes[k - 1]).z();
     const double own = 0.03 * std::pow(2 * 3.14159265 / kFps, 2);
     EXPECT_LT(std::abs(bend), 0.1 * own) << k;
@@ -103,7 +103,8 @@ TEST(CameraPath, CloseComesNearerWhereTheSubjectIsSmallAndNeverCutsIt) {
     }
   const CameraPath path = path_of(run);
   const auto distance = [&](std::size_t k) { return (path.at(run[k]).position - path.at(run[k]).target).norm(); };
-  // A fifth of the size needs a fifth of the distance, and a margin for the oscillation, which the camera ignores.
+  // A fifth of the size allows a fifth of the distance. A margin is needed for the oscillation, which the camera does
+  // not follow.
   EXPECT_LT(distance(100), 0.35 * distance(0));
   for (const frame::FrameSnapshot& snapshot : run) EXPECT_LT(extent(snapshot, path.at(snapshot), 0), 0.86 + 1e-9);
 }
@@ -147,7 +148,7 @@ TEST(CameraPath, OrbitGoesAroundAtOneDistanceWithEverythingInView) {
     for (const std::size_t surface : {0, 1}) largest = std::max(largest, extent(snapshot, at, surface));
   }
   EXPECT_NEAR(largest, 0.86, 1e-9);
-  // One second is a quarter of the orbit: the directions to both eyes, seen from above, are at right angles.
+  // One second is a quarter of the orbit. Seen from above, the directions to both eyes are at right angles.
   const Vec3 first = path.at(run[0]).position - path.at(run[0]).target;
   const Vec3 later = path.at(run[25]).position - path.at(run[25]).target;
   EXPECT_NEAR(first.head<2>().dot(later.head<2>()), 0, 1e-9);

@@ -1,4 +1,4 @@
-// Compares the data of random pixels with a search through all triangles.
+// Compares the data layers at random pixels with a search through all triangles.
 #include "film/render/data_passes.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kPassWidth = 192, kPassHeight = 108;
 
-/// A sheet that wraps a sphere in front of a floor, deformed by `phase` and moved by it.
+/// A sheet around a sphere, in front of a floor. `phase` deforms and moves the sheet.
 frame::FrameSnapshot moment(double phase, const frame::FrameSnapshot* same) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -64,7 +64,7 @@ Vec3 smooth_normal(const frame::Surface& surface, std::span<const Vec3> x, Index
   return sum.normalized();
 }
 
-/// Finds the nearest hit of the ray, with barycentric coordinates from signed areas.
+/// The nearest hit of a ray, with barycentric coordinates computed from signed areas.
 Found search(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, const Vec3& eye, const Vec3& along) {
   Found found;
   for (std::size_t s = 0; s < now.surfaces.size(); ++s) {
@@ -145,7 +145,7 @@ class DataPassesTest : public support::TestFolder {
   static inline image::Image picture_;
 };
 
-/// Checks 1,000 random pixels of this number of rows.
+/// Checks 1,000 random pixels of `rows` rows.
 void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows) {
   const Viewer viewer(second_.cameras[0]), viewer_before(first_.cameras[0]);
   std::mt19937 random(1);
@@ -157,7 +157,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
     const Found found = search(second_, first_, viewer.eye, viewer.along(pixel));
     const auto at = [&](const char* name) { return value(layers, name, x, y); };
     if (at("id.object") != found.object || at("id.part") != found.part) {
-      ++beside;  // an edge passes through the centre of the pixel
+      ++beside;  // an edge passes near the centre of the pixel
       continue;
     }
     ++counts[static_cast<int>(found.object)];
@@ -165,7 +165,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
       EXPECT_TRUE(std::isinf(at("depth.Z")));
       continue;
     }
-    // 32-bit numbers of some metres; the floor at the horizon is far away.
+    // Tolerance for 32-bit numbers of some metres; the floor near the horizon is far away.
     const double rounding = 2e-7 * std::max(1.0, found.depth);
     EXPECT_NEAR(at("depth.Z"), found.depth, rounding);
     EXPECT_NEAR(at("position.X"), found.position.x(), rounding);
@@ -177,7 +177,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
     const Vec2 motion = pixel - viewer_before.pixel(found.before);
     EXPECT_NEAR(at("motion.X"), motion.x(), 1e-5);
     EXPECT_NEAR(at("motion.Y"), motion.y(), 1e-5);
-    // The normal faces the viewer. The sphere has duplicate vertices along one meridian.
+    // The normal faces the viewer. The sphere has duplicate vertices along one meridian, so its normals differ there.
     const Vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
     const Vec3 expected = found.normal * (found.face.dot(viewer.along(pixel)) > 0 ? -1 : 1);
     EXPECT_LT((normal - expected).norm(), found.object == 2 ? 0.02 : 1e-6);
@@ -190,7 +190,7 @@ TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
   expect_exact(layers_, 0, kPassHeight);
 }
 
-// A file of some rows, printed by OpenImageIO: channel names in their order, then one line for each pixel.
+// OpenImageIO prints a file of some rows: the channel names in order, then one line for each pixel.
 TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
   constexpr int kTop = 44, kRows = 20;
   image::Layers rows{kPassWidth, kRows, layers_.channels};
@@ -238,7 +238,7 @@ TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
   EXPECT_EQ(count, 2);
 }
 
-// The camera moves backward past a square.
+// The camera moves backward past a square, which was behind the camera before.
 TEST_F(DataPassesTest, WhatWasBehindTheCameraDoesNotMove) {
   frame::FrameSnapshot before;
   before.stage = stage_without_sky();
@@ -281,13 +281,15 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
     }
   }
   EXPECT_GT(whole, 1000);
-  // Pixels at folds, half of so small a picture, differ: the picture averages encoded colours, this pass linear ones.
+  // In this small picture, half of the pixels are at folds. They differ, since the picture averages encoded colours,
+  // and this pass linear ones.
   EXPECT_GT(same, 0.45 * whole);
   EXPECT_GT(partly, 100) << "outlines are smooth";
 }
 
-// Composited over a background picture, floor is black where a ray to the sun hits something, because this scene has no
-// ambient light. Elsewhere it leaves the picture unchanged. Pixels in the penumbra, a few percent, are excluded.
+// The floor, composited over a background picture, is black where a ray to the sun hits something, because this scene
+// has no ambient light. Elsewhere, it leaves the picture unchanged. Pixels in the penumbra, a few percent, are
+// excluded.
 TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
   const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
   int lit = 0, dark = 0, otherwise = 0;

@@ -17,7 +17,8 @@ std::vector<float> fill(const Eigen::Vector3f& a, const Eigen::Vector3f& b, cons
   return depths;
 }
 
-// Compares every texel with the signed distances of its centre from the three sides, for both orientations.
+// Compares every texel with the signed distances of its centre from the three sides, for both orientations of the
+// triangle.
 TEST(DepthRaster, CoversTheTexelsWhoseCentresLieInsideAndGivesThemTheDepthOfThePlane) {
   const Eigen::Vector3f a(3.2f, 5.1f, 0.1f), b(60.7f, 20.3f, 0.5f), c(17.9f, 58.6f, 0.9f);
   for (const bool turned : {false, true}) {
@@ -43,8 +44,8 @@ TEST(DepthRaster, WhatReachesOutOfTheMapIsCutOff) {
   for (const float depth : fill({70, 3, 0}, {90, 3, 0}, {80, 30, 0})) EXPECT_EQ(depth, 9);
 }
 
-// The near plane z = w cuts a triangle with one corner behind into a quad of 3/4 of its area, one with two corners
-// behind into a triangle of 1/4.
+// The near plane is z = w. It cuts a triangle with one corner behind it to a quad of 3/4 of its area, and one with two
+// corners behind it to a triangle of 1/4.
 TEST(DepthRaster, ClippingLeavesWhatLiesInFrontOfTheNearPlane) {
   const auto area_left = [](double z_a, double z_b, double z_c) {
     double area = 0;

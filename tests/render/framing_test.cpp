@@ -11,7 +11,7 @@
 namespace weft::render {
 namespace {
 
-/// Largest |x| and |y| in the picture (1 at its edges) over all vertices except those of floors.
+/// Largest |x| and |y| in the picture (its edges are at 1) over all vertices except those of floors.
 Vec2 extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& up, double aspect) {
   const View view = make_view(camera, up, aspect, subject_bounds(snapshot), std::nullopt);
   Vec2 largest(0, 0);
@@ -101,7 +101,8 @@ TEST(Framing, InvisibleSurfacesDoNotCount) {
   EXPECT_LT(subject_bounds(snapshot).max().x(), 1.001);
 }
 
-// Two squares 300 m away, 10 cm behind each other and as large in the picture as a square 20 cm away beside them.
+// Two squares are 300 m away, one 10 cm behind the other. In the picture, they are as large as a square beside them
+// that is 20 cm away.
 TEST(Framing, CloseClothIsInViewBeforeDistantThingsThatHideEachOther) {
   for (const bool red_first : {true, false}) {
     frame::FrameSnapshot snapshot;

@@ -1,4 +1,4 @@
-// Open floor near the horizon.
+// Tests open floor near the horizon.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,8 +12,9 @@ namespace {
 
 constexpr int kPictureWidth = 320, kPictureHeight = 200;
 
-// The surroundings are a thousand times as large as the eye is high: the floor fades within the last pixel below the
-// horizon, and shows its plain light in all others. On a grid of 16 pixels, it would fade over up to 16 of them.
+// The surroundings are a thousand times as large as the height of the eye: the floor fades within the last pixel below
+// the horizon, and shows its plain light in all other pixels. If the fading were computed on a grid of 16 pixels, it
+// would extend over up to 16 pixels.
 TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -22,7 +23,7 @@ TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
     add_square(snapshot, frame::ObjectKind::obstacle, Vec3(1700 * side, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 1);
   snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
   snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
-  // The row of the horizon, from the top: 0.005 / tan 15 of half a picture above the middle.
+  // Row of the horizon, counted from the top: 0.005 / tan 15° of half a picture above the middle.
   const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
   for (const Quality quality : {Quality::preview, Quality::final}) {
     Settings settings;

@@ -1,4 +1,4 @@
-// Motion blur, depth of field, render styles, and cloth that is refined for drawing.
+// Motion blur, depth of field, styles for review, and cloth that is refined for drawing.
 #include "film/render/instants.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Settings small_settings() {
   return settings;
 }
 
-/// A white square of 0.2 m in front of black, 2 m from the camera; a pixel is 7.3 mm there.
+/// A white square of 0.2 m in front of black, by default 2 m from the camera, where a pixel is 7.3 mm wide.
 frame::FrameSnapshot square_at(double x, double distance = 2) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -44,8 +44,8 @@ double linear_at(const image::Image16& image, int x) {
   return std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-// The 180 degree shutter closes at the frame: a square that moved by 40 pixels is visible over the last 20, and its
-// edges are ramps of that length.
+// The shutter of 180 degrees closes at the time of the frame. A square that moved by 40 pixels is visible over the last
+// 20 of them, and its edges are ramps of this length.
 TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   const double pixel = 2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight;
   const frame::FrameSnapshot now = square_at(20 * pixel), before = square_at(-20 * pixel);
@@ -60,7 +60,7 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   EXPECT_NEAR(linear_at(image, 124) / white, 0.5, 0.06);
   EXPECT_NEAR(linear_at(image, 119) / white, 0.75, 0.06);
   EXPECT_NEAR(linear_at(image, 95) / white, 0.5, 0.06);
-  // The ramp has no steps. (With four sharp pictures alone, some pixels would be off by 0.12.)
+  // The ramp has no steps. (A mean of only four sharp pictures would differ by 0.12 in some pixels.)
   for (int x = 116; x < 133; ++x) EXPECT_NEAR(linear_at(image, x) / white, (134.2 - x - 0.5) / 20, 0.05) << x;
   EXPECT_LT(linear_at(image, 84), 0.02);
   EXPECT_LT(linear_at(image, 136), 0.02);
@@ -73,7 +73,8 @@ TEST(Instants, NothingIsBlurredUnasked) {
   EXPECT_TRUE(instants(0, false, 16).empty());
 }
 
-// For an object at twice the focus distance, the edge blur has half the aperture's width, measured in the focus plane.
+// For an object at twice the focus distance, the blur of an edge has half the width of the aperture, measured in the
+// focus plane.
 TEST(Instants, LensBlursWhatIsOutOfFocus) {
   frame::FrameSnapshot snapshot = square_at(0, 4);
   snapshot.cameras[0].aperture = 0.5;  // 12 mm / tan 10 / 0.5 = 136 mm wide
@@ -92,8 +93,9 @@ TEST(Instants, LensBlursWhatIsOutOfFocus) {
   EXPECT_LE(middle_of_edge(), 2);
 }
 
-// From straight above, no direction of the world is upright in the picture; still, the pictures from all points of the
-// lens have the same one. The square is in focus and 28 pixels wide; a mean of rotated squares would lose its corners.
+// Seen from straight above, no direction of the world points up in the picture; still, the pictures from all points of
+// the lens must have the same up direction. The square is in focus and 28 pixels wide. A mean of rotated squares would
+// lose its corners.
 TEST(Instants, LensDoesNotRotateThePictureFromAbove) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = square_at(0).stage;
@@ -107,7 +109,7 @@ TEST(Instants, LensDoesNotRotateThePictureFromAbove) {
   EXPECT_GT(image.pixel(112, 38)[1], 0.95 * image.pixel(100, 50)[1]);
 }
 
-// The diagonal of a ground that extends behind the camera is seen as a vertical line, 0.866 of the half width to the
+// The ground extends behind the camera. Its diagonal appears as a vertical line, at 0.866 of the half width to the
 // right of the middle: at 186.6 pixels.
 TEST(Looks, WireShowsThePartOfAnEdgeBeforeTheCamera) {
   frame::FrameSnapshot snapshot;
@@ -162,12 +164,12 @@ TEST(Looks, ExposureIsInStops) {
     renderer.draw(snapshot);
     return linear_at(renderer.image16(), 100);
   };
-  // The fitted curve of sRGB is off by 0.1 levels, which is 0.2 % here.
+  // The fitted sRGB curve differs by 0.1 levels, which is 0.2 % here.
   EXPECT_NEAR(light(1) / light(0), 2, 0.01);
   EXPECT_NEAR(light(-1) / light(0), 0.5, 0.005);
 }
 
-// Chords of a circle of 1 cm: the middle of each must lie on the circle, to fourth order of the angle. For 0.26 rad the
+// Chords of a circle of 1 cm: the middle of each must be on the circle, to fourth order of the angle. For 0.26 rad, the
 // error is 1.1e-4 of the radius.
 TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const double angle = std::numbers::pi / 12;
@@ -176,7 +178,7 @@ TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const Middle half = middle(a, b, from, to, 1e-3);
   EXPECT_NEAR(half.position.norm(), radius, 1.5e-4 * radius);
   EXPECT_LT((half.normal - half.position.normalized()).norm(), 1e-12);
-  // A plane stays plane, and inconsistent normals cause no spike.
+  // A plane stays plane, and contradicting normals cause no spike.
   EXPECT_LT((middle(a, b, Vec3::UnitZ(), Vec3::UnitZ(), 1e-3).position - 0.5 * (a + b)).norm(), 1e-15);
   EXPECT_LE((middle(from, to, (b - a).normalized(), Vec3::UnitZ(), 3e-4).position - 0.5 * (from + to)).norm(),
             3.001e-4);
@@ -188,7 +190,7 @@ TEST(Refinement, NeighboursShareTheirMiddles) {
   refinement.update(triangles, 4);
   EXPECT_EQ(refinement.edges().size(), 5u);
   ASSERT_EQ(refinement.triangles().size(), 8u);
-  // Edge 1 2 is halved once: its middle belongs to three small triangles on each side.
+  // Edge 1 2 is halved only once: its middle belongs to three small triangles on each side.
   std::array<int, 9> uses{};
   for (const Triangle& triangle : refinement.triangles())
     for (const Index vertex : triangle) ++uses[vertex];
@@ -197,7 +199,7 @@ TEST(Refinement, NeighboursShareTheirMiddles) {
   EXPECT_EQ(shared, 1);
 }
 
-// Cloth of 2 cm with cells of 1 mm; a ball of 1 mm lies 0.1 mm in front of it.
+// Cloth of 2 cm with cells of 1 mm. A ball of 1 mm lies 0.1 mm in front of it.
 TEST(Refinement, SmallClothDoesNotCoverWhatIsCloseInFrontOfIt) {
   constexpr Index kSide = 21;
   std::vector<Vec3> positions;

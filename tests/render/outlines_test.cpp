@@ -11,7 +11,7 @@ namespace {
 constexpr int kOutlinedWidth = 96, kOutlinedHeight = 64;
 constexpr std::uint64_t kWhite = 0xFFFFFFFFFFFF, kBlack = 0;
 
-/// A view along +y from the origin with a half width of one at one metre: a pixel is a 48th of the distance.
+/// A view along +y from the origin. At a distance of 1 m, half of its width is 1 m: a pixel is a 48th of the distance.
 View test_view() {
   View view;
   view.axes = view_axes(Vec3::UnitY(), Vec3::UnitZ());
@@ -23,7 +23,7 @@ View test_view() {
   return view;
 }
 
-/// World position at a place of the picture [pixels], at this distance [m].
+/// World position that appears at this place of the picture [pixels], at this distance [m].
 Vec3 seen_at(double x, double y, double distance) {
   return distance *
          Vec3(2 * x / kOutlinedWidth - 1, 1, (2 * y / kOutlinedHeight - 1) * kOutlinedHeight / kOutlinedWidth);
@@ -41,7 +41,7 @@ struct Scene {
   std::vector<Seen> seen = std::vector<Seen>(kOutlinedWidth * kOutlinedHeight, Seen{100, kNothing});
   std::vector<std::uint64_t> picture = std::vector<std::uint64_t>(kOutlinedWidth * kOutlinedHeight, kBlack);
 
-  /// Adds a thing that covers the pixels for whose centre `covers(x, y)` is true.
+  /// Adds a thing that covers the pixels whose centres have `covers(x, y)`.
   template <class Covers>
   void add(const Thing& thing, float distance, const Covers& covers, float back = 0) {
     things.push_back(thing);
@@ -70,8 +70,8 @@ Thing quad(double x0, double y0, double x1, double y1, double distance, std::uin
           color};
 }
 
-// Sixteen samples, no two in the same sixteenth of the pixel's width: for an edge at any position the covered fraction
-// is exact to half a sample. Summed over a row of pixels this gives the width of the quad.
+// Each pixel has sixteen samples, no two of them in the same sixteenth of its width. For an edge at any position, the
+// covered fraction is thus exact to half a sample. Its sum over a row of pixels is the width of the quad.
 TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
   for (const double edge : {20.0625, 20.3, 20.5, 20.8, 21.0}) {
     Scene scene;
@@ -86,7 +86,7 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
   }
 }
 
-// Two sheets half a millimetre apart at 2 m: 1 / distance has no significant step, but their ids differ.
+// Two sheets are half a millimetre apart at 2 m. The step of 1 / distance is not significant, but their ids differ.
 TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
   Scene scene;
   scene.add(quad(0, 0, kOutlinedWidth, kOutlinedHeight, 2.0005, 0x404040404040), 2.0005f,
@@ -99,7 +99,7 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
                     kWhite};
   scene.add(sheet, 2, [&](double x, double y) { return y < border(x); });
   scene.smooth();
-  // The column is covered up to the border at its middle; each sample counts 1/16.
+  // The column is covered up to the border at its middle. Each sample counts as 1/16.
   for (int x = 8; x < 88; ++x) {
     double covered = 0;
     for (int y = 0; y < kOutlinedHeight; ++y) covered += (scene.red(x, y) - 64) / 191.0;
@@ -108,7 +108,8 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
 }
 
 TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
-  // A sheet folded along a line: the same surface at the same distance, on one side seen from behind.
+  // A sheet that is folded along a line: both sides are the same surface at the same distance, but one is seen from
+  // behind.
   Scene scene;
   Thing folded{{seen_at(10, 10, 2), seen_at(40.5, 10, 2), seen_at(40.5, 50, 2), seen_at(10, 50, 2)},
                {{0, 1, 2}, {0, 2, 3}},
@@ -129,7 +130,7 @@ TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
 }
 
 // A quad that covers the whole picture is split into triangles along a line through a sample, at many angles. In spite
-// of rounding, the sample must not fall between the triangles.
+// of rounding, the sample must belong to one of the triangles.
 TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
   const double x = 48 + 19 / 32.0, y = 32 + 19 / 32.0;
   for (int i = 0; i < 300; ++i) {
@@ -140,7 +141,8 @@ TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
                     kQuad,
                     kWhite};
     scene.add(cut, 2, [](double, double) { return true; });
-    // A pixel at another distance makes outlines in the middle; its black colour would show.
+    // A black pixel at another distance makes outlines in the middle; if the sample belonged to no triangle, black
+    // would show.
     scene.seen[32 * kOutlinedWidth + 49] = {100, kNothing};
     scene.picture[32 * kOutlinedWidth + 49] = kBlack;
     scene.smooth();
@@ -169,8 +171,8 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
   }
 }
 
-// Two sides of a box, white and grey, meet in an upright edge: same surface, same distance there. The second edge
-// passes a hundredth of a pixel beside the pixel's centre, which therefore lies near the planes of both sides.
+// Two sides of a box, white and grey, meet in an upright edge: same surface, and same distance there. The second edge
+// passes a hundredth of a pixel beside the centre of a pixel, which is thus near the planes of both sides.
 TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   for (const auto& [edge, white_samples] : {std::pair(40.25, 4), std::pair(40.51, 8)}) {
     Scene scene;
@@ -197,10 +199,10 @@ TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
 }
 
 TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
-  // A strip on the ground, one metre below, that begins behind the viewer and covers the lower part of the picture.
+  // A strip on the ground, 1 m below the viewer. It begins behind the viewer and covers the lower part of the picture.
   Scene scene;
   const Thing strip{{Vec3(-50, -5, -1), Vec3(50, -5, -1), Vec3(50, 3.2, -1), Vec3(-50, 3.2, -1)}, kQuad, kWhite};
-  // One metre below at 3.2 m: 15 pixels under the middle.
+  // The strip ends at 3.2 m, 1 m below: 15 pixels below the middle.
   for (int y = 0; y < 17; ++y) {
     const float distance = static_cast<float>(1 / ((32 - y - 0.5) / 48));
     for (int x = 0; x < kOutlinedWidth; ++x) {

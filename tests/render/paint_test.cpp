@@ -26,7 +26,8 @@ Settings painted_settings(Quality quality = Quality::final) {
   return result;
 }
 
-/// Fields in rows from the top, each of `size` x `size` pixels, so that llvmpipe's filter stays within one field.
+/// A picture of coloured fields in rows from the top. Each has `size` x `size` pixels, so that llvmpipe's filter stays
+/// within one field.
 std::shared_ptr<const frame::Texture> texture(int columns, int rows,
                                               const std::vector<std::array<std::uint8_t, 4>>& fields, int size = 32) {
   frame::Texture made{columns * size, rows * size, {}};
@@ -42,7 +43,8 @@ std::shared_ptr<const frame::Texture> texture(int columns, int rows,
 constexpr std::array<std::uint8_t, 4> kRedPixel{180, 20, 20, 255}, kGreenPixel{20, 180, 20, 255},
     kBluePixel{20, 20, 180, 255}, kWhitePixel{180, 180, 180, 255}, kHolePixel{180, 20, 20, 0};
 
-/// A square of 0.5 m, seen and lit from the front, which fills 0.687 of the picture; u runs right and v up, in metres.
+/// A square of 0.5 m, seen and lit from the front, which fills 0.687 of the picture. u points right and v up, in
+/// metres.
 frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<const frame::Texture> picture,
                                     Alpha alpha) {
   frame::FrameSnapshot snapshot;
@@ -58,7 +60,7 @@ frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<cons
   return snapshot;
 }
 
-/// Expects a pixel, given by fractions of the picture from left and top, to have about this colour.
+/// Expects about this colour at a place given by fractions of the picture from left and top.
 testing::AssertionResult shows(const image::Image& image, double x, double y, const std::array<std::uint8_t, 4>& color,
                                double tolerance = 6) {
   const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kPaintedSide), static_cast<int>(y * kPaintedSide));
@@ -68,7 +70,7 @@ testing::AssertionResult shows(const image::Image& image, double x, double y, co
   return testing::AssertionSuccess();
 }
 
-// With frontal light of full strength a surface shows its own colour
+// In frontal light of full strength, a surface shows its own colour
 // (Picture.MatteSurfaceFacingTheLightShowsItsOwnColor).
 TEST(Paint, LiesWithItsTopUpwardAndItsLeftToTheLeft) {
   for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::character}) {
@@ -109,7 +111,7 @@ TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
     const image::Image image = Renderer(painted_settings(quality)).draw(snapshot);
     EXPECT_TRUE(shows(image, 0.67, 0.5, kRedPixel));
     EXPECT_TRUE(shows(image, 0.3, 0.5, kWhitePixel)) << "the wall, lit through the hole";
-    // From the side: only the right half casts a shadow on the wall. A metre is 0.82 of the picture there.
+    // Seen from the side, only the right half casts a shadow on the wall. There, a metre is 0.82 of the picture.
     snapshot.cameras = {camera_at(Vec3(1.2, -1, 0), Vec3(0, 0.5, 0), 40)};
     const frame::Camera& camera = snapshot.cameras[0];
     const Vec3 forward = (camera.target - camera.position).normalized(), right = forward.cross(Vec3::UnitZ());
@@ -154,8 +156,8 @@ TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
       green += image.pixel(x, y)[1];
     }
   }
-  // Half of the samples show the wall, in half of the light that the veil transmits: its level is below 180. Red
-  // exceeds green by half of 160, to the accuracy of sixteen samples and thresholds.
+  // Half of the samples show the wall, in half of the light that the veil transmits, so its level is below 180. Red
+  // exceeds green by half of 160, within the accuracy of sixteen samples and thresholds.
   EXPECT_NEAR((red - green) / count, 80, 12);
 }
 

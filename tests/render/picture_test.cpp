@@ -1,4 +1,4 @@
-// Known shapes in known places: the expected picture is computed by hand.
+// Known shapes in known places; the expected pictures are computed by hand.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -56,8 +56,8 @@ frame::FrameSnapshot facing_square(frame::ObjectKind kind, double half, const Ve
   return snapshot;
 }
 
-// A side of 2 h at distance d is h / (d tan(fov / 2)) of the picture's height: 200 * 0.3 / (2 tan 20) = 82.4 pixels.
-// Along each of the four sides half a pixel may count or not.
+// A side of 2 h at distance d is h / (d tan(fov / 2)) of the height of the picture: 200 * 0.3 / (2 tan 20) = 82.4
+// pixels. Along each of the four sides, half a pixel may or may not count.
 TEST(Picture, SquareCoversThePixelsThatPerspectiveGives) {
   const double side = kPictureHeight * 0.3 / (2 * std::tan(20 * std::numbers::pi / 180));
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
@@ -77,7 +77,7 @@ TEST(Picture, TopRowComesFirst) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::obstacle, 0.1, kRed);
   for (Vec3& position : snapshot.states[0].positions) position += Vec3(-0.5, 0, 0.4);
   const image::Image image = Renderer(settings()).draw(snapshot);
-  // 100 pixels are 0.728 m at 2 m: the centre is 68.7 pixels left of and 54.9 above the middle.
+  // 100 pixels are 0.728 m at a distance of 2 m: the centre is 68.7 pixels to the left of the middle and 54.9 above it.
   EXPECT_TRUE(reddish(image.pixel(160 - 69, 100 - 55)));
   EXPECT_FALSE(reddish(image.pixel(160 - 69, 100 + 55)));
 }
@@ -87,7 +87,7 @@ TEST(Picture, NearerHidesFartherInEitherOrder) {
     frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::obstacle, 0.3, near_first ? kRed : kBlue);
     add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), -Vec3::UnitY(), Vec3::UnitX(), 0.3).appearance.color =
         near_first ? kBlue : kRed;
-    // The red one is 2 mm nearer and must hide the other.
+    // The red square is 2 mm nearer and must hide the blue one.
     for (Vec3& position : snapshot.states[near_first ? 0 : 1].positions) position.y() -= 0.002;
     const image::Image image = Renderer(settings()).draw(snapshot);
     EXPECT_TRUE(reddish(image.pixel(160, 100)));
@@ -95,8 +95,8 @@ TEST(Picture, NearerHidesFartherInEitherOrder) {
   }
 }
 
-// A tetrahedron, seen from outside and from inside, with outward and inward fronts. Light from the viewer's side
-// reaches only the near side; behind the tetrahedron is the light grey backdrop.
+// A tetrahedron, seen from outside and from inside, with faces that point outward or inward. Light from the viewer's
+// side reaches only the near side; behind the tetrahedron is the light grey backdrop.
 TEST(Picture, ClosedSurfacesAreSeenFromWithinAsWell) {
   for (const bool outward : {true, false}) {
     for (const bool within : {true, false}) {
@@ -132,7 +132,7 @@ TEST(Picture, MatteSurfaceFacingTheLightShowsItsOwnColor) {
   }
 }
 
-// At 60 degrees half of the light arrives in each channel.
+// At 60 degrees, half of the light arrives in each channel.
 TEST(Picture, ObliqueLightFallsWithTheCosine) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::obstacle, 0.3, kRed);
   snapshot.lights = {sun(Vec3(std::sqrt(3.0), 1, 0))};
@@ -191,11 +191,12 @@ int brightness(const image::Image& image, double across, double along) {
   return image.pixel(x, y)[1];
 }
 
-// Light at 45 degrees displaces the shadow of an object at 0.5 m by 0.5 m. A vertical view leaves the roll undefined,
-// so the test determines the direction of the picture's right: the shadow must be on exactly one of four sides.
+// Light at 45 degrees displaces the shadow of an object 0.5 m above the floor by 0.5 m. In a vertical view, the roll is
+// undefined, so the test accepts any direction: the shadow must be on exactly one of four sides.
 TEST(Picture, ShadowLiesWhereTheLightPutsIt) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
-    // 1 cm is 2.7 pixels. In preview soft light has a quarter of the size and blurs steps over two of its pixels.
+    // 1 cm is 2.7 pixels. In preview quality, soft light is computed at a quarter of the size, which blurs steps over
+    // two of its pixels.
     Settings large = settings(quality);
     large.width = 1280;
     large.height = 800;
@@ -217,7 +218,8 @@ TEST(Picture, ShadowLiesWhereTheLightPutsIt) {
   }
 }
 
-// A spot 2 m above the middle casts the shadow of the square, at 0.5 m, with a half side of 0.2 * 2 / 1.5 = 0.267 m.
+// A spot 2 m above the middle. The shadow of the square, 0.5 m above the floor, has a half side of 0.2 * 2 / 1.5 =
+// 0.267 m.
 TEST(Picture, SpotShadowGrowsWithDistance) {
   frame::Light spot;
   spot.kind = frame::Light::Kind::spot;
@@ -230,7 +232,7 @@ TEST(Picture, SpotShadowGrowsWithDistance) {
   large.width = 1280;
   large.height = 800;
   const image::Image image = Renderer(large).draw(snapshot);
-  // The camera sees the square itself with a half side of 0.2 * 4 / 3.5 = 0.229 m on the floor.
+  // In the view of the camera, the square covers a half side of 0.2 * 4 / 3.5 = 0.229 m of the floor.
   EXPECT_LT(brightness(image, 0.248, 0), 60);
   EXPECT_GT(brightness(image, 0.30, 0), 120);
   EXPECT_LT(brightness(image, 0, 0.248), 60);
@@ -240,7 +242,7 @@ TEST(Picture, SpotShadowGrowsWithDistance) {
 }
 
 // A strip 2 m tall that ends 2 cm above the floor hides almost no sky from floor at least 0.5 m away (form factor of a
-// strip 2 cm wide: below 0.3 percent), at any depth of the floor below it.
+// strip 2 cm wide: below 0.3 percent).
 TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
     frame::FrameSnapshot snapshot = box_over_floor(sun(-Vec3::UnitZ()));
@@ -260,9 +262,10 @@ TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
   }
 }
 
-// Sky 0.6 and a light of 0.4 with cosine 0.6 give the floor 0.84: direct light is amplified until the floor shows its
-// own colour. Three times that light is too much and is not reduced. Tolerance 4 levels: half a metre from the middle
-// the square hides 5 percent of the sky and the studio falls off by 1, together 3 levels; dither adds one.
+// Sky 0.6, and a light of 0.4 with cosine 0.6, give the floor 0.84: the program amplifies direct light until the floor
+// shows its own colour. Three times this light is too much, but is not reduced. Tolerance 4 levels: half a metre from
+// the middle, the square hides 5 percent of the sky, and the studio is darker by 1 level, together 3 levels; dither
+// adds one.
 TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
   auto stage = std::make_shared<frame::Stage>();
   stage->sky_color = Vec3(1, 1, 1);
@@ -296,7 +299,8 @@ TEST(Picture, ThinSheetDoesNotShadeItself) {
       highest = std::max<int>(highest, image.pixel(x, y)[1]);
     }
   }
-  // The viewing angle changes the highlight by a level or two across the sheet; shadow acne by tens of levels.
+  // Across the sheet, the viewing angle changes the highlight by a level or two; shadow acne would change it by tens of
+  // levels.
   EXPECT_LE(highest - lowest, 6);
   EXPECT_GT(lowest, 60);
 }
@@ -333,7 +337,7 @@ TEST(Picture, HeatShowsTheEndsAndTheMiddleOfTheScale) {
     const image::Image image = renderer.draw(snapshot);
     const Vec3 expected = image::srgb_from_linear(image::heat_color(share));
     for (int channel = 0; channel < 3; ++channel) {
-      // Above 0.8 the tone curve bends: the bright end is compared only below that.
+      // Above 0.8, the tone curve bends, so the test compares only darker values.
       if (image::linear_from_srgb(expected.maxCoeff()) > 0.8) continue;
       EXPECT_NEAR(image.pixel(160, 100)[channel], 255 * expected[channel], 4) << share << " " << channel;
     }
@@ -374,7 +378,7 @@ TEST(Picture, SameSnapshotGivesSameBytesWhateverWasDrawnBefore) {
   EXPECT_EQ(a.rgb, c.rgb);
 }
 
-/// FNV-1a of the picture; printed by the child process of the next test.
+/// FNV-1a hash of the picture; the child process of the next test prints it.
 std::uint64_t picture_hash() {
   std::uint64_t hash = 1469598103934665603ull;
   for (const std::uint8_t byte : Renderer(settings()).draw(busy_scene()).rgb) hash = (hash ^ byte) * 1099511628211ull;
@@ -432,7 +436,7 @@ TEST(Picture, OddSnapshotsAreDrawn) {
 }
 
 // The expected CPU time is that of the process minus that of a busy thread, which must not count. Idle TBB threads that
-// search for work add a few percent.
+// look for work add a few percent.
 TEST(Picture, TimesAreThoseOfDrawingAlone) {
   Renderer renderer(settings());
   renderer.draw(busy_scene());  // compiles the shaders
@@ -470,7 +474,7 @@ TEST(Picture, SizesOutsideTheDriversRangeAreErrors) {
   }
 }
 
-/// Returns nullptr if the library of this backend is missing.
+/// A renderer with this backend; nullptr if its library is missing.
 std::unique_ptr<Renderer> renderer_by(Backend backend, const char* library) {
   Settings wanted = settings();
   wanted.backend = backend;
@@ -482,7 +486,7 @@ std::unique_ptr<Renderer> renderer_by(Backend backend, const char* library) {
   }
 }
 
-// A machine needs only one of the two.
+// A machine needs only one of the two backends.
 TEST(Backend, EglDrawsTheSamePictureAsOSMesaWhereBothAreThere) {
   const auto osmesa = renderer_by(Backend::osmesa, "libOSMesa.so.8"), egl = renderer_by(Backend::egl, "libEGL.so.1");
   if (!osmesa || !egl) GTEST_SKIP() << "only one of OSMesa and EGL is there";

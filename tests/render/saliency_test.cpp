@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto kCloth = frame::ObjectKind::cloth, kObstacle = frame::ObjectKind::obstacle;
 
-/// A camera 10 m in front of the origin, which sees 4 m of height there.
+/// A camera 10 m in front of the origin; at the origin, it sees a height of 4 m.
 frame::FrameSnapshot seen_from_before() {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();
@@ -38,7 +38,7 @@ TEST(Saliency, CoverageIsTheShareOfThePictureThatShowsCloth) {
   frame::FrameSnapshot snapshot = seen_from_before();
   EXPECT_EQ(judge(snapshot).score(), 0);
   add_upright(snapshot, kCloth, {1, 0, 0.5}, 1);
-  // 2 m by 2 m of the visible 8 m by 4 m; its edges coincide with those of cells.
+  // The cloth is 2 m by 2 m of the visible 8 m by 4 m; its edges coincide with edges of cells.
   EXPECT_NEAR(judge(snapshot).coverage, 4.0 / 32, 1e-12);
   add_upright(snapshot, kCloth, {-4, 0, 0}, 1);  // half of it is outside the picture
   EXPECT_NEAR(judge(snapshot).coverage, 6.0 / 32, 1e-12);
@@ -55,7 +55,7 @@ TEST(Saliency, OfAVeryWidePictureNeedsLittleMemory) {
 TEST(Saliency, ClothBehindSomethingOrBehindTheCameraDoesNotCount) {
   frame::FrameSnapshot snapshot = seen_from_before();
   add_upright(snapshot, kCloth, {0, 0, 0}, 1);
-  add_upright(snapshot, kObstacle, {0, -5, 0}, 0.25);  // half as far, so it hides 1 m by 1 m
+  add_upright(snapshot, kObstacle, {0, -5, 0}, 0.25);  // at half the distance, so it hides 1 m by 1 m
   EXPECT_NEAR(judge(snapshot).coverage, 3.0 / 32, 1e-12);
   add_upright(snapshot, kObstacle, {0, 5, 0}, 3);  // behind it
   EXPECT_NEAR(judge(snapshot).coverage, 3.0 / 32, 1e-12);
@@ -86,7 +86,7 @@ TEST(Saliency, MotionIsThatOfTheShapeNotOfTheWhole) {
   frame::FrameSnapshot after = before;
   for (Vec3& x : after.states[0].positions) x += Vec3(0.3, 0.2, -0.5);
   EXPECT_NEAR(judge(after, &before).motion, 0, 1e-12) << "it only falls";
-  // Corners move by 5 cm in 0.1 s, in pairs: half the size of the cloth per second.
+  // In pairs, the corners move by 5 cm in 0.1 s: half the size of the cloth per second.
   after = before;
   for (const std::size_t v : {0u, 2u}) after.states[0].positions[v].y() += 0.05;
   for (const std::size_t v : {1u, 3u}) after.states[0].positions[v].y() -= 0.05;

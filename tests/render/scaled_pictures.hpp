@@ -1,4 +1,4 @@
-// Pictures of one view in several sizes, for content that must look alike in all of them.
+// Pictures of one view in several sizes. Their content must look alike in all sizes.
 #pragma once
 
 #include "film/render/renderer.hpp"

@@ -26,14 +26,14 @@ double worst_sphere_normal(int n) {
   double worst = 0;
   for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
     const Vec3 radial = (snapshot.states[0].positions[mesh.source[v]] - center) / 0.7;
-    // Toward the poles the triangles around a vertex become unequal, and the error is of first order.
+    // Toward the poles, the triangles around a vertex are unequal, and the error is of first order.
     if (std::abs(radial.z()) < 0.7) worst = std::max(worst, (mesh.normals[v] - radial).norm());
   }
   return worst;
 }
 
-// The error is of second order: half the mesh width, a quarter of it. Measured 0.0088 at n = 24; the limit is twice
-// that.
+// The error is of second order: half the mesh width gives a quarter of it. Measured 0.0088 at n = 24; the limit is
+// twice that.
 TEST(ShadedMesh, NormalsOfASphereAreRadialToSecondOrder) {
   const double coarse = worst_sphere_normal(24), fine = worst_sphere_normal(48);
   EXPECT_LT(coarse, 0.018);
@@ -91,14 +91,14 @@ TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
   const std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   EXPECT_TRUE(is_closed(tetrahedron));
   EXPECT_FALSE(is_closed(std::span(tetrahedron).first(3)));
-  // One triangle is inverted; one is duplicated and one is missing.
+  // One triangle is inverted; then, one triangle is duplicated and one is missing.
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed({}));
 }
 
-// A sphere of 16 columns, with its terminator in the middle of the picture. Light is evaluated on the smooth sphere.
-// Otherwise coarse faces would shadow themselves where they still face the light.
+// A sphere of 16 columns, with its terminator in the middle of the picture. Light is evaluated on the smooth sphere;
+// otherwise, coarse faces would shadow themselves where they still face the light.
 TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -109,7 +109,7 @@ TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   settings.width = 320;
   settings.height = 320;
   const image::Image image = Renderer(settings).draw(snapshot);
-  // The radius is 142 pixels. Below a cosine of 0.06 direct light fades out.
+  // The radius is 142 pixels. Below a cosine of 0.06, direct light fades out.
   for (int x = 70; x < 148; ++x) {
     const double cosine = (160 - (x + 0.5)) / 142;
     const Vec3 shown = image::srgb_from_linear(cosine * image::linear_from_srgb(Vec3::Constant(0.8)));

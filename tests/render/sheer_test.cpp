@@ -24,7 +24,7 @@ frame::FrameSnapshot wall() {
   return snapshot;
 }
 
-/// Adds a blue veil in front of it.
+/// Adds a blue veil in front of the wall.
 void hang(frame::FrameSnapshot& snapshot, double y, double sheer) {
   frame::Surface& veil =
       add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, y, 0), -Vec3::UnitY(), Vec3::UnitX(), 0.5);
@@ -47,7 +47,7 @@ TEST(Sheer, CloseWeavesHideWhatIsBehindAndOpenOnesHalf) {
   EXPECT_GT(through, 0.25);
   EXPECT_LT(through, 0.55);
   EXPECT_GT(both.pixel(80, 50)[2], red.pixel(80, 50)[2] + 40);
-  // Beside the veil nothing has changed.
+  // Beside the veil, nothing must change.
   for (int k = 0; k < 3; ++k) EXPECT_EQ(both.pixel(8, 50)[k], red.pixel(8, 50)[k]);
 }
 
@@ -107,7 +107,7 @@ int redness(const image::Image& image, int x, int y) {
 
 TEST(Mirror, FloorsThatAreSmoothShowWhatStandsOnThem) {
   const image::Image smooth = drawn(ball_on_floor(0.1), 1), rough = drawn(ball_on_floor(0.6), 1);
-  // The centre of the ball is 0.5 m above the floor, its mirror image as far below: both in the middle column.
+  // The centre of the ball is 0.5 m above the floor, and its mirror image 0.5 m below; both are in the middle column.
   const int mirrored_row = 50 + static_cast<int>(std::lround(0.7 / 4 / std::tan(15 * std::acos(-1.0) / 180) * 50));
   EXPECT_GT(redness(smooth, 80, mirrored_row), redness(rough, 80, mirrored_row) + 5);
   EXPECT_LE(std::abs(redness(smooth, 10, mirrored_row) - redness(rough, 10, mirrored_row)), 3);
@@ -140,8 +140,8 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   }
 }
 
-// Where a ball touches the floor, in the shadow of a sheet, few pixels of floor are available to average the noise of
-// light. Levels must hardly alternate from pixel to pixel.
+// Where a ball touches the floor, in the shadow of a sheet, there are few pixels of floor over which the noise of light
+// can be averaged. Levels must hardly alternate from pixel to pixel.
 TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();
@@ -165,8 +165,8 @@ TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   EXPECT_LE(worst, 2);
 }
 
-// Along a column that crosses the edge of a shadow once, light must only increase. Otherwise an edge that is nearly
-// horizontal would look dashed.
+// Along a column that crosses the edge of a shadow once, the light must only increase. Otherwise, an almost horizontal
+// edge would look dashed.
 TEST(Shadows, EdgesThatRunNearlyLevelAreNotDashed) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();

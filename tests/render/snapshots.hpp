@@ -28,7 +28,7 @@ inline frame::Surface& add_square(frame::FrameSnapshot& snapshot, frame::ObjectK
                      {{0, 1, 2}, {0, 2, 3}});
 }
 
-/// Adds a sphere of n rings and 2 n columns; at each pole n triangles have zero area.
+/// Adds a sphere of n rings and 2 n columns. At each pole, n triangles have no area.
 inline frame::Surface& add_sphere(frame::FrameSnapshot& snapshot, const Vec3& center, double radius, int n) {
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> triangles;

@@ -51,7 +51,7 @@ Range green_of(const image::Image& image) {
 }
 
 TEST(Metal, ScattersNoLight) {
-  // The sun from the left is the only light: the part that faces the camera reflects darkness.
+  // The sun at the left is the only light, so the part that faces the camera reflects darkness.
   const auto middle = [](double metal) {
     frame::FrameSnapshot snapshot = ball(metal, 0, 0.1);
     snapshot.stage = stage_without_sky();
@@ -65,7 +65,7 @@ TEST(Metal, ScattersNoLight) {
 }
 
 TEST(Metal, ReflectsInItsOwnColor) {
-  // On a white ball: excess of red over green.
+  // Excess of red over green, for a ball with this colour.
   const auto redness = [](double metal, const Vec3& color) {
     frame::FrameSnapshot snapshot = ball(metal, 0, 0.3);
     const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.color = color;
@@ -116,7 +116,7 @@ TEST(FloorColor, IsThatOfClayInClay) {
 }
 
 TEST(Look, OfOneBodyLeavesThatOfOthers) {
-  // Two balls side by side; only the right one is metal.
+  // Two balls are side by side; only the right one is metal.
   const auto pair = [](double metal) {
     frame::FrameSnapshot snapshot = ball(0, 0, 0.6);
     add_sphere(snapshot, Vec3(2, 0, 0), 0.5, 40).appearance.metal = metal;
@@ -132,8 +132,8 @@ TEST(Look, OfOneBodyLeavesThatOfOthers) {
   EXPECT_NE(plain.rgb, metal.rgb);
 }
 
-/// A floor of 10 m with a picture of two by two fields on each metre, seen from above; the front of the scene is at the
-/// bottom of the picture.
+/// A floor of 10 m, seen from above, with a picture of two by two fields on each square metre. The front of the scene
+/// is at the bottom of the picture.
 frame::FrameSnapshot tiled_floor() {
   constexpr std::array<std::array<std::uint8_t, 4>, 4> kFields{
       {{180, 20, 20, 255}, {20, 180, 20, 255}, {20, 20, 180, 255}, {180, 180, 180, 255}}};

@@ -24,7 +24,7 @@ Surroundings surroundings_of(Look look, const Vec3& ground) {
   return surround(style_of(stage), stage, Vec3::UnitZ(), {&key, 1}, ground);
 }
 
-/// Light on a matte white surface with normal n, summed over the sphere.
+/// Light that a matte white surface with normal n receives, summed over the sphere.
 Vec3 summed(const Surroundings& around, const Vec3& n) {
   constexpr int kRows = 180, kColumns = 360;
   Vec3 sum = Vec3::Zero();
@@ -39,8 +39,8 @@ Vec3 summed(const Surroundings& around, const Vec3& n) {
   return sum;
 }
 
-// Nine harmonics miss a few percent of the light of narrow boxes (Ramamoorthi and Hanrahan: 3 % on average, 9 % at
-// most). The light is about 0.4; the measured error is 0.025.
+// Nine spherical harmonics miss a few percent of the light of narrow boxes (Ramamoorthi and Hanrahan: 3 % on average, 9
+// % at most). The light is about 0.4; the measured error is 0.025.
 TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   for (const Look look : kLooks) {
     const Surroundings around = surroundings_of(look, Vec3(0.3, 0.2, 0.1));
@@ -53,8 +53,8 @@ TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   }
 }
 
-// A flat surface receives the light of the style's sky. Tolerance: in sums over 24 rows of cells, the ground (0.5),
-// which a surface facing the sky does not see, adds 0.0015.
+// A horizontal surface receives the light of the style's sky. Tolerance: the sums use 24 rows of cells, in which the
+// ground (0.5), which a surface facing the sky does not see, adds 0.0015.
 TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   for (const Look look : kLooks) {
     for (const double ground : {0.0, 0.5}) {
@@ -69,7 +69,7 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   }
 }
 
-/// Green levels at the left border of a picture, which a sheet at this height neither covers nor shadows.
+/// Green levels at the left border of a picture. A sheet at this height neither covers nor shadows this border.
 std::vector<int> left_border(double height) {
   frame::FrameSnapshot snapshot;
   add_floor(snapshot);
@@ -87,11 +87,12 @@ std::vector<int> left_border(double height) {
 
 TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
   const std::vector<int> high = left_border(2), low = left_border(0.2);
-  // At the left border, more than its own width away, the sheet hides less than a 255th of the sky.
+  // The left border is more than the width of the sheet away, so the sheet hides less than a 255th of the sky.
   for (std::size_t y = 0; y < high.size(); ++y) EXPECT_NEAR(high[y], low[y], 1) << y;
 }
 
-// A mirror shows the middle of a box at its own brightness, a rough surface dimmer and wider; the sum is kept.
+// A mirror shows the middle of a box with its own brightness; a rough surface shows it dimmer and wider, with the same
+// sum of light.
 TEST(Surroundings, BlurKeepsTheLightOfABox) {
   Surroundings around;
   around.boxes[0] = {Vec3(0.6, 0, 0.8), 40, Vec3(2, 1, 0.5)};
@@ -114,8 +115,8 @@ TEST(Surroundings, BlurKeepsTheLightOfABox) {
   EXPECT_LT(around.light(Vec3(0.6, 0, 0.8), 0.9).x(), 0.5);
 }
 
-/// White floor in front of a wall 0.6 m wide and high with its lower edge at `height`, and optionally a black shelf
-/// below that. Horizontal light from the front lights only the wall.
+/// White floor in front of a wall 0.6 m wide and high with its lower edge at `height`. `shelf`: adds a black shelf
+/// between them. Horizontal light from the front lights only the wall.
 image::Image wall(double height, bool shelf) {
   frame::FrameSnapshot snapshot;
   auto stage = std::make_shared<frame::Stage>();
@@ -125,7 +126,7 @@ image::Image wall(double height, bool shelf) {
   const auto add = [&](const Vec3& center, const Vec3& normal, const Vec3& color) {
     auto& look = add_square(snapshot, frame::ObjectKind::cloth, center, normal, Vec3::UnitX(), 0.3).appearance;
     look.color = look.back_color = color;
-    // No fuzz: at this angle protruding fibres would add a quarter.
+    // No fuzz: at this angle, protruding fibres would add a quarter of light.
     look.finish = {0, 0.5, 0, 0};
   };
   add(Vec3(0, 0, height + 0.3), -Vec3::UnitY(), Vec3(0.9, 0.3, 0.3));
@@ -138,7 +139,7 @@ image::Image wall(double height, bool shelf) {
   return Renderer(settings).draw(snapshot);
 }
 
-/// Light in the middle of the picture, which shows the floor 0.3 m in front of the wall: mean over 14 cm along the
+/// Light in the middle of the picture, which shows the floor 0.3 m in front of the wall; mean over 14 cm along the
 /// wall.
 Vec3 light_on_floor(const image::Image& image) {
   Vec3 sum = Vec3::Zero();
@@ -149,9 +150,10 @@ Vec3 light_on_floor(const image::Image& image) {
   return sum / 40;
 }
 
-// Floor without direct light receives the light that a lit wall reflects. Expected: the form factor, summed over the
-// wall; a tenth is for the noise of some hundred points with four rays each. As open floor is dark, the picture is
-// exposed with direct light at its limit of 1.8. A shelf in between leaves less than a third.
+// Floor without direct light receives light that a lit wall reflects. Expected: the form factor, summed over the wall,
+// with a tolerance of a tenth for the noise of some hundred points with four rays each. Since the open floor is dark,
+// the picture is exposed with direct light at its limit of 1.8. A shelf between wall and floor leaves less than a third
+// of the light.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
@@ -189,7 +191,8 @@ TEST(Floor, IsSeenHoweverItsHeightIsRounded) {
   }
 }
 
-/// Light in the middle of a picture of grey floor, onto which a lamp behind it shines toward the viewer at 50 degrees.
+/// Light in the middle of a picture of grey floor. A lamp behind this place shines on it toward the viewer, at 50
+/// degrees.
 double floor_before_a_lamp(double roughness, Quality quality) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();

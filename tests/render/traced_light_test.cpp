@@ -1,4 +1,4 @@
-// Light by rays: what they meet, what that reflects, and how the noise of few rays is removed.
+// Light that rays find: what they hit, what that surface reflects, and how the noise of few rays is removed.
 #include "film/render/traced_light.hpp"
 
 #include <gtest/gtest.h>
@@ -18,20 +18,20 @@ namespace {
 
 using Eigen::Vector3f;
 
-/// A mesh of its own vertices and triangles.
+/// A mesh with its own vertices and triangles.
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   DrawnMesh drawn(float opacity = 1) const { return {positions, triangles, nullptr, opacity}; }
 };
 
-/// A level rectangle of 2a x 2b at height c, facing down.
+/// A horizontal rectangle of 2a x 2b at height c that faces down.
 Mesh rectangle(double a, double b, double c) {
   return {{Vec3(-a, -b, c), Vec3(-a, b, c), Vec3(a, b, c), Vec3(a, -b, c)}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
-/// Distance to the nearest triangle along a ray, in lengths of `way`; infinity if there is none (Moeller and Trumbore,
-/// "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
+/// Distance to the nearest triangle along a ray, as a multiple of the length of `way`; infinity if there is none
+/// (Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
 double nearest_by_brute_force(const Mesh& mesh, const Vec3& start, const Vec3& way) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -100,12 +100,12 @@ TEST(RayScene, TranslucentClothStopsItsFractionOfRays) {
     rays.seed = static_cast<unsigned>(packet);
     blocked += scene.blocked(rays).sum();
   }
-  // Four standard deviations of 16,000 rays.
+  // Tolerance: four standard deviations of 16,000 rays.
   EXPECT_NEAR(blocked / (kLanes * kPackets), 0.3, 4 * std::sqrt(0.3 * 0.7 / (kLanes * kPackets)));
 }
 
-/// Fraction of a cosine lobe over a hemisphere that a rectangle of 2a x 2b at a distance c covers, seen from below its
-/// middle: four times that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
+/// Fraction of a cosine lobe that a rectangle of 2a x 2b at distance c covers, seen from below its middle: four times
+/// that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
 double form_factor(double a, double b, double c) {
   const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
@@ -117,7 +117,7 @@ Irradiance no_light() {
   return irradiance;
 }
 
-/// The mean over `count` rays from the origin, about +z with a density of their cosine.
+/// The mean over `count` rays from the origin, distributed about +z in proportion to their cosine.
 ReflectedLight::Arriving mean_arriving(const ReflectedLight& light, int count) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -171,7 +171,7 @@ TEST(Lamps, ASpotHasTheConeOfItsScene) {
 }
 
 TEST(ReflectedLight, SurfacesAreShadedByOthers) {
-  // A plate between the sun and the lit rectangle.
+  // A plate is between the sun and the lit rectangle.
   std::vector<Mesh> meshes{rectangle(0.5, 0.5, 1), rectangle(1, 1, -1)};
   std::vector<DrawnMesh> drawn;
   for (const Mesh& mesh : meshes) drawn.push_back(mesh.drawn());
@@ -222,7 +222,7 @@ TEST(ReflectedLight, OfClayHasNoColorOfPictures) {
     EXPECT_EQ(colors.of(material_of(lace, true).appearance, back), colors.of(material_of(bare, true).appearance, back));
 }
 
-// A picture of which a quarter of the surface shows the whole, with the colour of the surface around it.
+// A quarter of the surface shows the whole picture; around it, the surface shows its colour.
 TEST(ReflectedLight, PictureThatLiesOnceHidesTheColorOnlyWhereItLies) {
   frame::Surface surface;
   surface.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
@@ -244,7 +244,7 @@ TEST(ReflectedLight, PictureThatLiesOnceHidesTheColorOnlyWhereItLies) {
   EXPECT_TRUE(color().isApprox(Vector3f(0.25f, 0, 0.75f))) << color().transpose();
 }
 
-/// Points that show a plane in one half of the picture and another, 0.1 m behind it, in the other.
+/// Points of two planes, one in each half of the picture; the second is 0.1 m behind the first.
 struct TwoPlanes {
   static constexpr int kWidth = 40, kHeight = 24;
   std::vector<Seen> seen;
@@ -278,7 +278,7 @@ TEST(JointFilter, AveragesNoiseButNotTwoSurfaces) {
   for (const int step : {1, 2}) smooth(planes, scratch, points, step);
   for (int y = 0; y < points.height(); ++y)
     for (int x = 0; x < points.width(); ++x)
-      // Noise of 0.058 rms is averaged over 25 points, in corners over 9. Allowed: four standard deviations.
+      // Noise of 0.058 rms is averaged over 25 points (over 9 in corners). Tolerance: four standard deviations.
       EXPECT_NEAR(planes[0].row(y)[x], level(x), 4 * 0.058 / 3) << x << ", " << y;
 }
 
@@ -289,7 +289,7 @@ TEST(JointFilter, AveragesAsManyPointsOfAnObliquePlaneAsOfAFacingOne) {
     view.tan_half_width = view.tan_half_height = 0.1;
     std::vector<Seen> seen;
     for (int i = 0; i < kPoints * kPoints; ++i) {
-      // The rows of the oblique plane are seen under angles from 4 to 15 degrees.
+      // Angles between the rows of the oblique plane and the view are 4 to 15 degrees.
       const float high = 0.1f * (2 * (static_cast<float>(i / kPoints) + 0.5f) / kPoints - 1);
       seen.push_back({oblique ? 0.2f / (0.05f - 0.3f * high) : 1.0f, static_cast<float>(kFirstSurface)});
     }
@@ -327,7 +327,7 @@ TEST(JointFilter, InterpolationKeepsSurfacesApartAndFollowsSlopes) {
     for (int y = 0; y < many.height(); ++y)
       for (int x = 0; x < many.width(); ++x) {
         const bool left = x < TwoPlanes::kWidth / 2;
-        // At borders of surfaces and the picture, the nearest point of the surface counts.
+        // At borders of a surface and of the picture, the nearest point of the surface counts.
         EXPECT_NEAR(results[static_cast<std::size_t>(y) * many.width() + x][0], value(static_cast<float>(x), left),
                     left ? 0.01 * divisor : 1e-3)
             << divisor << ": " << x << ", " << y;
@@ -350,7 +350,8 @@ TEST(JointFilter, InterpolationFollowsSlopesFromTheLowestRowOn) {
   }
 }
 
-/// Fraction of a disc of radius 1 on one side of a line at distance d from its centre, negative beyond it.
+/// Fraction of a disc of radius 1 that is beyond a line at distance d from its centre; d is negative if the centre is
+/// beyond the line.
 double beyond_line(double d) {
   if (d <= -1) return 1;
   if (d >= 1) return 0;
@@ -358,7 +359,7 @@ double beyond_line(double d) {
 }
 
 TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
-  // A plate 1 m above the floor ends at x = 0; the sun is overhead and 8 degrees wide.
+  // A plate 1 m above the floor ends at x = 0. The sun is overhead, and 8 degrees wide.
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
   add_floor(snapshot).appearance.color = Vec3::Constant(0.5);

@@ -13,7 +13,7 @@
 namespace weft::render {
 namespace {
 
-/// n x n squares of two triangles each, 1 m wide; `parts`: the right half is a separate panel.
+/// A sheet of n x n squares of two triangles each, 1 m wide. `parts`: the right half is a panel of its own.
 frame::Surface sheet(int n, bool parts) {
   frame::Surface surface;
   for (int j = 0; j <= n; ++j)
@@ -60,8 +60,8 @@ TEST(Trims, PlacesAlongABorderGoOnFromEdgeToEdge) {
   EXPECT_EQ(jumps, 0) << "as each side has places of its own";
 }
 
-// Cells are wider than high and split by either diagonal, so that the nearest border changes within triangles near a
-// corner. Between the vertices both distances are linear, so their minimum is exact everywhere.
+// Cells are wider than high, and split by either diagonal, so the nearest border changes within triangles near a
+// corner. Between vertices, both distances are linear, so their minimum is exact everywhere.
 TEST(Trims, LinesTurnSharplyAtCorners) {
   frame::Surface surface = sheet(6, false);
   for (Vec2& at : surface.uv) at.x() *= 3;
@@ -84,8 +84,8 @@ TEST(Trims, LinesTurnSharplyAtCorners) {
   }
 }
 
-// Tests edges and their middles, in several orders of triangles: at a vertex of a line two of its edges are equally
-// near.
+// Tests edges and their middles, with several orders of triangles: at a vertex of a line, two edges of this line are
+// equally near.
 TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
   frame::Surface surface = sheet(8, true);
   for (const std::size_t stride : {5U, 11U, 37U}) {
@@ -110,7 +110,7 @@ TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
   }
 }
 
-// Two triangles that are apart in one panel are joined by a dart.
+// A dart joins two triangles that are apart in the drawing of one panel.
 TEST(Trims, DartsAreSeams) {
   frame::Surface surface = sheet(2, true);
   surface.part_of_triangle.assign(surface.triangles.size(), 0);
@@ -147,7 +147,8 @@ TEST(Trims, AStripAlongTheBorderFacesOutwardAndIsAsThickAsTheCloth) {
   EXPECT_NEAR(area, 4 * 0.01, 1e-12);
 }
 
-/// Cloth that fills the picture, tilted back by 50 degrees, with a line of stitches (a seam) up or across its middle.
+/// Cloth that fills the picture, tilted back by 50 degrees. A line of stitches is vertical in its middle (a seam) or
+/// horizontal.
 frame::FrameSnapshot sewn_cloth(double distance, bool seam, Threads threads = Threads::plain) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -205,7 +206,7 @@ int dark_lines(const image::Image& image) {
   return lines;
 }
 
-// The hems lie above and below the middle, at the same distance from it.
+// The hems are above and below the middle, at the same distance from it.
 TEST(Trims, KnitsAreHemmedInTwoRows) {
   EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false), 1)), 2);
   EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false, Threads::knit), 1)), 4);
@@ -223,8 +224,8 @@ TEST(Trims, ThreadOfDenimHasAColorOfItsOwn) {
   EXPECT_GT(reddest(Threads::denim), reddest(Threads::twill) + 20);
 }
 
-// Light comes from one side of a seam that slants over the pixels: the slopes of its valley would show as pale and dark
-// dashes if each pair of pixels had its own.
+// Light comes from one side of a seam that is oblique to the pixels. If each pair of pixels had its own slopes, the
+// valley of the seam would look like bright and dark dashes.
 TEST(Trims, SeamsOfFewPixelsAreLinesWithoutDashes) {
   for (const double distance : {0.15, 0.25, 0.35}) {
     frame::FrameSnapshot snapshot = sewn_cloth(distance, true);
@@ -244,8 +245,8 @@ TEST(Trims, SeamsOfFewPixelsAreLinesWithoutDashes) {
   }
 }
 
-// At any distance a line of stitches equals the mean of a picture of six times the resolution: measured difference 0.4
-// to 1.1 levels, 4.6 if lines are not filtered.
+// At any distance, a line of stitches must equal the mean of a picture of six times the resolution. Measured
+// difference: 0.4 to 1.1 levels; without filtering of lines, 4.6.
 TEST(Trims, StitchesHaveNoBeats) {
   constexpr int kFiner = 6;
   for (double distance = 0.26; distance < 21; distance *= 2.62) {

@@ -1,4 +1,4 @@
-// Yarns of cloth, seen from near and far.
+// Yarns of cloth, seen from nearby and from far away.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -40,13 +40,14 @@ double mean_light(const image::Image& image) {
 TEST(Weave, KeepsTheMeanColorNearAndFar) {
   const double bare = mean_light(drawn(leaning_cloth(1, 0), 1));
   for (const double spacing : {0.0001, 0.0006, 0.03})
-    // A picture with few threads contains some yarns more often than others.
+    // If a picture shows few threads, it contains some yarns more often than others.
     EXPECT_NEAR(mean_light(drawn(leaning_cloth(1, spacing), 1)), bare, 4) << spacing;
   for (const Threads threads : {Threads::twill, Threads::denim, Threads::knit, Threads::none})
     EXPECT_NEAR(mean_light(drawn(leaning_cloth(1, 0.03, threads), 1)), bare, 4) << static_cast<int>(threads);
 }
 
-// Correlation of a picture with itself, displaced by so many threads (of eight pixels) right and up; 1 if identical.
+// Correlation of a picture with itself, displaced by this number of threads (of eight pixels) to the right and up; 1 if
+// they are equal.
 double alike(const image::Image& image, int right, int up) {
   constexpr int kThread = 8;
   double mean = 0, square = 0, product = 0, count = 0;
@@ -61,7 +62,7 @@ double alike(const image::Image& image, int right, int up) {
   return product / square;
 }
 
-// Expected: the lines of a twill rise to the right, a plain weave is symmetric, stitches form columns.
+// The lines of a twill rise to the right; a plain weave is symmetric; stitches form columns.
 TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
   const double spacing = 8 * 2 * std::tan(15 * std::numbers::pi / 180) / 100;
   const auto seen = [&](Threads threads) { return drawn(leaning_cloth(1, spacing, threads, 0), 1); };
@@ -77,9 +78,9 @@ TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
   EXPECT_LT(alike(twill, 1, 0), 0.5);
 }
 
-// If threads are smaller than a pixel, the picture equals their mean, as in a picture of six times the resolution,
-// without beats. Measured difference: 0.4 to 1.3 levels, of which dither and rounding to bytes make 0.4; without the
-// fading 14 to 16.
+// If threads are smaller than a pixel, the picture must equal their mean, as in a picture of six times the resolution,
+// without moiré. Measured difference: 0.4 to 1.3 levels, of which dither and rounding to bytes make 0.4; without
+// fading, 14 to 16.
 TEST(Weave, HasNoBeats) {
   constexpr int kFiner = 6;
   constexpr double kSpacing = 0.0006;
