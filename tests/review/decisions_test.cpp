@@ -12,7 +12,7 @@ class DecisionsOfRuns : public MadeRuns {
   static std::string file(const std::string& runs) { return R"({"format": "weft review 1", "runs": {)" + runs + "}}"; }
   static std::string entry(const std::string& state) { return R"({"state": ")" + state + R"("})"; }
 
-  // State of the only run below the folder, or "none".
+  // Decision state of the only run below the folder; "none" if it has no entry.
   std::string state() {
     std::vector<RunFiles> runs = find_runs(folder_);
     EXPECT_EQ(runs.size(), 1u);

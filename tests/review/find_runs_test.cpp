@@ -31,7 +31,7 @@ TEST_F(FindRuns, VideoIsFoundBesideMovedStatistics) {
   EXPECT_EQ(found(), "b: b.mp4\nmoved/stats: b.mp4 stats.json\n");
 }
 
-// As with `weft review .`, whose files are listed as "./b.mp4".
+// With `weft review .`, files are listed as "./b.mp4".
 TEST_F(FindRuns, StatisticsNameTheirVideoAndPicturesAlsoInAFolderGivenWithADot) {
   write("in/b.mp4");
   write("in/statistics.json", statistics("b.mp4"));

@@ -27,7 +27,7 @@ class MadeRuns : public support::TestFolder {
                        output, more);
   }
 
-  /// A picture with a gray square on black, which moves to the right by two pixels per frame.
+  /// A black picture with a grey square, which moves to the right by two pixels per frame.
   static image::Image picture(int frame, int gray = 200, int width = 64) {
     image::Image image(width, 36);
     for (int y = 12; y < 24; ++y) {
@@ -48,7 +48,8 @@ class MadeRuns : public support::TestFolder {
     encoder.finish();
   }
 
-  /// Name, file names of video, pictures, statistics and effective scene of each run found: one line each.
+  /// One line for each run that is found: its name and the file names of video, statistics, effective scene and
+  /// pictures.
   std::string found(const std::filesystem::path& below = "") const {
     std::string text;
     for (const RunFiles& run : find_runs(folder_ / below)) {

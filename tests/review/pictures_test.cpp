@@ -124,7 +124,7 @@ TEST_F(Pictures, VideoAndStillsCanBeCompared) {
   for (const PairComparison& pair : pairs) EXPECT_GT(pair.figures.ssim, 0.9) << pair.picture;
 }
 
-// Two levels on a fifth of the picture: more than stills may differ, less than encoders change.
+// Two levels on a fifth of the picture: more than the limits of stills, less than the change by an encoder.
 TEST_F(Pictures, OfLossyVideosHaveTheLimitsOfDiff) {
   const auto film = [&](const std::string& name, std::uint8_t above) {
     image::Image image(320, 180);
@@ -161,7 +161,7 @@ TEST_F(Pictures, HeatOfWidePicturesKeepsItsBrightestPixel) {
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0].heat.width, 500);
   const image::Image whole = compare::heat_map(compare::compare(dot, black, 4).flip);
-  // Pixel (1001, 20) belongs to the square of four by four at (250, 5).
+  // Pixel (1001, 20) belongs to the square of four by four pixels at (250, 5).
   EXPECT_GE(pairs[0].heat.pixel(250, 5)[0], whole.pixel(1001, 20)[0]);
 }
 

@@ -117,7 +117,7 @@ TEST_F(Review, NamesWhatMakesARunTheReference) {
   EXPECT_EQ(accept(2), (Json{{"file", path("in/c.mp4")}, {"reference", path("ref")}}));
 }
 
-// The page shows no command to accept a run without a file or a prefix.
+// Without a file or a prefix, the page would show no command that accepts the pictures of a run.
 TEST_F(Review, PicturesNamedByNumbersInTheWorkingFolderCanBeAccepted) {
   for (const int k : {0, 1}) image::write_png(folder_ / fmt::format("{}.png", k), picture(k));
   Request here = request();
@@ -310,7 +310,7 @@ TEST_F(Review, FormerPageIsKeptWithAFileOfSomebodyElseInIt) {
     EXPECT_EQ(support::read_bytes(folder_ / file), "-");
     fs::remove(folder_ / file);
   }
-  // The file appears while the page is made.
+  // The file appears while the command makes the page.
   again.stop = [&] {
     write("page/notes.txt");
     return false;
@@ -342,7 +342,7 @@ TEST_F(Review, LinksInFoldersOfRunsAreNotFollowed) {
     EXPECT_TRUE(!entry.is_regular_file() || support::read_bytes(entry.path()) != "-") << entry.path();
 }
 
-// Puts each bad value in every place: the page names it, and shows the valid values and the other runs.
+// Puts each bad value in every place. The page must name it, and show the valid values and the other runs.
 TEST_F(Review, NoValueOfStatisticsKeepsThePageFromTheRest) {
   int k = 0;
   for (const char* value :

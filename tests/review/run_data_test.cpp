@@ -82,7 +82,7 @@ TEST_F(RunData, PicturesOfAVideoAreTheWrittenFrames) {
   expect_times({1, 2, 3, 25});
 }
 
-// As in a farm, whose simulation writes the statistics of all frames, and whose other tasks draw a part of them.
+// In a farm, the simulation writes the statistics of all frames, and other tasks draw a part of them.
 TEST_F(RunData, VideoOfAPartOfTheFramesTellsWhichItShows) {
   video::Settings settings;
   settings.width = 64;
@@ -104,7 +104,7 @@ TEST_F(RunData, NumberedPicturesTellTheirFrames) {
   expect_times({4, 4, 3, 0});
 }
 
-// As of a farm of which some tasks have not drawn yet.
+// In a farm, some tasks may not have drawn their pictures yet.
 TEST_F(RunData, MissingPicturesBetweenOthersAreNamed) {
   for (const char* picture : {"f_000.png", "f_001.png", "f_004.png", "f_005.png"}) write(picture);
   EXPECT_EQ(only_run().at("problems").at(1),
