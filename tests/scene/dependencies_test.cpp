@@ -1,4 +1,4 @@
-// The hash of a scene covers every file on which the result depends.
+// The hash of a scene must cover every file on which the result depends.
 #include "film/scene/dependencies.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ class Dependencies : public support::TestFolder {
     EXPECT_EQ(result.describe(), "");
     return result.scene.hash;
   }
-  /// Changing a byte of this file must change the hash; changing an unreferenced file beside it must not.
+  /// Expects that a changed byte of this file changes the hash, and that a changed file beside it, to which nothing
+  /// refers, does not.
   void expect_counts(const std::string& scene, const std::string& file) {
     const auto before = hash_of(scene);
     const std::string content = support::read_bytes(folder_ / file);
@@ -123,7 +124,7 @@ TEST_F(Dependencies, FoldersDoNotCount) {
   EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// If a byte moves from the end of one file to the start of the next, the hash changes.
+// If a byte moves from the end of one file to the start of the next, the hash must change.
 TEST_F(Dependencies, WhereOneFileEndsCounts) {
   const std::string scene =
       "obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }, { name = 'b', shape = 'mesh', file = 'b.obj' }]\n";
@@ -133,7 +134,7 @@ TEST_F(Dependencies, WhereOneFileEndsCounts) {
   EXPECT_NE(hash_of(scene), before);
 }
 
-// Files that reference each other, or themselves, are read once.
+// Files that refer to each other, or to themselves, are read only once.
 TEST_F(Dependencies, EachFileIsReadOnce) {
   put("a.obj", "mtllib a.obj b.mtl\n");
   put("b.mtl", "map_Kd a.obj\n");

@@ -1,4 +1,4 @@
-// A small independent validator of JSON schemas: the part of Draft 2020-12 that the scene schema uses, no more.
+// A small independent validator of JSON schemas, for the part of Draft 2020-12 that the scene schema uses.
 #pragma once
 
 #include <nlohmann/json.hpp>

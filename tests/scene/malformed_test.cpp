@@ -1,4 +1,4 @@
-// Malformed scenes with the exact messages that a user reads.
+// Malformed scenes, with the exact messages that a user reads.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,7 +24,7 @@ void PrintTo(const Malformed& malformed, std::ostream* out) {
   *out << malformed.claim;
 }
 
-// The smallest valid scene, on one line, so that the text that follows starts on line 2.
+// The smallest valid scene is on one line, so that text after it begins on line 2.
 const std::string kFloor = "obstacle = [{ name = 'floor', shape = 'plane' }]\n";
 const std::string kBand = "cloth = [{ name = 'band' }]\n";
 
@@ -320,7 +320,7 @@ const std::vector<Malformed> kMalformed = {
     {"MeshIsAFolder", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/'\n",
      "s.toml:4:8: obstacle.b.file: expected a readable file, got \"/\": / is not a file\n"},
 
-    // All mistakes are reported at once, in the order of the file, not in the order of the rules.
+    // All mistakes are reported at once, in their order in the file, not in the order of the rules.
     {"AllMistakesInFileOrder",
      "[render]\nwidth = 1\n[[light]]\nkind = 'spot'\n[[cloth]]\nname = 'band'\nsize = [0, 1]\nsise = 2\n[time]\nfps = "
      "-1\nstep = 'x'\n",

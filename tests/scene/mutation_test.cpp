@@ -1,4 +1,5 @@
-// Thousands of damaged scenes: each loads, or is refused with messages that point to existing places. None crashes.
+// Thousands of damaged scenes. Each loads, or is refused with messages that point to existing places in the file. None
+// may crash the program.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace weft::scene {
 namespace {
 
-/// Damages a text in a few places, as typing errors, bad merges and disk errors do.
+/// Damages a text in a few places, like typing errors, bad merges and disk errors.
 std::string damage_text(std::string text, std::mt19937& random) {
   using namespace std::string_literals;
   static const std::string kBytes = "[]{}=.,\"'#\n\0\xff-+e0159 \t_nan"s;
@@ -50,7 +51,7 @@ std::string damage_text(std::string text, std::mt19937& random) {
   return text;
 }
 
-/// An accepted scene can be built: all values are within the bounds that memory and arithmetic rely on.
+/// An accepted scene can be built: all its values are within the limits on which memory and arithmetic depend.
 void expect_buildable(const Scene& scene) {
   long particles = 0;
   for (const Cloth& cloth : scene.cloths) {
@@ -104,7 +105,7 @@ TEST(DamagedScenes, LoadOrAreRefusedAtAPlaceThatExists) {
     }
     if (testing::Test::HasFailure()) break;
   }
-  // The damage is of the right amount: some scenes still load, and in others the rules find mistakes.
+  // The amount of damage is suitable: some scenes still load, and in others the rules find mistakes.
   EXPECT_GT(loaded, kScenes / 20);
   EXPECT_GT(misread, kScenes / 20);
 }

@@ -1,4 +1,4 @@
-// --set path.to.key=value
+// Tests of --set path.to.key=value.
 #include <gtest/gtest.h>
 
 #include <string>

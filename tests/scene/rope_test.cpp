@@ -1,4 +1,4 @@
-// Ropes in scenes: how they are read, their start shape, and what is refused.
+// Ropes in scenes: how they are read, their start shape, and which are refused.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST(RopeScenes, SlackRopesStartAsCatenariesOfTheirLength) {
   EXPECT_LT((shape.places.front() - Vec3(0, 0, 1)).norm(), 1e-12);
   EXPECT_LT((shape.places.back() - Vec3(1, 0.5, 1.4)).norm(), 1e-12);
   EXPECT_NEAR(length_of(shape), 1.9, 1e-12);
-  // A catenary satisfies z'' = √(1 + z'²) / a. Any three evenly spaced points along it must give the same a.
+  // A catenary satisfies z'' = √(1 + z'²) / a. Any three evenly spaced points of it must give the same a.
   const auto ratio = [&](std::size_t i) {
     const Vec3 before = shape.places[i] - shape.places[i - 1], after = shape.places[i + 1] - shape.places[i];
     const auto slope = [](const Vec3& segment) { return segment.z() / segment.head<2>().norm(); };
@@ -55,7 +55,7 @@ TEST(RopeScenes, SlackRopesStartAsCatenariesOfTheirLength) {
   EXPECT_NEAR(ratio(5) / ratio(shape.places.size() - 6), 1, 0.01);
 }
 
-// Both lengths are the next double above the distance of the ends.
+// Both lengths are the smallest double above the distance of the ends.
 TEST(RopeScenes, RopesOfTheLengthOfTheirChordStartStraight) {
   for (const auto& [to, length] :
        {std::pair("[0.5, 1, 0.5]", "1.2247448713915892"), std::pair("[2, 1, 1]", "2.4494897427831783")}) {

@@ -1,4 +1,4 @@
-// Compares the rule table with everything that is derived from it: reading, the effective scene, the hash, the schema.
+// Compares the rule table with all that is derived from it: reading, the effective scene, the hash, the schema.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -93,8 +93,8 @@ void expect_change(const std::string& text, const std::string& override_text) {
   EXPECT_NE(effective_scene(before.scene), effective_scene(after.scene)) << override_text;
 }
 
-/// True if any value of the key can be set alone. This is false for names, references, files, and keys that require
-/// another key; scene_test covers those.
+/// Whether the key can be set alone. This is false for names, references, files, and keys that require another key;
+/// scene_test covers these.
 bool is_plain_value(const std::string& path, const Rule& rule) {
   const bool needs_mass = path.starts_with("obstacle.") &&
                           (path.ends_with("velocity") || path.ends_with("spin") || path.ends_with("release"));
@@ -119,7 +119,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
   for_each_value(*root.find("cloth")->table, "cloth.c.", try_rule);
   for_each_value(*root.find("cloth")->table->find("pin")->table, "cloth.c.pin.0.",
                  [&](const auto& path, const auto& rule, const auto& now) {
-                   // Leaves out a few rows at one side only, so that the pin still holds some particles.
+                   // Excludes a few rows at one side only, so that the pin still holds some particles.
                    if (rule.key == "low") return expect_change(kOneOfEach, path + "=[0.1, 0.2]");
                    if (rule.key == "high") return expect_change(kOneOfEach, path + "=[0.8, 0.9]");
                    try_rule(path, rule, now);
@@ -128,7 +128,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
   for_each_value(*root.find("character")->table, "character.dancer.", try_rule);
   for_each_value(*root.find("camera")->table, "camera.v.", try_rule);
   for_each_value(*root.find("light")->table, "light.sun.", try_rule);
-  // Spot checks that the traversal reached all tables.
+  // Samples that the traversal has reached all tables.
   EXPECT_TRUE(paths.contains("up"));
   EXPECT_TRUE(paths.contains("cloth.c.material.bend_viscosity"));
   EXPECT_TRUE(paths.contains("obstacle.sphere.look.checker"));

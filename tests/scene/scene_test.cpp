@@ -1,4 +1,4 @@
-// A valid scene after loading: the member for every key, defaults, poses, fabrics.
+// A valid scene after loading: the members for all keys, defaults, poses and fabrics.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -363,9 +363,8 @@ TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
 TEST(Scene, RotatesAboutTheFixedAxesInTheOrderXyz) {
   const Scene scene = load_good("cloth = [{ name = 'a', rotation = [90, 0, 90] }]\n");
   const Quat& q = scene.cloths[0].pose.rotation;
-  // The turn by 90° about x maps y to z, and that about z leaves z. The turn about x leaves x, and that about z maps it
-  // to y.
-  // Three products of unit quaternions: rounding of a few 1e-16.
+  // The rotation by 90° about x maps y to z, and that about z keeps z. The rotation about x keeps x, and that about z
+  // maps it to y. Tolerance: three products of unit quaternions, each rounded to a few 1e-16.
   EXPECT_LT((q * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm(), 1e-15);
   EXPECT_LT((q * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 1e-15);
 }
@@ -429,7 +428,7 @@ TEST(Fabrics, AreMadeOfWhatWasMeasured) {
   const Fabric& poplin = *find_fabric("poplin");
   EXPECT_FALSE(poplin.measured.bend_weft.estimated);
   EXPECT_TRUE(poplin.measured.shear.estimated);
-  // Measured: 0.118 gf·cm²/cm and 2HB of 0.124 gf·cm/cm. The material stores two significant digits.
+  // Measured: 0.118 gf·cm²/cm, and 2HB of 0.124 gf·cm/cm. The material has two significant digits of them.
   EXPECT_NEAR(poplin.material.bend, 0.118 * 9.807e-5, 0.05 * 1.2e-5);
   EXPECT_NEAR(poplin.material.bend_friction, 0.5 * 0.124 * 9.807e-3, 0.05 * 6e-4);
   // A wool with a FAST extension E20 (at 19.6 N/m) of 1.87 % in both directions has a stiffness of 1048 N/m.
