@@ -1,4 +1,4 @@
-// Springs between cloths, and from cloth to bodies: forces, normal operation, breaking and release.
+// Attachments: springs between cloths, and from cloth to bodies. Tests their forces, breaking and release.
 #include "physics/simulation/attachments.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using testing::lowest;
 
-/// A towel of 0.03 kg that hangs from a rail by an attachment with these keys; `more` holds further tables.
+/// A towel of 0.03 kg that hangs from a rail by an attachment. `keys`: keys of the attachment; `more`: further tables.
 scene::Scene towel(const std::string& keys, const std::string& more = "") {
   return support::scene_of_text(
       "[time]\nduration = 1\nstep = 0.01\n[physics]\nair_density = 0\n[contact]\nobstacles = false\nself = false\n"
@@ -28,7 +28,7 @@ scene::Scene towel(const std::string& keys, const std::string& more = "") {
 
 struct Hanging {
   std::vector<FrameReport> reports;
-  std::vector<double> lowest;  // [m]
+  std::vector<double> lowest;  // height of the lowest particle, per frame [m]
 };
 Hanging hang_up(const scene::Scene& scene) {
   production::SceneSimulation simulation(scene);
@@ -52,9 +52,9 @@ TEST(Attachments, BearTheWeightThatHangsOnThem) {
   EXPECT_NEAR(hanging.lowest.back(), 0.65, 0.001);
 }
 
-// A plate of 0.5 m/s strikes a sheet that taut springs hold back. BDF2 splits the impact off; without the springs in
-// that split, particles got up to 1,181 m/s for one step. The springs may throw the sheet back at the speed of the
-// plate.
+// A plate of 0.5 m/s strikes a sheet that taut springs hold. BDF2 solves the jump of velocity at the impact separately.
+// If that solution ignored the springs, particles would reach 1,181 m/s in one step (measured). The springs may throw
+// the sheet back, with a speed of the order of the plate's.
 TEST(Attachments, HoldWhatIsStruck) {
   production::SceneSimulation simulation(support::scene_of_text(
       "[time]\nduration = 0.2\nfps = 100\nstep = 0.01\nintegrator = \"bdf2\"\n[physics]\nair_density = 0\ngravity = "
@@ -114,7 +114,7 @@ TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
   const auto warnings = [](double gap, const std::string& keys, double step = 0.01) {
     scene::Scene scene = towel(keys);
     scene.time.step = step;
-    scene.cloths[0].pose.position.z() = 0.97 - gap - 0.15;  // of the towel's upper edge below the rail
+    scene.cloths[0].pose.position.z() = 0.97 - gap - 0.15;  // its upper edge starts `gap` below the rail [m]
     scene.physics.gravity.setZero();
     scene.time.duration = 0.16;
     std::string all;
@@ -129,7 +129,7 @@ TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
   EXPECT_EQ(far.find("attach.peg"), far.rfind("attach.peg")) << far;
   const std::string in_short_steps = warnings(0.5, "length = 0\nbegin = 0.1\n", 0.002);
   EXPECT_NE(in_short_steps.find("at 250 m/s"), std::string::npos) << in_short_steps;
-  // A soft spring is slow: 0.5 m √(0.1 N/m / 0.25 g).
+  // A soft spring pulls slowly, at 0.5 m · √(0.1 N/m / 0.25 g) = 10 m/s at most.
   EXPECT_EQ(warnings(0.5, "length = 0\nbegin = 0.1\nstiffness = 0.1\n").find("attach.peg"), std::string::npos);
 }
 
@@ -197,7 +197,7 @@ TEST(Attachments, BetweenClothsKeepTheirMomentumAndTheirDistance) {
   EXPECT_LT((momentum() - start).norm(), 1e-12 * start.norm());
   EXPECT_LT(farthest, 0.0115);  // 0.01 m plus the extension by the impact of 0.006 kg at 0.4 m/s
   EXPECT_LT((simulation.state().velocities[0]).norm(), 1.0);
-  EXPECT_GT((simulation.state().velocities[0]).norm(), 0.01);  // the other sheet is pulled along
+  EXPECT_GT((simulation.state().velocities[0]).norm(), 0.01);  // the upper sheet pulls the lower one along
 }
 
 TEST(Attachments, HaveForcesThatAreDerivativesOfTheirEnergyAndTermsThatAreOfTheirForces) {

@@ -14,7 +14,7 @@ namespace weft::simulation {
 namespace {
 
 // A sheet over a floor, and a ball that passes under it at 4 m/s. At 0.21 s the ball's x coordinates are near zero, so
-// that a time that is rounded otherwise changes them.
+// that they differ if the time is rounded in another way.
 scene::Scene sheet_over_a_ball() {
   scene::Scene scene = testing::sheet_alone(0.4, 5, 1);
   scene.contact.obstacles = true;
@@ -83,7 +83,7 @@ TEST_F(CollisionStages, ExpectHeldParticlesWhereTheyAreHeld) {
   EXPECT_EQ(next_.x[7], Vec3(1, 2, 3));
 }
 
-// The solved end of the sheet is 1 mm below the floor: pushing it out also changes its velocity.
+// The solved end positions of the sheet are 1 mm below the floor. Pushing them out of it also changes the velocities.
 TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   stage_->begin_step(0.2, 0.01, {}, now_, next_);
   for (std::size_t i = 0; i < 25; ++i) {
@@ -103,7 +103,7 @@ TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   EXPECT_EQ(bodies_of(next_), bodies_of(solved));
 }
 
-// Tied to the gap that pushing apart restores: contacts found that close to the last ones lead to the same solution.
+// A continuation whose positions differ by less than the restored gap finds the same contacts, hence the same solution.
 TEST_F(CollisionStages, TellAContinuationThatLeadsBackToItsStart) {
   stage_->begin_step(0.2, 0.01, {}, now_, next_);
   EXPECT_FALSE(stage_->restarts_at(next_)) << "the solve has not continued yet";

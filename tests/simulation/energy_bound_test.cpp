@@ -32,7 +32,7 @@ scene::Scene runaway() {
   return scene;
 }
 
-/// Advances, by at most 100 frames, until the simulation refuses; returns its message.
+/// Advances by at most 100 frames, until the simulation fails; returns the message of the failure.
 std::string refusal(production::SceneSimulation& simulation) {
   for (int k = 0; k < 100; ++k) {
     const int before = simulation.snapshot()->frame;
@@ -158,8 +158,8 @@ TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
   }
 }
 
-// A stiff sheet at rest has little energy in play. The check must tolerate gains by rounding (measured: 0.27 µJ), even
-// if they exceed it.
+// A stiff sheet at rest has little energy in play. Gains by rounding (measured: 0.27 µJ) can be larger than this
+// energy; the check must tolerate them.
 TEST(EnergyBound, RoundingIsNoEnergy) {
   for (const double size : {0.02, 0.4})
     for (const scene::Integrator integrator : testing::kIntegrators) {
@@ -204,9 +204,10 @@ TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
   EXPECT_TRUE(warnings_of(1e4).empty());
 }
 
-// A cylinder strikes a loose sheet of locking threads at 38 m/s. The mass-weighted norm of the velocity error does not
-// see what is left in stiff threads: with it alone, the residual does 133 J of work where there are 114 J, threads are
-// stretched by 75 %, and the run warns. With a tolerance of 0.02 they are stretched by 24 %.
+// A cylinder strikes a loose sheet of locking threads at 38 m/s. The mass-weighted norm of the velocity error hardly
+// measures residual forces in stiff threads. If it were the only criterion, the residual would do 133 J of work, more
+// than the available 114 J; threads would stretch by 75 %, and the run would warn. With a tolerance of 0.02 they
+// stretch by 24 %.
 TEST(EnergyBound, FastImpactsAreSolvedUntilTheResidualDoesLittleWork) {
   production::SceneSimulation simulation(support::scene_of_text(R"(
 [time]
@@ -241,8 +242,8 @@ material = { fabric = "denim", friction = 1, max_stretch = 0 }
   EXPECT_LT(strain, 0.5);
 }
 
-// A sheet falls on a ball, with a step that is critical for contacts under the midpoint rule. The bound is what a run
-// may gain without a warning: a tenth of the energy in play.
+// A sheet falls on a ball. With the midpoint rule, this step is critical for contacts. Bound: a tenth of the energy in
+// play, which a run may gain without a warning.
 TEST(EnergyBound, ContactBringsNone) {
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.6, 13, 0.45);
@@ -261,7 +262,7 @@ TEST(EnergyBound, ContactBringsNone) {
   }
 }
 
-/// Maximum gain of mechanical energy since the start, relative to the energy in play; 1 if the run ended.
+/// Maximum gain of mechanical energy since the start, relative to the energy in play; 1 if the run failed.
 double largest_gain(const scene::Scene& scene, int frames) {
   production::SceneSimulation simulation(scene);
   const FrameReport start = simulation.initial_report();
@@ -282,8 +283,8 @@ double largest_gain(const scene::Scene& scene, int frames) {
   return gain;
 }
 
-// Viscosity must not act on rotation. If it used n·v as the rate of length, which includes the rotation within a step,
-// a viscosity of 30 N·s/m would shorten the threads of a swinging sheet until the run is refused.
+// Viscosity must not act on rotation. If it used n·v as the rate of change of length, which includes the rotation
+// within a step, a viscosity of 30 N·s/m would shorten the threads of a swinging sheet until the run is refused.
 TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
   using Shape = scene::ClothShape;
   for (const auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2})
@@ -306,7 +307,7 @@ TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
         }
 }
 
-/// A sheet falls on an obstacle and past it to the floor; all surfaces have this friction.
+/// A sheet falls on an obstacle and past it to the floor; `friction`: the friction coefficient of all surfaces.
 scene::Scene falls_on(scene::Shape shape, double friction, double step) {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 0.5);
   scene.time.step = step;
@@ -338,7 +339,8 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
     }
 }
 
-// An error of friction can be as large as the velocity of the sheet at most. A velocity residual counts for 0.15 s.
+// An error of friction changes a velocity by at most the velocity itself. The solver's error per step is therefore at
+// most the largest velocity times 0.15 s, the time over which a velocity residual counts.
 TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   constexpr double kCounts = 0.15;  // [s]
   int iterations = 0, number = 0;
@@ -359,7 +361,8 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
     // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 and 2.7 times as large.
     EXPECT_LT(solver, steps);
   }
-  // Measured: 17.3 a step; 25.4 if a solve that friction leads astray did not start anew with fixed normal forces.
+  // Iterations per step, measured: 17.3; 25.4 if a solve that diverges with friction did not restart with fixed normal
+  // forces.
   EXPECT_LT(iterations, 20 * number);
 }
 
@@ -372,7 +375,8 @@ scene::Scene on_a_blade() {
   return scene;
 }
 
-// If the sheet were only pushed out after the solve, its threads would store 0.18 J, from a fall of 0.068 J.
+// If the sheet were only pushed out after the solve, its threads would store 0.18 J, although its fall supplies 0.068
+// J.
 TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   production::SceneSimulation simulation(on_a_blade());
   const FrameReport start = simulation.initial_report();
@@ -388,8 +392,9 @@ TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   EXPECT_LT(most_elastic, 0.3 * fall);
 }
 
-// A sheet slides over the edge of a box. A new contact at the edge may find cloth that is close already. It then pushes
-// the cloth out over 5 ms at least. If it did so in one step of 1 ms, it would throw a row of particles up at 1 m/s.
+// A sheet slides over the edge of a box. When a contact at the edge appears, the cloth may already be closer than the
+// contact distance. The contact therefore pushes it out over at least 5 ms. If it did so in one step of 1 ms, it would
+// throw a row of particles up at 1 m/s.
 TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   scene::LoadResult loaded = scene::load_text(
       "[time]\nfps = 25\nintegrator = \"bdf2\"\n[solver]\nnewton_tolerance = 0.04\n"
@@ -406,8 +411,8 @@ TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   }
 }
 
-// A plate strikes a free sheet, which then moves along with it. The jump of velocity in an impact of BDF2 is no work of
-// the solver's residual; counted as such, it would be larger than the kinetic energy.
+// A plate strikes a free sheet, which then moves along with it. At an impact, velocities jump under BDF2. This jump
+// must not count as work of the solver's residual: the work would exceed the kinetic energy.
 TEST(EnergyBound, ImpactsAreNoWorkOfTheSolver) {
   production::SceneSimulation simulation(support::scene_of_text(
       "[time]\nduration = 0.4\nstep = 0.01\nintegrator = \"bdf2\"\n[physics]\nair_density = 0\ngravity = [0, 0, 0]\n"
@@ -425,7 +430,7 @@ TEST(EnergyBound, ImpactsAreNoWorkOfTheSolver) {
   EXPECT_LT(work, 0.1 * kinetic);  // the bound of the residual in a step, Numerics::Energy
 }
 
-// Uses a made-up report, because garments with buttons are far larger.
+// Uses a made-up report, because a run of a garment with buttons takes far longer.
 TEST(EnergyBound, ClosingButtonsBringEnergy) {
   model::Model model = environment::Environment(on_a_blade()).model;
   FrameReport gained;
@@ -440,7 +445,7 @@ TEST(EnergyBound, ClosingButtonsBringEnergy) {
 // Uses made-up reports, because it depends on details of the solver whether contact adds energy in a run.
 TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
   const auto after_a_fall = [](double gained) {
-    FrameReport report;  // 1 J was available, half of it is kinetic
+    FrameReport report;  // the fall supplied 1 J, of which half is kinetic
     report.potential_energy = -1;
     report.kinetic_energy = 0.5;
     report.elastic_energy = 0.5 + gained;

@@ -1,4 +1,4 @@
-// Steps that cannot be solved: what a failed frame leaves, and halving.
+// Steps that cannot be solved: the state after a failed frame, and halving of steps.
 #include <gtest/gtest.h>
 
 #include <span>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::sheet_alone;
 
-// A steel sheet; in its fourth frame its edge moves away too fast.
+// A steel sheet. In its fourth frame its pinned edge moves too fast for the solver.
 scene::Scene sheet_with_fast_edge() {
   scene::Scene scene = sheet_alone(0.4, 9, 1);
   scene.solver.newton_iterations = 1;
@@ -70,7 +70,7 @@ TEST(FailedStep, InTheMiddleOfAFrameTakesBackTheFirstSteps) {
   EXPECT_EQ(failure(), first);
 }
 
-// The spring of the sheet to the post is tied in the first of the two steps of the frame; the second step fails.
+// The spring between sheet and post begins in the first of the two steps of the frame; the second step fails.
 TEST(FailedStep, InTheMiddleOfAFrameTakesBackWhatWasTied) {
   scene::Scene scene = sheet_with_fast_edge();
   scene.solver.newton_iterations = 3;
@@ -135,7 +135,7 @@ size = [0.6, 0.4, 0.6]
 position = [0, 0.35, 0.6]
 )";
 
-// Each frame is taken back once, as after a failure.
+// Each frame is computed, taken back to its start as after a failure, and computed again.
 TEST(FailedStep, TakesBackPinchedClothAndPinsThatLag) {
   for (const char* text : {kJaws, kPinIntoABox}) {
     const model::Model model = environment::Environment(support::scene_of_text(text)).model;

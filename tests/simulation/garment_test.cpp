@@ -67,7 +67,7 @@ Measures measure(const garment::Garment& garment, const std::vector<Vec3>& x) {
   return m;
 }
 
-// Required of a garment: once it is sewn, area and seams are within 1 % of the pattern; no frame intersects.
+// Requirements on a garment: once it is sewn, area and seams are within 1 % of the pattern; no frame has intersections.
 TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
   const scene::Scene scene = dressed(kPost);
   const auto frames = support::run_scene(scene, {.keep_positions = true});
@@ -187,7 +187,7 @@ TEST_F(Garments, AStartThatMeetsACharacterTellsHowArmsAreHeldOff) {
   EXPECT_EQ(elsewhere.find(hint), std::string::npos) << elsewhere;
 }
 
-// If nothing moves, a frame is one step; but not if something is timed in it.
+// While nothing moves, a frame is one step. But a frame during sewing takes all its steps, because rest lengths change.
 TEST_F(Garments, TakeAllTheirStepsWhileTheyAreSewn) {
   production::SceneSimulation simulation(dressed("pin = [{ low = 0, high = 1 }]\n[time]\nfps = 25\nduration = 1\n"));
   int frame = 0;

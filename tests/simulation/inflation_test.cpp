@@ -43,7 +43,7 @@ class Balloon : public support::TestFolder {
     for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();
     return report;
   }
-  double viscosity_ = 0.5;  // [N·s/m], to bring it to rest
+  double viscosity_ = 0.5;  // damping that brings the sphere to rest [N·s/m]
 };
 
 TEST_F(Balloon, StretchesUntilTheTensionIsPressureTimesHalfTheRadius) {
@@ -72,7 +72,7 @@ TEST_F(Balloon, HoldsWhatIsPumpedInAtThePressureOfItsTension) {
     const double volume = end.enclosed[0].volume, pressure = end.enclosed[0].pressure;
     EXPECT_NEAR((kAmbient + pressure) * volume / (kAmbient * start * (1 + pumped)), 1, 1e-12);
     if (pumped < 0) {
-      EXPECT_LT(pressure, 0);  // it dents at almost no pressure difference
+      EXPECT_LT(pressure, 0);  // the balloon dents at almost no pressure difference
       EXPECT_GT(pressure, -500);
       continue;
     }
@@ -110,7 +110,7 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
     // Measured: 0.003, the trapezoidal error in a potential that is not quadratic.
     EXPECT_NEAR(report.kinetic_energy + report.elastic_energy + report.air_energy, all, 0.01 * all) << frame;
   }
-  // After four periods it is back at the start; a quarter of a period later it is halfway.
+  // After four periods the balloon is back at the start; a quarter of a period later it is halfway.
   const double swing = volumes[20] - volumes[0];
   EXPECT_GT(swing, 0);
   EXPECT_NEAR(volumes[160], volumes[0], 0.05 * swing);
@@ -134,7 +134,7 @@ TEST_F(Balloon, IsPushedByThePressureInTheMiddleOfAStepOfTheMidpointRule) {
   EXPECT_NEAR(momentum / mass / (0.5 * 1e6 * 1e-8 / kDensity), 1, 0.03);
 }
 
-// The floor cuts off a cap of 10 % of the sphere, and untangling moves it up.
+// The floor cuts off a cap of 10 % of the sphere; untangling moves the sphere up.
 TEST_F(Balloon, IsClosedWithTheVolumeThatItHasOnceItIsUntangled) {
   const auto start = [&](const std::string& more) {
     return production::SceneSimulation(scene("", more + "pressure = { control = \"fill\", fill = 1 }\n" +

@@ -33,7 +33,8 @@ TEST(KeyedForces, GravityThatGrowsAddsItsIntegralToTheVelocity) {
   scene.time.integrator = scene::Integrator::implicit_midpoint;
   scene.physics.interpolation = scene::Interpolation::linear;
   scene.physics.keys = {{0.2, {0, 0, 0}, {0, 0, 0}}, {0.8, {0, 3, -6}, {0, 0, 0}}};
-  // The midpoint rule is exact for accelerations that are linear in time: ½ · 0.6 s of the last key, then 0.2 s of it.
+  // The midpoint rule is exact for accelerations that are linear in time: the last key acts for ½ · 0.6 s + 0.2 s = 0.5
+  // s.
   EXPECT_LT((velocity_at_end(scene) - 0.5 * Vec3(0, 3, -6)).norm(), 1e-9);
 }
 
@@ -102,7 +103,8 @@ TEST(KeyedForces, SheetThatFacesWindFromSomeTimeOnCatchesUpAsTheoryHasIt) {
   scene.physics.interpolation = scene::Interpolation::linear;
   constexpr double kWind = 8;
   scene.physics.keys = {{0.2, {0, 0, 0}, {0, 0, 0}}, {0.2001, {0, 0, 0}, {0, 0, kWind}}};
-  // v' = a (w − v)², a = ρ c / (2 σ): w − v = w / (1 + a w t).
+  // Drag: v' = a (w − v)² with wind w, a = ρ c / (2 σ), air density ρ, coefficient c, density σ; w − v = w / (1 + a w
+  // t).
   const double a = 1.2 * scene.cloths[0].material.drag / (2 * scene.cloths[0].material.density);
   EXPECT_NEAR(velocity_at_end(scene).z() / (kWind - kWind / (1 + a * kWind * 0.4)), 1, 0.005);  // 0.002 measured
   scene.time.duration = 0.16;

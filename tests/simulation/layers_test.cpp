@@ -16,7 +16,8 @@
 namespace weft::simulation {
 namespace {
 
-// A tube around z as the text of an OBJ file, stretched along x by `ellipse`; if flipped, it faces its axis.
+// A tube around z as the text of an OBJ file, stretched along x by `ellipse`; if `flipped`, its faces point to the
+// axis.
 std::string tube(double radius, double height, double ellipse = 1, bool flipped = false) {
   constexpr int kAround = 28, kUp = 9;
   std::string text;

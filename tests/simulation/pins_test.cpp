@@ -52,7 +52,7 @@ const Deformation kBent = [](const Vec3& x, double t) -> Vec3 {
   return kRigid({x.x() * (1 + t), x.y(), x.z() + 0.5 * t * x.x() * x.x() + t * x.x() * x.y()}, t);
 };
 
-/// A scene with its pins.
+/// The pins of a scene, with the model to which they refer.
 struct Pinned {
   model::Model model;
   Pins pins;
@@ -80,8 +80,8 @@ TEST_F(PinsOnACharacter, MoveAsOneWithABodyThatDoes) {
     }
 }
 
-// The velocity of a pinned particle is that of its place, also between key frames, on a surface that stretches, bends
-// and shears.
+// A pinned particle has the velocity of its place on the body, also between key frames, on a surface that stretches,
+// bends and shears.
 TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
   const Pinned pinned(scene_of(kBent));
   const double t = 0.1337, d = 1e-5;
@@ -177,7 +177,8 @@ TEST(PinsThatOverlap, HoldWhatPinsBeforeThemHaveReleased) {
   const Pinned pinned(support::scene_of_text(
       "[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [\n"
       "{ low = [0, 1], high = [1, 1], release = 0.2 },\n"
-      "{ low = [0, 1], high = [0.5, 1], release = 0.1 },\n"  // released before, so it never holds any
+      "{ low = [0, 1], high = [0.5, 1], release = 0.1 },\n"  // released before the other pin, so it never holds a
+                                                             // particle
       "{ low = [0, 1], high = [0, 1], keys = [{ time = 0.2 }, { time = 0.4, offset = [0, 0, 1] }] }]\n"));
   ASSERT_EQ(pinned.at(0.2).size(), 3u);
   for (const integrator::HeldParticle& held : pinned.at(0.2))
@@ -188,7 +189,8 @@ TEST(PinsThatOverlap, HoldWhatPinsBeforeThemHaveReleased) {
   EXPECT_NEAR((after[0].x_end - pinned.start(after[0]) - Vec3(0, 0, 0.5)).norm(), 0, 1e-12);
 }
 
-// 0.1 + 0.02 is larger than 0.12 in double precision, so that pins let go one step too early.
+// 0.1 + 0.02 exceeds 0.12 in double precision. Compared without tolerance, these times would release pins one step
+// early.
 TEST(PinsThatAreReleased, HoldUntilTheStepThatEndsAtTheirRelease) {
   const Pinned pinned(
       support::scene_of_text("[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [{ low = [0, 1], "

@@ -42,7 +42,7 @@ Vec3 middle(const std::vector<Vec3>& points) {
 /// The rotation that best maps one set of points to another, and the deviation in shape.
 struct Fit {
   Mat3 turn;
-  double off;  // largest distance [m]
+  double off;  // largest distance between points of the second set and mapped points of the first [m]
 };
 Fit fit(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
   const Vec3 a = middle(from), b = middle(to);
@@ -60,7 +60,7 @@ TEST(RigidBodies, FallFreely) {
         timed(0.4, "integrator = \"" + method + "\"") +
         box("box", "size = [0.1, 0.2, 0.3]\nmass = 2\nvelocity = [1, 0, 2]\nposition = [0, 0, 1]\n")));
     for (int frame = 0; frame < 10; ++frame) simulation.advance();
-    // Euler's method falls too far by g h t / 2. BDF2 does too: its first step is an Euler step.
+    // Implicit Euler falls too far by g h t / 2. BDF2 falls too far by less: only its first step is an Euler step.
     const double late = method == "implicit_midpoint" ? 1e-9 : 0.5 * kGravity * 0.01 * 0.4 + 1e-9;
     const Vec3 at = middle(vertices(simulation, 0));
     EXPECT_NEAR(at.x(), 0.4, 1e-9) << method;
@@ -101,7 +101,7 @@ TEST(RigidBodies, TumbleWithTheirAngularMomentum) {
     report = simulation.advance();
     min_cosine = std::min(min_cosine, (fit(start, vertices(simulation, 0)).turn * Vec3::UnitY()).y());
   }
-  EXPECT_LT(min_cosine, -0.9);  // it has flipped
+  EXPECT_LT(min_cosine, -0.9);  // the brick has flipped
   EXPECT_NEAR(report.kinetic_energy / simulation.initial_report().kinetic_energy, 1, 1e-3);
   EXPECT_LT(fit(start, vertices(simulation, 0)).off, 1e-4 * 0.2);
 }
@@ -125,7 +125,7 @@ TEST(RigidBodies, ComeToRestOnTheFloorAndStayThere) {
   EXPECT_GT(lowest, 0);
   EXPECT_LT(lowest, 1e-3);
   EXPECT_LT(moved, 1e-5);
-  EXPECT_NEAR(middle(frames.second).z(), 0.1, 1e-3);  // it lies flat on a side
+  EXPECT_NEAR(middle(frames.second).z(), 0.1, 1e-3);  // the body lies flat on a side
 }
 
 TEST(RigidBodies, SlideDownAnInclineAsBlocksDo) {
@@ -149,7 +149,7 @@ TEST(RigidBodies, SlideDownAnInclineAsBlocksDo) {
     if (slope < 0)
       EXPECT_LT(distance, 1e-3);
     else
-      EXPECT_NEAR(distance / (0.5 * kGravity * slope * t * t), 1, 0.03);  // Euler's method leads by h / t
+      EXPECT_NEAR(distance / (0.5 * kGravity * slope * t * t), 1, 0.03);  // implicit Euler leads by the fraction h / t
   }
 }
 
@@ -192,7 +192,7 @@ TEST(RigidBodies, ReleasedAtTheirLastKeyGoOnWithTheVelocityOfTheirKeys) {
           "size = [0.1, 0.1, 0.1]\nmass = 1\ncollide = false\nrelease = 0.2\nkeys = [{ time = 0, position = "
           "[0, 0, 1] }, { time = 0.2, position = [0.4, 0, 1] }]\n")));
   for (int frame = 1; frame < 5; ++frame) simulation.advance();
-  // Work of the keys accounts for its energy of motion: otherwise the run ends with an error.
+  // The work of the keys must account for the kinetic energy; otherwise the energy check would end the run.
   EXPECT_NEAR(simulation.advance().kinetic_energy, 0.5 * 1 * 2 * 2, 1e-6);
   for (int frame = 6; frame <= 10; ++frame) simulation.advance();
   EXPECT_NEAR(middle(vertices(simulation, 0)).x(), 0.8, 1e-6);
@@ -284,7 +284,8 @@ TEST(RigidBodies, ThatPassThroughEverythingChangeNoContact) {
     EXPECT_EQ(vertices(whole, object), vertices(resumed, object)) << object;
 }
 
-// A frame in which everything rests is one step, at whose end this arm is back; on its way it strikes the crate.
+// A frame in which everything rests is one step. The arm is in its place at both ends of the frame, but strikes the
+// crate within it.
 TEST(RigidBodies, AtRestAreStruckByWhatComesAndGoesWithinAFrame) {
   production::SceneSimulation simulation(support::scene_of_text(
       "[time]\nduration = 3\nfps = 1\nstep = 0.01\n[physics]\ngravity = [0, 0, 0]\n" +
@@ -377,7 +378,7 @@ TEST(RigidBodies, DoNotThrowUpTheClothOnWhichTheyFall) {
       "position = [0, 0, 0.32]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
   double highest = 0;
   for (const support::MeasuredFrame& frame : support::run_scene(scene, {.judged = false, .keep_positions = true})) {
-    if (frame.report.frame < 5) continue;  // it lies on the floor by then
+    if (frame.report.frame < 5) continue;  // the sheet lies on the floor by then
     for (const Vec3& x : frame.cloths.at(0)) highest = std::max(highest, x.z());
   }
   // Measured: 1.4 mm; 8.8 mm if impacts of pairs are solved one by one.
@@ -428,7 +429,7 @@ TEST(RigidBodies, MayTouchWhatTheyStandOnWhereOtherThingsAreUntangled) {
   EXPECT_NEAR(middle(vertices(simulation, 2)).z(), 0.1002, 1e-9);  // lifted by 0.2 mm
 }
 
-// No cloth could be untangled, so the message advises nothing of that kind.
+// The scene has no cloth, so the message must not advise untangling.
 TEST(RigidBodies, ThatCrossAtTheStartAreRefusedWithAdviceForBodies) {
   try {
     const production::SceneSimulation simulation(

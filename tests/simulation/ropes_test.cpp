@@ -61,7 +61,7 @@ TEST(RopeRuns, AreDrawnInToTheLengthOfTheirKeys) {
   const std::vector<Vec3> x = support::run_scene(scene, {.judged = false}).back().cloths.at(0);
   double length = 0;
   for (std::size_t i = 1; i < x.size(); ++i) length += (x[i] - x[i - 1]).norm();
-  EXPECT_NEAR(length, 0.7, 1e-3);  // its weight stretches cotton by less than this
+  EXPECT_NEAR(length, 0.7, 1e-3);  // tolerance: more than the stretch of cotton by the rope's own weight
 }
 
 TEST(RopeRuns, HaveTheBendingStiffnessOfTheirLengthInTheMatrix) {
@@ -88,7 +88,7 @@ TEST(RopeRuns, HaveTheBendingStiffnessOfTheirLengthInTheMatrix) {
   EXPECT_EQ(after, blocks_at(1, fresh));
 }
 
-// Putting on a layer replaces the step loop. If the first step of the new loop fails, its state is the one that is
+// Putting on a layer replaces the step loop. If the first step of the new loop fails, the initial state of this loop is
 // shown and saved.
 TEST(RopeRuns, HaveTheLengthOfTheirTimeOnceALayerIsPutOn) {
   const model::Model model =

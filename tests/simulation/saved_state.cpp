@@ -13,7 +13,7 @@
 namespace weft::simulation::testing {
 namespace {
 
-/// Everything that a frame shows.
+/// All observable results of a frame.
 struct Seen {
   std::vector<Vec3> positions, velocities;
   frame::SnapshotPtr snapshot;
@@ -40,7 +40,7 @@ bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) 
   return a.frame == b.frame && a.time == b.time && std::ranges::equal(a.states, b.states, same);
 }
 
-// Name of the part that differs; empty if none does.
+// Compares two frames. Returns the name of the first part that differs, or an empty string.
 std::string compare(const Seen& expected, const Seen& came) {
   if (!same_bits<Vec3>(expected.positions, came.positions)) return "positions";
   if (!same_bits<Vec3>(expected.velocities, came.velocities)) return "velocities";
@@ -51,7 +51,7 @@ std::string compare(const Seen& expected, const Seen& came) {
   return "";
 }
 
-// Advances to the next frame, of the preroll or of the film.
+// Advances to the next frame, which may belong to the preroll.
 Seen next_frame(production::SceneSimulation& simulation) {
   Seen seen;
   if (simulation.snapshot()->frame < 0) {
@@ -74,7 +74,8 @@ std::string saved(const production::SceneSimulation& simulation) {
   return bytes;
 }
 
-// Continues from a state after frame k to the end and compares with the uninterrupted run.
+// Continues to the end from `state`, saved after frame k. Compares with `run`; returns the difference, or an empty
+// string.
 std::string go_on(const scene::Scene& scene, const std::string& state, int k, const std::vector<Seen>& run) {
   production::SceneSimulation simulation(scene);
   simulation.restore(state);

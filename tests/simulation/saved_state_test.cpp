@@ -40,7 +40,7 @@ shape = "plane"
 position = [0, 0, -0.05]
 )";
 
-// Two sheets rest on a tray that moves slowly: near pairs are found once for many frames.
+// Two sheets rest on a tray that moves slowly, so that one search for near pairs serves many frames.
 constexpr const char* kAtRest = R"(
 [time]
 duration = 1

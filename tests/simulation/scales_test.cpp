@@ -1,4 +1,5 @@
-// One scene at the scale of a doll, a person and a circus tent: steps, iterations and strain do not depend on it.
+// One scene at the scale of a doll, a person and a circus tent: steps, iterations and strain do not depend on the
+// scale.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -53,12 +53,14 @@ inline const std::vector<Vec3>& sheet_of(const frame::SnapshotPtr& snapshot) {
   return snapshot->states[0].positions;
 }
 
+/// Height of the lowest particle [m].
 inline double lowest(const std::vector<Vec3>& x) {
   double minimum = x.front().z();
   for (const Vec3& point : x) minimum = std::min(minimum, point.z());
   return minimum;
 }
 
+/// An obstacle without rotation and key frames.
 inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3& position = Vec3::Zero()) {
   scene::Obstacle made;
   made.name = name;

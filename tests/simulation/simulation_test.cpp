@@ -237,7 +237,7 @@ TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
     EXPECT_LT(report.solver_error, 1e-9) << "frame " << k + 1;
     rejected += report.rejected_steps;
   }
-  EXPECT_LE(rejected, 4);  // measured: 2; 69 if depths of tangents are accurate to 1e-3 of their force only
+  EXPECT_LE(rejected, 4);  // measured: 2; 69 if the depth at a contact's tangent is accurate to 1e-3 of the force only
 }
 
 class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {};
@@ -265,7 +265,8 @@ INSTANTIATE_TEST_SUITE_P(
                       [](scene::Search& s) { s.velocity_cones = true; },
                       [](scene::Search& s) { s.normal_cones = true; }, [](scene::Search& s) { s.reuse = false; }));
 
-// Kept closest points are those of an earlier step, so that positions differ in their last digits, and later in more.
+// With coherence, closest points of an earlier step are reused, so that positions differ, at first in their last
+// digits.
 TEST(Simulation, KeptClosestPointsFindTheFirstContactsThatTheDefaultFindsAndKeepTheSheetApart) {
   scene::Scene scene = sheet_on_ball();
   production::SceneSimulation simulation(scene);
@@ -315,7 +316,7 @@ std::uint64_t fingerprint(const frame::FrameSnapshot& snapshot) {
 }
 
 TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
-  // More particles than the grain size of the force loop, and already at the ball.
+  // More particles than the grain size of the force loop, and contact with the ball from the start.
   scene::Scene scene = sheet_on_ball();
   scene.cloths[0].particles_weft = scene.cloths[0].particles_warp = 48;
   std::vector<std::vector<std::uint64_t>> runs;

@@ -23,7 +23,7 @@ scene::Scene falling_sheet(scene::Integrator integrator, double tolerance) {
   return scene;
 }
 
-// How much lower the sheet is than after free fall, after this number of frames [m].
+// How much lower than after free fall the sheet is after this number of frames [m].
 double ahead_of_free_fall(const production::SceneSimulation& simulation, int frames) {
   const double t = frames / 25.0;
   return 2 - 0.5 * 9.81 * t * t - testing::sheet_of(simulation.snapshot())[7].z();
@@ -183,7 +183,7 @@ scene::Scene sheet_on_block() {
   return scene;
 }
 
-// A sheet hangs flat from its upper edge, also with two steps per frame.
+// A sheet hangs flat from its upper edge; two steps per frame.
 scene::Scene sheet_that_hangs() {
   scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
   scene.time.duration = 4;
@@ -253,8 +253,8 @@ TEST(Rest, EndsWithTheFrameInWhichSomethingMovesOrIsLetGo) {
   EXPECT_EQ(steps_of(released, 49).back(), 1);
   const double hung_at = mean_height(released);
   EXPECT_EQ(steps_of(released, 2), std::vector<int>(2, 2));
-  // Euler over the three steps of 20 ms that end after the release: 6 g h². Before, the sheet creeps by 0.4 mm/s; one
-  // step more or less would change the fall by 12 mm.
+  // In the three steps of 20 ms that end after the release, implicit Euler falls by 6 g h². Before, the sheet creeps by
+  // 0.4 mm/s. One step more or less would change the fall by 12 mm.
   EXPECT_NEAR(hung_at - mean_height(released), 6 * 9.81 * 0.02 * 0.02, 2e-4);
 }
 
@@ -289,8 +289,9 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
   EXPECT_EQ(shaken.advance().steps, 2);
 }
 
-// A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction alternates by some micrometres
-// per second. Shorter steps, even the shortest, leave as much, so the visibility threshold must accept it.
+// A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction leaves velocities of some
+// micrometres per second whose sign alternates. Even the shortest steps leave as much, so the visibility threshold must
+// accept them.
 TEST(StepThatStalls, LeavesWhatNobodySees) {
   production::SceneSimulation simulation(support::scene_of_text(R"(
 time = { step = 0.002, integrator = 'bdf2' }
@@ -326,7 +327,7 @@ TEST(Rest, IsNotForMethodsThatKeepSmallMotionNorForGusts) {
     EXPECT_EQ(steps_of(simulation, 3), std::vector<int>(3, 2));
     scene.time.integrator = scene::Integrator::implicit_euler;
     production::SceneSimulation euler(scene);
-    EXPECT_EQ(steps_of(euler, 3), (std::vector<int>{2, 1, 1}));  // at first it is not known to rest
+    EXPECT_EQ(steps_of(euler, 3), (std::vector<int>{2, 1, 1}));  // the first frame is not yet known to rest
     scene.physics.air_density = 1.2;
     scene.physics.gusts.speed = 0.001;
     production::SceneSimulation blown(scene);

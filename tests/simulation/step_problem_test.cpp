@@ -152,7 +152,7 @@ TEST_F(StepProblems, PutTheRowsOfAClothTogetherAnewWhereItHasMovedAndAllInEachSt
   const std::vector<Mat3> start = blocks(used);
   const auto version = [&](std::size_t sheet) { return used.memory().system.blocks[sheet].version; };
   const auto first = version(0), second = version(1);
-  linearise(used, moved(1, 0.004));  // the limit is 0.005
+  linearise(used, moved(1, 0.004));  // below 0.005 spacings, the limit for keeping blocks
   EXPECT_EQ(blocks(used), start);
   const std::vector<Vec3> far = moved(1, 0.5);
   linearise(used, far);

@@ -1,4 +1,4 @@
-// Cloth with locking threads: what pulls at it, and the warnings if the limit cannot hold.
+// Cloth with locking threads under impacts and pulls, and the warnings if its stretch limit cannot hold.
 #include <gtest/gtest.h>
 
 #include "film/production/scene_simulation.hpp"
@@ -81,8 +81,8 @@ double max_stretch_ratio(const scene::Scene& scene, std::vector<std::string>& se
   return ratio;
 }
 
-// Measured for 47 values of gravity from 9.6 to 10 m/s²: one run stretches to 1.1003 times the limit, in a step that
-// pushes it out of a contact; all others stretch to at most 0.82 times the limit.
+// Measured for 47 values of gravity from 9.6 to 10 m/s²: the sheet stretches to at most 0.82 times the limit; in one
+// run to 1.1003 times the limit, in a step that pushes the sheet out of a contact.
 TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
   std::vector<std::string> seen_warnings;
   int beyond = 0;
@@ -105,8 +105,9 @@ TEST(StretchLimitInAScene, GoesOnFromASavedState) {
   EXPECT_EQ(continued.difference, "");
 }
 
-// Within one step of 10 ms the sheet cannot slip past the plate: it would stretch to 23 and 22 times the limit. Shorter
-// steps keep it to 3.5 and 4.9 times the limit, and this in single steps only (measured).
+// Within one step of 10 ms the sheet cannot slip past the plate: for the two values of gravity, it would stretch to 23
+// and 22 times the limit. Shorter steps keep it to 3.5 and 4.9 times the limit, and exceed the limit in single steps
+// only (measured).
 TEST(StretchLimitInAScene, IsKeptBeforeAPlateThatComesAt30MetresASecond) {
   std::vector<std::string> seen_warnings;
   for (const char* gravity : {"-9.81", "-9.82"})

@@ -26,6 +26,7 @@ inline scene::Scene swinging_sheet(int particles, double stretch, double shear, 
   return scene;
 }
 
+/// Final positions [m] and counts of a run.
 struct SwingEnd {
   std::vector<Vec3> x;
   double estimate = 0;  ///< sum of the estimated local errors [m]

@@ -17,8 +17,8 @@ int order_of(scene::Integrator integrator) {
   return integrator == scene::Integrator::implicit_euler ? 1 : 2;
 }
 
-// Moderately stiff: membrane waves have at most 2 / l √(2k/ρ) = 380 rad/s, and all steps here resolve those that are
-// excited. The free edge falls by 0.4 m in 0.3 s.
+// Moderately stiff: membrane waves have at most 2 / l √(2k/ρ) = 380 rad/s with cells of width l, and all steps here
+// resolve the waves that are excited. The free edge falls by 0.4 m in 0.3 s.
 class SwingingSheet : public ::testing::Test {
  protected:
   static constexpr int kFrames = 6;  // at 20 frames per second
@@ -93,7 +93,7 @@ TEST_F(SwingingSheet, KeepsTheSecondOrderInAir) {
     const double coarse = rms_distance(end(integrator, 400), exact), fine = rms_distance(end(integrator, 800), exact);
     std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator).c_str(), fine,
                 std::log2(coarse / fine));
-    // Measured order: 2.01 and 2.00. If drag were the mean over the step, 1.1, and the error 9 to 34 times as large.
+    // Measured order: 2.01 and 2.00. With drag as a mean over the step: 1.1, and an error 9 to 34 times as large.
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name_of(integrator);
   }
 }

@@ -131,7 +131,7 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
       << made.cloths[0].rest_from;
   double area = 0;
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t) area += mesh::rest_area(cloth.sheet, t);
-  EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // to the single precision of files in assimp
+  EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // tolerance: assimp reads files in single precision
   // The faces of the file determine the numbering of vertices. The test therefore takes the distance from each place to
   // the nearest place of the earlier run.
   const auto off = [&] {

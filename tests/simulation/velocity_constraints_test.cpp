@@ -145,7 +145,7 @@ TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
   }
 }
 
-// The same for a tray that starts with an acceleration [m/s²]. Its key frames are piecewise linear.
+// A tray that starts with a constant acceleration [m/s²], by piecewise linear key frames.
 TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
   constexpr double kMu = 0.3;
   for (double acceleration : {0.9 * kMu * kGravity, 1.1 * kMu * kGravity, 2 * kMu * kGravity}) {
@@ -203,7 +203,7 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
     scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
     scene.time.duration = 6;
     scene.time.step = step;
-    int steps = 0, iterations = 0;  // at rest
+    int steps = 0, iterations = 0;  // in frames at rest
     for (const auto& frame : support::run_scene(scene)) {
       EXPECT_EQ(frame.pairs, 0u) << frame.between << " in frame " << frame.report.frame << " at " << step << " s";
       if (frame.report.frame >= 120) {
@@ -214,7 +214,8 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
         iterations += frame.report.newton_iterations;
       }
     }
-    // Measured per step: 2.1 or 3.2, depending on the remaining fold; 13 at 40 ms if walls were not kept between steps.
+    // Measured per step: 2.1 or 3.2, depending on the remaining fold; 13 at 40 ms if steps did not start with the last
+    // walls.
     EXPECT_LT(iterations, 4 * steps) << "at " << step << " s";
   }
 }

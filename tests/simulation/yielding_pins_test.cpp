@@ -15,7 +15,7 @@
 namespace weft::simulation {
 namespace {
 
-// A sheet hangs by its upper edge, which moves as `pin` says.
+// A sheet hangs by its upper edge, which moves by the keys `pin`.
 std::string hanging(double duration, const std::string& pin, const std::string& more) {
   return "[time]\nduration = " + std::to_string(duration) +
          "\n[[cloth]]\nname = 'sheet'\nsize = [0.4, 0.4]\nparticles = [13, 13]\nposition = [0, 0, 0.6]\n"
@@ -23,8 +23,8 @@ std::string hanging(double duration, const std::string& pin, const std::string& 
          pin + "\n" + more;
 }
 
-// At 1 to 1.5 m/s it is chaotic whether the crushed edge curls and hooks (2 of 9 runs). At 1.3 m/s the edge returned in
-// all of four runs.
+// At speeds from 1 to 1.5 m/s the crushed edge curls and hooks on the sheet in 2 of 9 runs, chaotically. At 1.3 m/s it
+// returned in four of four runs.
 const std::string kIntoTheFloor = hanging(
     1.9,
     "keys = [{ time = 0 }, { time = 0.7, offset = [0, 0, -0.9] }, { time = 0.9 }, { time = 1.4, offset = [0, 0, 0] }]",
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(By, ObstructedPin,
                                            Obstructed{"ram", kBeforeARam}),
                          [](const auto& obstructed) { return std::string(obstructed.param.name); });
 
-// Pins move the lowest edge of a sheet down through what is below, and back.
+// Pins move the lowest edge of a sheet down through the cloth of `more`, and back up.
 std::string hem_into(const std::string& more) {
   return "[time]\nduration = 2.4\n[[cloth]]\nname = 'hem'\nsize = [0.3, 0.3]\nparticles = [13, 13]\nposition = [0, 0, "
          "0.95]\nmaterial = { fabric = 'cotton' }\nrotation = [-90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, "
@@ -156,9 +156,9 @@ INSTANTIATE_TEST_SUITE_P(SlowOn, PressingPin,
                                            Obstructed{"layers", kIntoTwoLayers}),
                          name_of_obstructed);
 
-// The edge starts 0.15 m above the floor, turns by 90 degrees, half of it below the floor, and turns back. Threads of
-// particles that have returned pull at the last corner. With only its fraction of the pin's force, the corner would
-// stay 1 mm off.
+// The edge starts 0.15 m above the floor, turns by 90 degrees, half of it below the floor, and turns back. Threads to
+// particles that have already returned pull at the last corner. If only its own fraction of the pin's force acted, the
+// corner would stay 1 mm from its target.
 TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 2\n[[cloth]]\nname = 'sheet'\nsize = [0.5, 0.5]\nparticles = [21, 21]\n"
@@ -171,14 +171,15 @@ TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   EXPECT_LT((frames.back().cloths[0].front() - Vec3(-0.25, -0.25, 0.15)).norm(), 1e-12);
 }
 
-// The edge leaves the box at 1 m/s; before it is free, after half a second, it lags by up to 0.2 m.
+// The target of the edge leaves the box at 1 m/s. The edge follows half a second later; until then it lags by up to 0.2
+// m.
 TEST(LaggingPin, IsHeldAgainWhileItMovesOn) {
   const scene::Scene scene = support::scene_of_text(
       hanging(1, "keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.4, 0] }, { time = 1.1, offset = [0, -0.4, 0] }]",
               "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\nposition = [0, 0.4, 0.6]\n"));
   const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
   EXPECT_EQ(frames[10].report.lagging_particles, 13);
-  // Frames from a quarter of a second after the edge has left the box; it moves by 50 mm per frame.
+  // Frames from a quarter of a second after the target has left the box. The target moves by 40 mm per frame.
   for (std::size_t k = 19; k < frames.size(); ++k) {
     EXPECT_EQ(frames[k].report.lagging_particles, 0) << "frame " << k;
     const double y = 0.4 - (static_cast<double>(k) / 25 - 0.3);
@@ -342,8 +343,8 @@ TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
     return production::find_warnings(
         support::scene_of_text(hanging(1, "keys = [{ time = 0 }, { time = 1, " + upper_keys + " }]", more)));
   };
-  // The pins are 0.4 m apart and separate by 0.19 m. That is 10 % after a fifth of the time, found at the next of 100
-  // samples.
+  // The pins are 0.4 m apart and separate by 0.19 m. A fifth of the time suffices for 10 %; the next of 100 samples
+  // shows it.
   const auto apart = of("offset = [0, 0, 0.19]", lower);
   ASSERT_EQ(apart.size(), 1u);
   EXPECT_EQ(
