@@ -96,6 +96,7 @@ inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
   return full;
 }
 
+/// The components of all vectors in one column.
 inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
   return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
 }
@@ -154,7 +155,7 @@ std::vector<Vec3> vectors(const std::vector<Quad>& x) {
   return result;
 }
 
-// Three blocks of twenty particles, coupled only by contacts.
+/// Three blocks of twenty particles, coupled only by contacts.
 inline LinearSystem system_of_parts(Random& random) {
   constexpr Index kRows = 60, kPart = 20;
   LinearSystem system = testing::random_system(kRows, 30, random);

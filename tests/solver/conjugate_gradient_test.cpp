@@ -348,7 +348,7 @@ TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
       const double allowed[] = {absolute};
       const LinearGoal goal = absolute > 0 ? LinearGoal{0, allowed} : LinearGoal{1e-10};
       EXPECT_TRUE(cg.solve(b, goal, 5000, x).converged) << stiffness;
-      // Error of a solution of norm 10.
+      // Tolerance for a solution of norm 10.
       EXPECT_LT((testing::flat(x) - expected).norm(), 1e-7) << stiffness;
     }
   }
@@ -434,7 +434,7 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsThanThereAreEigenvalues) {
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {1e-8}, 1000, x);
   EXPECT_TRUE(report.converged);
-  // Conjugate gradients know the error of an iterate only a fifth of all iterations later.
+  // The error estimate of an iterate becomes known about a fifth of all iterations later.
   EXPECT_LE(report.iterations, kRows + kRows / 4);
 }
 

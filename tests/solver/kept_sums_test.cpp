@@ -14,7 +14,7 @@ using testing::norm;
 using testing::Random;
 using testing::system_of_parts;
 
-// Sums of an earlier matrix must not outlive the step, because a run that resumes after it does not have them.
+// Sums of an earlier matrix must not be used after the step, because a run that resumes after the step lacks them.
 TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
   Random random(37);
   LinearSystem system = system_of_parts(random);
@@ -29,7 +29,7 @@ TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
     cg.solve(b, {relative_error}, 3, x);
     return x;
   };
-  for (const double norm_weights : {1e-9, 1.0}) {  // in double only, and in both precisions
+  for (const double norm_weights : {1e-9, 1.0}) {  // 1e-9: in double precision only; 1: in both precisions
     system.norm_weights.assign(b.size(), norm_weights);
     ConjugateGradient used;
     used.prepare(system);

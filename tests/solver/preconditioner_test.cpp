@@ -1,4 +1,4 @@
-// Compares the preconditioner with the sum stated in its header, made of dense matrices.
+// Compares the preconditioner with the sum stated in preconditioner.hpp, computed with dense matrices.
 #include "physics/solver/preconditioner.hpp"
 
 #include <gtest/gtest.h>
@@ -151,7 +151,7 @@ TEST(Preconditioner, IsTheSumOverLevelsWithContactsInAll) {
     }
 }
 
-// A cloth of many small pieces that are far from each other has many levels, of which most merge nothing.
+// A cloth of many small pieces far from each other has many levels; most of these levels merge nothing.
 TEST(Preconditioner, IsTheSumOverAsManyLevelsAsAClothCanHave) {
   Random random(53);
   LinearSystem system = system_with_contacts(random);
@@ -178,7 +178,7 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm());
 }
 
-// A block whose version and terms are unchanged keeps its set-up; the result equals a new set-up, to the bit.
+// A block whose version and terms are unchanged keeps its set-up. Results equal those of a new set-up, to the bit.
 TEST(Preconditioner, IsAsIfSetUpAnewWhateverWasKept) {
   Random random(43);
   LinearSystem system;
