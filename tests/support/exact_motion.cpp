@@ -19,11 +19,11 @@
 #include <stdexcept>
 #include <vector>
 
-// If two simplices are apart at t = 0, their first contact is between a vertex and a face or between two edges. If
-// faces or edges are degenerate, or edges are parallel, it may be between a vertex and an edge or between two vertices.
-// Each contact is a set of conditions e(t) = 0, g(t) ≥ 0, h(t) > 0 on polynomials of at most fourth degree. Interval
-// arithmetic tests them first; integer arithmetic decides those that remain uncertain. If the simplices cross from the
-// start, the contact is found at t = 0.
+// If two simplices are apart at t = 0, their first contact is between a vertex and a face or between two edges. It may
+// also be between a vertex and an edge or between two vertices if faces or edges are degenerate or edges are parallel.
+// Each contact is a set of conditions on polynomials of at most fourth degree: some vanish, some are ≥ 0, one is > 0.
+// Interval arithmetic tests the conditions first; integer arithmetic decides those that remain uncertain. If the
+// simplices cross from the start, the contact is found at t = 0.
 namespace weft::support {
 namespace {
 
@@ -327,9 +327,9 @@ Roots::Polynomial_1 in_z(const Polynomial<Integer>& p) {
   return {p.c.begin(), p.c.begin() + static_cast<std::ptrdiff_t>(p.degree) + 1};
 }
 
-// A time at which all conditions hold. If all of `zero` vanish identically, contact exists at t = 0, or it begins where
-// another condition reaches zero. The latter is a contact of simpler features, which are tested as well, so it is not
-// sought here.
+// A time at which all conditions hold. If all of `zero` vanish identically, contact exists at t = 0, or begins where
+// another condition reaches zero. The latter is a contact of simpler features. Since these are tested as well, this
+// function does not look for it.
 std::optional<double> decide(const Conditions<Integer>& k) {
   if (k.impossible) return {};
   if (fulfilled(k, [](const auto& p) { return sure_sign(p.at_start()); })) return 0.0;

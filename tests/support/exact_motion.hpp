@@ -17,6 +17,7 @@ struct MovingSimplex {
   MovingSimplex edge_opposite(int corner) const;
 };
 
+/// Result of a test for contact.
 struct Contact {
   bool found = false;
   double time = -1;            ///< time of a contact if one is found, not always the first; rounded

@@ -269,8 +269,8 @@ MotionQuery fast_query(Random& random) {
 MotionQuery grazing_rotation_query(Random& random) {
   const double gap = random.heads() ? 0 : random.decade(-9, -1);
   MotionQuery q = close_query(random, gap);
-  // a rotates about a point near one of its corners. At `fraction` of the motion it comes close to its position beside
-  // b; if `fraction` is negative, the motion starts beyond this position.
+  // Triangle a rotates about a point near one of its corners. At `fraction` of the motion it comes close to its
+  // position beside b; if `fraction` is negative, the motion starts beyond this position.
   const Vec3 centre = q.a.t0[random.whole(0, 2)] + random.vector(random.decade(-3, 0));
   const Vec3 axis = random.unit();
   const double angle = random.decade(-3, 0) * std::numbers::pi, fraction = random.between(-0.2, 1);

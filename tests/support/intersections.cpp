@@ -19,7 +19,7 @@ using Point = Kernel::Point_3;
 using Segment = Kernel::Segment_3;
 using Triangle = Kernel::Triangle_3;
 
-/// A face with the data needed to judge it.
+/// A face with the data that intersection tests need.
 struct Face {
   JudgedFace id;
   std::array<Index, 3> vertices;

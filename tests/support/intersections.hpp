@@ -24,7 +24,7 @@ struct JudgedObject {
       {};  ///< per face: 1 if cloth may pass through it, so that it is not judged; empty: all are judged
 };
 
-/// A face of an object of the list.
+/// A face, by the indices of its object in the list and of its triangle in the object.
 struct JudgedFace {
   std::size_t object = 0;
   Index face = 0;
@@ -37,17 +37,18 @@ struct IntersectingPair {
   auto operator<=>(const IntersectingPair&) const = default;
 };
 
+/// Result of judge().
 struct Judgement {
   std::vector<IntersectingPair> pairs;  ///< sorted, each pair once
   std::vector<JudgedFace> degenerate;   ///< triangles without area and pieces of rope without length: not judged
 };
 
-/// A face (a, b, b) is a piece of rope: the segment between its ends.
-///
 /// Finds all intersecting pairs of cloth with the same cloth, another cloth or an obstacle. Exact for the given
-/// doubles; touching counts. Skips faces of one object that share two or three vertices, since these always meet. If
-/// faces share one vertex, tests the edge opposite to it in each against the other face. Throws std::invalid_argument
-/// for positions that are not finite and for vertices that do not exist.
+/// doubles; touching counts. A face (a, b, b) is a piece of rope: the segment from a to b.
+///
+/// Skips faces of one object that share two or three vertices, since these always meet. If faces share one vertex,
+/// tests the edge opposite to it in each against the other face. Throws std::invalid_argument for positions that are
+/// not finite and for vertices that do not exist.
 Judgement judge(std::span<const JudgedObject> objects);
 
 /// The objects of a snapshot, which must outlive them. Characters are obstacles; invisible objects are judged too.

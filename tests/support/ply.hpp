@@ -1,4 +1,4 @@
-// Reads files that `--meshes` writes.
+// Reads PLY files that `weft run --meshes` writes.
 #pragma once
 
 #include <array>

@@ -24,6 +24,7 @@ struct MeasuredFrame {
   std::vector<std::vector<Vec3>> cloths;  ///< positions [m], one list per cloth
 };
 
+/// The frames of a scene to simulate, to judge and to keep.
 struct RunPlan {
   int end = -1;        ///< frame after the last one; negative: the whole scene
   int judge_from = 0;  ///< first frame that is judged
