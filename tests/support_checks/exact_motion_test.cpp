@@ -113,14 +113,16 @@ TEST(ExactMotion, TheWholeWayThroughCounts) {
 }
 
 TEST(ExactMotion, GrazingIsContactAndPassingByIsNot) {
-  // With s = t − 1/2: the face has the height s x, the corner is at x = 1 + s, z = s − depth: below it by depth + s².
+  // With s = t − 1/2: the face has the height s x; the corner, at x = 1 + s and z = s − depth, is below it by depth +
+  // s².
   const auto corner_at = [](double s, double depth) -> Corners {
     return {Vec3(1 + s, 1, s - depth), Vec3(1 + s, 1, s + 2), Vec3(2 + s, 1, s + 3)};
   };
   const auto face_at = [](double s) -> Corners { return {Vec3(0, 0, 0), Vec3(4, 0, 4 * s), Vec3(0, 4, 0)}; };
   const MovingSimplex face{3, face_at(-0.5), face_at(0.5)};
   const auto touches_from_below = [&](double depth) {
-    // The rest of the triangle is below the face: the corner must come from the side where s² leads away.
+    // Here the triangle hangs below the face. Its corner, at the distance depth + s², may touch the face from below
+    // only.
     MovingSimplex low{3, corner_at(-0.5, depth), corner_at(0.5, depth)};
     for (auto* x : {&low.t0, &low.t1}) {
       (*x)[1].z() -= 6;
@@ -210,7 +212,7 @@ TEST(ExactMotion, AgreesWithStandingTrianglesAtSampledTimes) {
       const Contact contact = find_contact(a, b);
       ++(contact.found ? met : apart);
       in_integers += contact.integers_used;
-      // Finds every intersection at sampled times. Times k/32 keep the coordinates exact.
+      // The test must find every intersection at sampled times. Times k/32 keep the coordinates exact.
       for (int k = 0; k <= 32 && !contact.found; ++k)
         ASSERT_FALSE(intersect_at(a, b, k / 32.0)) << "query " << query << " at " << k / 32.0;
       // A contact that is found is real: at its time the triangles intersect, or are apart by rounding only (1e-7 by
