@@ -113,7 +113,7 @@ int main(int count, char** arguments) try {
   }
   const double spacing = std::stod(arguments[2]);
   const garment::Pattern pattern = garment::load_pattern(arguments[1], arguments[1]);
-  // Only the flat panels are drawn, so any wearer will do.
+  // Only the flat panels are drawn. They do not depend on the wearer, so the mannequin of the default size serves.
   scene::Scene scene;
   scene.characters.emplace_back().source = scene::Mannequin{};
   environment::Wearers wearers(scene);
