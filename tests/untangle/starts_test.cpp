@@ -214,7 +214,7 @@ TEST(UntangledStart, HasTheSameBitsForAnyNumberOfThreads) {
   for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(one->states[s].positions, four->states[s].positions);
 }
 
-// Weft, not the scene, places their panels.
+// Weft places the panels of a pattern, not the scene, so the scene cannot prevent intersections.
 TEST(UntangledStart, IsTheDefaultOfPatterns) {
   scene::Scene scene = empty_scene();
   scene::Cloth pillow = sheet("pillow", {0, 0, 1});
