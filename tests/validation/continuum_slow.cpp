@@ -134,7 +134,8 @@ bool on_border(const Vec2& uv, int axis) {
   return uv[axis] < 1e-9 || uv[axis] > 1 - 1e-9;
 }
 
-/// Relative error of the compliance of a sheet held along all sides, loaded for a motion of d sin πu sin πv.
+/// Relative error of the compliance of a sheet held along all sides, under the load that displaces it by d sin πu sin
+/// πv.
 double membrane_error(const Make& make, int cells, const Vec2& d) {
   const Sample sample = make(cells, true);
   Statics statics(sample, 0, 2);
@@ -187,7 +188,7 @@ double cantilever_error(const Sample& sample, double clamp, const std::vector<ch
   return dot(loads, statics.solve(loads)) / dot(loads, exact) - 1;
 }
 
-/// Holds the particles up to `clamp` along weft.
+/// Marks the particles up to `clamp` along weft as held.
 std::vector<char> held_up_to(const Sample& sample, double clamp) {
   std::vector<char> held;
   for (const Vec2& uv : sample.mesh.uv) held.push_back(uv.x() <= clamp + 1e-9);
@@ -217,7 +218,7 @@ double clamped_triangles_error(const testing::Meshing& meshing, int cells) {
     sample.mesh.positions[k].x() += clamp - sample.mesh.uv[k].x();
     sample.mesh.uv[k].x() = clamp;
   }
-  // Removes triangles that this has flattened.
+  // Removes triangles that the moved column has flattened.
   std::vector<Vec2> places;
   for (const Vec2& uv : sample.mesh.uv)
     places.push_back(uv.cwiseProduct(Vec2(static_cast<double>(columns), static_cast<double>(rows))));
@@ -229,7 +230,7 @@ double clamped_triangles_error(const testing::Meshing& meshing, int cells) {
   return cantilever_error(sample, clamp, held);
 }
 
-/// Particles that bending at the border can affect: three rows.
+/// Marks the particles that bending at the border can affect: three rows.
 std::vector<char> near_border(const Sample& sample) {
   std::vector<char> near(sample.areas.size());
   for (std::size_t i = 0; i < near.size(); ++i)

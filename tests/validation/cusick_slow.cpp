@@ -48,8 +48,8 @@ class Cusick : public support::TestFolder {
   }
 };
 
-// A plate with ν = 0, clamped at a radius of 9 cm and free at 15 cm, sags at its rim by 1.940715e-6 m⁴ q / B, from the
-// radial solution A + B r² + C ln r + D r² ln r + q r⁴ / 64 B.
+// A plate with ν = 0, clamped at a radius of 9 cm and free at 15 cm, sags at its rim by 1.940715e-6 m⁴ q / B under the
+// load q [N/m²], from the radial solution A + B r² + C ln r + D r² ln r + q r⁴ / 64 B.
 TEST_F(Cusick, PlatesClampAtTheirEdge) {
   constexpr double kSag = 1.940715e-6;
   for (int free : {8, 12, 16}) {
@@ -63,7 +63,7 @@ TEST_F(Cusick, PlatesClampAtTheirEdge) {
       if (x.head<2>().norm() > kSpecimenRadius - 1e-6) sag -= x.z(), ++count;
     sag *= material.bend / (count * material.density * 9.81);
     std::printf("%d rings: %.3f %%\n", free, 100 * (sag / kSag - 1));
-    // Second order: 2.1 % with eight rings.
+    // The error falls with the square of the number of rings: 2.1 % with eight.
     EXPECT_NEAR(free * free * (sag / kSag - 1), 1.36, 0.05);
   }
 }

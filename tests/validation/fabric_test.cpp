@@ -27,7 +27,7 @@ TEST(StripOfAFabric, StretchesAtTheLoadsOfFastAndKesAsThoseSay) {
     const double mean = 0.5 * (m.extension_weft.value + m.extension_warp.value);
     EXPECT_NEAR(0.5 * (weft + warp), mean, 0.03 * mean) << name;
     const double worn = extension(fabric.material, Direction::warp, scene::kWornLoad);
-    // Its own weight, half of which pulls at the middle, adds up to 2.5 %.
+    // The strip's own weight, half of which pulls at the middle, adds up to 2.5 %.
     EXPECT_NEAR(worn, scene::kWornLoad / fabric.material.stretch_warp, 0.03 * worn) << name;
   }
 }

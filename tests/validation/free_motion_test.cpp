@@ -72,7 +72,7 @@ TEST_P(FreeFall, LeavesAFlatSheetFlatByEveryMethodAtDefaultSettings) {
     for (int k = 1; k <= 25; ++k) simulation.advance();
     const std::vector<Vec3>& end = testing::sheet_of(simulation.snapshot());
     const double fallen = end[0].z() - start[0].z();
-    // Residuals relative to the weight would allow 0.1 to 0.5 m.
+    // A solver tolerance relative to the weight would allow deviations of 0.1 to 0.5 m.
     for (std::size_t i = 0; i < end.size(); ++i)
       ASSERT_LT((end[i] - start[i] - Vec3(0, 0, fallen)).norm(), 1e-6) << name_of(integrator) << ' ' << i;
     // Euler's method is ahead by half a step.

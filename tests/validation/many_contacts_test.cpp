@@ -1,5 +1,5 @@
 // Scenes dominated by contact: layered sheets, a heap of ribbons, a belt, a wrung tube. Meshes are coarse, so that runs
-// are quick; each scene moves as far as a fine one.
+// are quick; the motions are as large as with a fine mesh.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -65,8 +65,8 @@ TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
 }
 
 // At 2.7 m/s, unchanged velocity leads through the wall in a step of 10 ms, and the leading edge comes near vertices of
-// facets ahead. (Pushed apart along the line between closest points of the start, the patch is thrown into the air, and
-// rises to 0.72; if those vertices also act at full stiffness, to 0.54.)
+// facets ahead. (If contacts pushed along the line between the closest points of the start, the patch would fly into
+// the air and rise to 0.72 of its drop; to 0.54, if those vertices also acted at full stiffness.)
 TEST(SlidingContact, RisesAgainInAHalfPipeIfItIsFast) {
   double start = 0, bottom = 1, rise = 0;
   run_scene(scene_of_text(half_pipe("bdf2", 75)), {.judged = false, .keep_positions = true},

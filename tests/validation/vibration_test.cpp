@@ -113,7 +113,7 @@ TEST_P(Vibration, OfAHangingChain) {
   std::vector<double> exact;
   for (double zero : {2.40483, 5.52008, 8.65373})  // zeros of the Bessel function J0
     exact.push_back(0.5 * zero * std::sqrt(9.81 / 0.5));
-  // Each mode has a slightly faster twin in which the ribbon twists, driven by the same tension.
+  // Each mode has a slightly faster counterpart in which the ribbon twists, driven by the same tension.
   std::vector<Mode> sways = model.modes(model.free_along({1}), 6);
   std::erase_if(sways, [](const Mode& mode) { return mode.share < 0.02; });
   expect("chain", sways, exact);
@@ -151,7 +151,7 @@ TEST(VibrationOfARun, HasThePhaseOfItsModes) {
     scene.solver.linear_tolerance = 1e-3;
     production::SceneSimulation simulation(scene);
     double before = 0;
-    std::vector<double> ups;  // [frames]
+    std::vector<double> ups;  // times of upward zero crossings [frames]
     for (int k = 1; ups.size() < 11 && k < 1300; ++k) {
       simulation.advance();
       double amplitude = 0;
