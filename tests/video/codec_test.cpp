@@ -81,7 +81,7 @@ TEST_F(CodecTest, SamePicturesGiveTheSameBytesInEveryKindOfFile) {
   }
 }
 
-// With several equal pictures, the encoder shows some frames after others that it encodes earlier.
+// From several equal pictures, the encoder makes frames that the file stores out of their order in time.
 TEST_F(CodecTest, FramesOutOfOrderAreAtTheirTimesInEveryKindOfFile) {
   for (const char* name : {"cut.mp4", "cut.mov", "cut.mkv"}) {
     write((folder_ / name), Codec::h264, std::vector(12, ramp()));

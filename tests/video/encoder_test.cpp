@@ -235,7 +235,7 @@ TEST_F(EncoderTest, TheFinalNameAppearsOnlyWhenFinished) {
 }
 
 TEST_F(EncoderTest, WhatIsOnDiskBeforeTheEndCanBePlayed) {
-  // A killed process leaves its temporary file as it is in the middle of the run.
+  // At this moment the temporary file is as a killed process would leave it.
   Encoder encoder(folder_ / "a.mp4", small());
   for (int k = 0; k < 100; ++k) encoder.add(numbered(k));
   ASSERT_EQ(files().size(), 1u);
