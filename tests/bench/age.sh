@@ -1,6 +1,6 @@
 #!/bin/sh
-# age.sh: prints, for each file of measured/, how many commits have changed the program's code since the commit it was
-# measured with. Needs the history of the repository.
+# age.sh: prints, for each file of measured/, how many commits have changed the measured code since the commit that the
+# file names. Needs the history of the repository.
 set -eu
 cd "$(dirname "$0")/measured"
 for file in *.md; do
@@ -12,7 +12,7 @@ for file in *.md; do
     build_time.md) modules= ;;
     *) modules="simulation solver collision integrator forces bench" ;;
   esac
-  code=${modules:+$(for module in $modules; do echo "src/$module src/*/$module"; done)}  # before the rooms, and in them
+  code=${modules:+$(for module in $modules; do echo "src/$module src/*/$module"; done)}  # both depths in the history
   if count=$(cd ../../.. && git rev-list --count "$commit"..HEAD -- ${code:-src} 2>/dev/null); then
     echo "$file: commit $commit, $count later changes of ${modules:-src}"
   else

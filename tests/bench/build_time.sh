@@ -1,11 +1,11 @@
 #!/bin/sh
-# build_time.sh BUILD: prints how long each part of the program takes to compile, as Markdown, from the log that ninja
-# keeps. Sums the seconds of jobs: on a busy machine only the ratios are meaningful.
+# build_time.sh BUILD: prints how long each part of the program takes to compile, as Markdown, from ninja's log. Sums
+# wall-clock seconds of jobs: on a busy machine only ratios are meaningful.
 set -eu
 awk -F '\t' '
   function name_of(path) { split(path, part, "/"); name = part[3]; sub(/^weft_/, "", name); sub(/\.dir$/, "", name); return name }
   $4 ~ /^src\/CMakeFiles\/weft_[a-z_]+\.dir\/.*\.(o|gch)$/ {
-    # If a unit was compiled again, its first time counts.
+    # If a unit was compiled more than once, only its first time counts.
     if ($4 in seconds) next
     units[name_of($4)]++
     seconds[$4] = ($2 - $1) / 1000

@@ -151,7 +151,7 @@ void print_row(const std::string& name, const std::vector<Costs>& runs, int step
              runs[0].found / static_cast<std::size_t>(steps));
 }
 
-/// Counts the pairs of every second frame that normal cones skip, and how many of these are within the detection
+/// Counts the pairs that normal cones skip, in every second frame, and how many of these are within the detection
 /// distance.
 void count_skipped_pairs(const Recording& recording, double reach) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
@@ -211,7 +211,7 @@ void replay(const std::filesystem::path& meshes, int first_frame, int frames, do
       "|\n|---|---|---|---|---|---|---|\n");
   constexpr int kRuns = 3;
   const auto all = settings();
-  // Runs of the options alternate, so that a busy machine slows all of them alike.
+  // Alternates the runs of the options, so that other load on the machine slows all options alike.
   std::vector<std::vector<Costs>> costs(all.size());
   for (int r = 0; r < kRuns; ++r)
     for (std::size_t i = 0; i < all.size(); ++i) costs[i].push_back(run(recording, all[i].second, reach));

@@ -20,8 +20,8 @@ using collision::testing::folded_sheet;
 using collision::testing::random_vec;
 using collision::testing::TestMesh;
 
-/// A sheet wound four times around a ball of radius 0.2 m, 2 mm between turns, from 60° below to 60° above the equator,
-/// with 91,760 triangles and edges of 7 mm.
+/// A sheet wound four times around a ball of radius 0.2 m, from 60° below to 60° above the equator. Its turns are 2 mm
+/// apart; it has 91,760 triangles with edges of 7 mm.
 TestMesh wound_sheet() {
   constexpr int kAround = 741, kUp = 63;
   TestMesh mesh;

@@ -1,4 +1,4 @@
-// Sparse rows of blocks of any size, and their products, for the assembled solvers.
+// Sparse rows of blocks of any size, and their products, for solvers with an assembled matrix.
 #pragma once
 
 #include <algorithm>
@@ -21,8 +21,8 @@ struct BlockRows {
   Index rows() const { return static_cast<Index>(start.size()) - 1; }
 };
 
-/// Assembles S (A + terms) S + (I − S), both triangles. S: projection on the directions that the constraints leave
-/// free.
+/// Assembles both triangles of S (A + terms) S + (I − S). S is the projection on the directions that the constraints
+/// leave free.
 BlockRows<Mat3> assembled(const solver::LinearSystem& system);
 
 inline double transposed(double weight) {

@@ -1,8 +1,8 @@
 // Linear solvers on systems of 10³ to 2·10⁵ particles, one thread, as CSV and Markdown tables:
 //   bench_solver FILE.csv [MOST_PARTICLES [SOLVER]]
 // The speed of CHOLMOD depends on its BLAS, which is named below the tables: the Debian package libopenblas0-serial is
-// five times as fast as the reference BLAS. Solves are omitted if they take more than 120 s, or are expected to by
-// extrapolation from the smaller system.
+// five times as fast as the reference BLAS. A solve is omitted if it would take more than 120 s, extrapolated from the
+// smaller system.
 #include <fmt/core.h>
 #include <malloc.h>
 
@@ -23,7 +23,8 @@ namespace weft::bench {
 namespace {
 
 constexpr double kMaxSeconds = 120;  // of one solve [s]
-constexpr double kGrowth = 1.7;  // assumed exponent of the time over particles, to predict the time of a larger system
+constexpr double kGrowth = 1.7;  // assumed exponent with which the time grows with the number of particles, to predict
+                                 // the time of a larger system
 
 double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
@@ -44,8 +45,8 @@ struct Solution {
   double residual = 0;  // computed from b and x, not by recurrence
 };
 
-// Conjugate gradients from zero. Returns a solution for each tolerance: the first with ‖b − A x‖₂ below that fraction
-// of ‖b‖₂.
+// Conjugate gradients from zero. Returns for each tolerance the first solution with ‖b − A x‖₂ below the tolerance
+// times ‖b‖₂.
 std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::span<const double> tolerances) {
   const std::size_t n = sheet.b.size();
   std::vector<Vec3> x(n, Vec3::Zero()), r = sheet.b, z(n), p(n), q(n);
@@ -82,7 +83,7 @@ std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::spa
   return solutions;
 }
 
-// solver::ConjugateGradient itself, with its own choice of precision and its own stopping test.
+// solver::ConjugateGradient, with its own choice of precision and its own stopping test.
 constexpr const char* kProgram = "the program";
 constexpr const char* kDirect = "CHOLMOD, supernodal";
 
@@ -98,7 +99,8 @@ struct Row {
   int particles;
   double megabytes, analysis, setup;
   Solution loose, tight;
-  // Contacts change the pattern in each step. Without contacts the analysis of an earlier step is reused.
+  // Contacts change the pattern in each step. Without contacts, the analysis of an earlier step is reused, so it does
+  // not count.
   double total(const Solution& s) const {
     return setup + (pose == Pose::lying && solver == kDirect ? analysis : 0) + s.seconds;
   }
@@ -142,7 +144,7 @@ Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
   solver::ConjugateGradient solver;
   for (Solution* solution : {&row.loose, &row.tight}) {
     const double tolerance = solution == &row.loose ? kTolerances[0] : kTolerances[1];
-    // Sets up the multigrid levels of this precision, which are kept from step to step.
+    // Sets up the multigrid levels of this precision, which later steps reuse.
     solver.prepare(system);
     solver.solve(sheet.b, {tolerance}, 1, x);
     // ConjugateGradient stops by error, not by residual: the loop lowers its tolerance until the residual is as
@@ -167,7 +169,7 @@ Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
   return row;
 }
 
-// Measures one solver on one system. Memory is what the solver allocates beside the matrix during the solve.
+// Measures one solver on one system. Memory is what the solver allocates in addition to the matrix.
 Row measure(const Entry& entry, const SheetSystem& sheet, Pose pose, double stiffness) {
   Row row{entry.name, pose, stiffness, sheet.side * sheet.side, 0, 0, 0, {}, {}};
   if (!entry.make) return measure_program(sheet, pose, stiffness);

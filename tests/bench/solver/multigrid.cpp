@@ -10,7 +10,7 @@ namespace weft::bench {
 namespace {
 
 constexpr Index kMaxDenseBlocks = 100;   // maximum number of blocks on the last level
-constexpr double kSingularShift = 1e-9;  // keeps motions that constraints forbid regular; relative to the mean diagonal
+constexpr double kSingularShift = 1e-9;  // regularises motions that constraints forbid; relative to the mean diagonal
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -47,7 +47,7 @@ struct Level {
       if (matrix.column[s] == static_cast<Index>(i)) return matrix.value[s];
   }
 
-  // Computes x = (D + L)⁻¹ b and the residual b − A x, which is −U x.
+  // Computes x = (D + L)⁻¹ b and, in `of_b`, the residual b − A x, which is −U x.
   void sweep_down(std::span<const Column<N>> b, std::span<Column<N>> x, std::span<Column<N>> of_b) const {
     const Index rows = matrix.rows();
     for (Index i = 0; i < rows; ++i) {
@@ -164,7 +164,7 @@ class Multigrid : public Inverse {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// Coarsens to every second particle of each line, and the last one.
+/// Geometric coarsening: a coarse grid has every second particle of each line, and the last one.
 class Geometric final : public Multigrid<3, double, double> {
  public:
   void factorise(const SheetSystem& sheet) override {
@@ -184,7 +184,8 @@ class Geometric final : public Multigrid<3, double, double> {
  private:
   static BlockRows<double> bilinear(int side) {
     const int coarse = side / 2 + 1;
-    // Even places coincide with coarse ones, odd ones lie between two; of an even side, the last place is coarse too.
+    // Even places coincide with coarse places; odd places lie between two. If a side has an even number of places, its
+    // last place is coarse too.
     const auto line = [&](int i) -> std::vector<std::pair<int, double>> {
       if (i % 2 == 0) return {{i / 2, 1.0}};
       if (i == side - 1) return {{coarse - 1, 1.0}};
@@ -228,8 +229,8 @@ class Aggregation final : public Multigrid<N, Eigen::Matrix<double, 3, N>, Squar
   }
 
  private:
-  // P₀: motions of particles, or of finer aggregates, for rigid motions of aggregates. Replaces `side` and `centres` by
-  // those of the aggregates.
+  // P₀: motions of particles, or of finer aggregates, for the rigid motions of aggregates. Replaces `side` and
+  // `centres` by those of the aggregates.
   template <int M>
   static BlockRows<Eigen::Matrix<double, M, N>> tentative(int& side, std::vector<Vec3>& centres,
                                                           const solver::LinearSystem* system) {

@@ -94,7 +94,7 @@ class BlockIncompleteCholesky final : public Inverse {
       for (std::size_t s = lower_.start[i]; s <= last; ++s) {
         const auto j = static_cast<std::size_t>(lower_.column[s]);
         Mat3 sum = a.value[a.start[i] + s - lower_.start[i]];
-        // Columns common to both rows.
+        // Finds the columns that both rows have.
         std::size_t p = lower_.start[i], q = lower_.start[j];
         while (p < s && q + 1 < lower_.start[j + 1]) {
           if (lower_.column[p] == lower_.column[q])

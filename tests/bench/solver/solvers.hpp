@@ -9,19 +9,19 @@
 
 namespace weft::bench {
 
-/// A preconditioner or factorisation P. apply() computes z = P⁻¹ r; r must satisfy the constraints, and z then does
-/// too.
+/// A preconditioner or factorisation P. apply() computes z = P⁻¹ r. r must satisfy the constraints; z then satisfies
+/// them too.
 class Inverse {
  public:
   virtual ~Inverse() = default;
-  /// Prepares what depends on the pattern only and can be kept from step to step.
+  /// Prepares everything that depends only on the pattern of the matrix and can be reused in later steps.
   virtual void analyse(const SheetSystem&) {}
   virtual void factorise(const SheetSystem& sheet) = 0;
   virtual void apply(std::span<const Vec3> r, std::span<Vec3> z) = 0;
 };
 
 std::unique_ptr<Inverse> block_jacobi();
-/// The program's preconditioner, in double.
+/// The program's preconditioner, in double precision.
 std::unique_ptr<Inverse> additive_multilevel();
 /// Block IC(0): the factor has the pattern of the matrix.
 std::unique_ptr<Inverse> incomplete_cholesky();

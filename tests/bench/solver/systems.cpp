@@ -19,8 +19,8 @@ constexpr double kContactStiffness = 100;  // of one contact, as in scenes [N/m]
 constexpr double kShearOfStretch = 0.03;   // shear stiffness of soft cloth relative to its stretch stiffness
 constexpr double kMaxShear = 30;           // [N/m]; even inextensible threads can rotate against each other
 
-// The direction of each edge along u follows a sine, and its length is that at rest: the sheet bends but does not
-// stretch along u. Along v it is stretched by its weight.
+// Positions of the folded sheet. The direction of each edge along u follows a sine, and its length is the rest length:
+// the sheet bends, but does not stretch along u. Along v, its weight stretches it.
 std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness) {
   std::vector<Vec3> x(static_cast<std::size_t>(grid.size()));
   Vec3 at_u = Vec3::Zero();
@@ -94,8 +94,8 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
   else
     add_contacts(grid, sheet.x, sheet.system);
 
-  // The weight, plus random forces of the same size on patches of every size from a particle to the whole sheet, to
-  // excite all wavelengths.
+  // The right-hand side is the weight, plus random forces of the same size on square patches of all sizes from one
+  // particle to the whole sheet, to excite all wavelengths.
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> noise(-kGravity, kGravity);
   for (Vec3& entry : sheet.b) entry = Vec3(0, 0, -kGravity);
