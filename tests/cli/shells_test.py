@@ -20,7 +20,7 @@ def output(*words):
 
 
 class Zsh:
-    """An interactive shell at a terminal of its own: completion works only interactively."""
+    """An interactive shell at a terminal of its own, because completion works only interactively."""
     MARK = "all that there is"
 
     def __init__(self):
@@ -60,7 +60,7 @@ def bash(line):
 
 
 def expected():
-    """Lines, and the words that must be offered as completions."""
+    """Pairs of a line and the words that must be offered as its completions."""
     commands = re.findall(r"^  ([a-z]+)[ ,]", output("weft", "--help").split("Subcommands:")[1].split("Examples:")[0], re.M)
     yield "weft ", set(commands)
     for command in commands:
@@ -96,7 +96,7 @@ def main(weft):
         with open("weft.1", "w", encoding="utf-8") as file:
             file.write(output("weft", "man"))
         lint = subprocess.run(["mandoc", "-Tlint", "weft.1"], capture_output=True, text=True, check=False).stdout
-        # The page keeps the lines of --help, whatever their length.
+        # Lines of --help keep their length in the manual.
         problems += [told for told in lint.splitlines() if "longer than 80 bytes" not in told]
     print("\n".join(problems) or f"{lines} lines are completed by {', '.join(PROGRAMS[:3])}")
     return 1 if problems else 0

@@ -1,7 +1,7 @@
 """Runs the script of `weft export --format blender` in Blender: every frame has the positions of the PLY files, and the
 print has the place of the scene keys. The imported PLY, OBJ and glTF files give the same.
 
-blender_test.py WEFT    exits with 77 if Blender is not installed. Inside Blender, the script does the measurements instead.
+blender_test.py WEFT    exits with 77 if Blender is not installed. Inside Blender, this file does the measurements.
 """
 import math
 import os
@@ -58,14 +58,14 @@ def vertices(ply):
 
 
 def laid(uv):
-    """Texture coordinates in the square picture, as the keys define them: turned to the left about its corner."""
+    """Texture coordinates in the square picture as the keys define them: turned counter-clockwise about its corner."""
     angle = math.radians(ROTATION)
     x, y = uv[0] - 0.1, uv[1] - 0.05
     return ((math.cos(angle) * x + math.sin(angle) * y) / 0.2, (math.cos(angle) * y - math.sin(angle) * x) / 0.2)
 
 
 def farthest(mesh, matrix, expected, turned, layers):
-    """Largest error over the corners of faces, in space and in texture coordinates."""
+    """Largest error over the corners of all faces, of positions and of texture coordinates."""
     from mathutils import Vector
     worst = 0
     for loop in mesh.loops:

@@ -1,5 +1,5 @@
-"""A sweep of 24 runs on a Slurm of three nodes, with killed nodes, a killed task and a cancelled farm. The final results
-equal those of one process to the bit.
+"""A sweep of 24 runs on a Slurm of three nodes, with killed nodes, a killed task and a cancelled farm. The final
+results equal those of one process to the bit.
 
 farm_test.py WEFT    exits with 77 if Slurm is not installed.
 """
@@ -86,7 +86,7 @@ class Test:
         return b"".join(self.read(folder, log) for log in os.listdir(folder))
 
     def one_goes_on_elsewhere(self, slurm):
-        """Signals a script on n1, unless one was signalled in the last 5 s; true once a task continues elsewhere."""
+        """Signals a script on n1, at most every 5 s. True once a task continues in another place of the queue."""
         if ELSEWHERE in self.logs():
             return True
         programs = slurm.tasks("n1", " simulate /")
@@ -104,16 +104,16 @@ class Test:
             self.submit()
             assert "weft farm cancel" in self.submit(code=6), "jobs that run already are told"
 
-            # A process is killed: its task retries.
+            # Kills a process: its task tries again.
             slurm.wait(lambda: slurm.tasks("n1", " simulate /"), "a simulation on n1")
             os.kill(slurm.tasks("n1", " simulate /")[-1], signal.SIGKILL)
             slurm.wait(lambda: RETRY in self.logs(), "another try")
-            # The time limit is near: Slurm signals the script (--signal=B:USR1@60), and the task is queued again.
+            # Sends the signal that Slurm sends near the time limit (--signal=B:USR1@60). The task is queued again.
             slurm.wait(lambda: self.one_goes_on_elsewhere(slurm), "a task that goes on in a new place")
-            # A daemon dies while its tasks continue, until they are assigned to another node as well.
+            # Kills a daemon. Its tasks continue until they are also assigned to another node.
             slurm.wait(lambda: slurm.tasks("n2", " simulate /"), "a simulation on n2")
             slurm.kill_node("n2", with_tasks=False)
-            # A machine dies.
+            # Kills a machine.
             slurm.wait(lambda: slurm.tasks("n3", " simulate /"), "a simulation on n3")
             slurm.kill_node("n3", with_tasks=True)
             slurm.wait(lambda: self.done() >= 3, "the first runs", 300)
@@ -136,7 +136,7 @@ class Test:
         self.compare()
 
     def fill_disk(self, slurm):
-        """Runs on a shared folder with space for half of the simulations, then half of the pictures, then everything."""
+        """Runs on a shared folder with space for half of the simulations, then half of the pictures, then all."""
         names = [row["run"] for row in self.table("one")
                  if row["run"].startswith(("radius=0.1_density=0.1_", "radius=0.1_density=0.2_",
                                            "radius=0.11_density=0.1_", "radius=0.11_density=0.2_"))]
@@ -160,7 +160,7 @@ class Test:
                 slurm.wait(self.queue_is_empty, "the end of what has no room", 300)
                 code, text = self.status("disk/farm")
                 print("on a full disk:", text, sep="\n")
-                # A task may have no space for its exit code either: then status asks whether the disk is full.
+                # A task may have no space for its exit code either; `status` then asks whether the disk is full.
                 assert code == 9 and re.search("No space left on device|is the disk full", text) and task in text, text
                 kept = self.whole_files(names)
             assert kept, "some pictures found room"
@@ -176,7 +176,7 @@ class Test:
             subprocess.run(["umount", "-l", disk], check=True)
 
     def whole_files(self, names):
-        """Pictures and videos on the disk, with their times; expects each to equal that of the other farm."""
+        """Pictures and videos on the disk, with their times. Expects each to equal that of the first farm."""
         found = {}
         for name in names:
             for folder, _, files in os.walk(os.path.join(self.folder, "disk/farm", name)):

@@ -42,13 +42,13 @@ HIDE = 'while [ "$1" != -- ]; do if [ -d "$1" ]; then mount --bind "$0/folder" "
 
 
 def libraries(*programs):
-    """Libraries that the loader finds, by name."""
+    """Paths of the libraries that the loader finds, by name."""
     listed = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout
     return dict(re.findall(r"(\S+) => (/\S+) ", listed))
 
 
 def only_of_weft(weft):
-    """The folder of the program, and its direct or opened libraries, except those that programs of a Slurm node need."""
+    """The program's folder and its libraries, linked or opened, without those that programs of a node need."""
     named = subprocess.run(["readelf", "-dW", weft], capture_output=True, text=True, check=True).stdout
     found = {path for name, path in libraries(weft).items() if f"[{name}]" in named}
     for name in ("libOSMesa.so.8", "libEGL.so.1"):
@@ -74,7 +74,7 @@ def check(source, weft, start, folder):
     with open(os.path.join(folder, "file"), "w", encoding="utf-8"):
         pass
     bare = ["unshare", "--mount", "--propagation", "private", "sh", "-c", HIDE, folder, *only_of_weft(weft), "--"]
-    # Neither the program nor a copy of it runs on such a node.
+    # On such a node neither the program nor a copy of it runs.
     run(*bare, weft, "--version", code=127)
     shutil.copy(weft, os.path.join(folder, "copy"))
     assert "error while loading shared libraries" in run(*bare, os.path.join(folder, "copy"), "--version", code=127)

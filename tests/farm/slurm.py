@@ -44,7 +44,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 
 
 def missing():
-    """Missing packages or privileges; empty if Slurm can run here."""
+    """Missing packages or privileges as text; empty if Slurm can run here."""
     os.environ["PATH"] += ":/usr/sbin:/sbin"
     programs = [program for program in PROGRAMS if not shutil.which(program)]
     if programs:

@@ -19,19 +19,19 @@ from concurrent.futures import ThreadPoolExecutor
 
 TREE = pathlib.Path(__file__).resolve().parents[2]
 
-# Precompiled for all sources: clang takes a third of the time.
+# Headers that are precompiled once for all sources, which reduces the time of clang to a third.
 PRECOMPILED = ["Eigen/Dense", "fmt/format.h", "algorithm", "filesystem", "functional", "map", "memory", "optional",
                "string", "vector", "gtest/gtest.h", "fstream", "random", "sstream"]
 
-# clang-tidy spends most of its time on included headers, so that many sources are checked as one file. If it reports an
-# ambiguous name, a source and a header of one module use the same name: rename one of them.
+# clang-tidy spends most of its time on included headers. Many sources are therefore checked as one file, a chunk. If
+# clang reports an ambiguous name, a source and a header of one module use the same name: rename one of them.
 CHUNKS = 2
 
 
 class Source:
     def __init__(self, entry):
         self.path = pathlib.Path(entry["file"])
-        self.flags = ["-Wno-unknown-warning-option"]  # the flags for GCC, without outputs and its precompiled header
+        self.flags = ["-Wno-unknown-warning-option"]  # flags for GCC without outputs and its precompiled header
         words = iter(shlex.split(entry["command"])[1:])
         for word in words:
             if word in ("-include", "-o", "-c", "--param"):
@@ -39,11 +39,11 @@ class Source:
             elif word == "-isystem":
                 self.flags.append(word + next(words))
             elif word != "-Winvalid-pch" and not word.startswith(("-fPIC", "-fvisibility")):
-                self.flags.append(word)  # the flags are the same for all sources
+                self.flags.append(word)  # without the flags left out, these are the same for all sources
 
     def names(self):
-        """Names that the source declares in unnamed namespaces or defines for another module, and names that it may use.
-        In one chunk no source may use a name that another declares in this way."""
+        """Names that the source declares in unnamed namespaces or defines for another module, and names that it may
+        use. No source of a chunk may use a name that another source of the chunk declares in this way."""
         text = self.path.read_text()
         outer = re.search(r"^namespace (weft\S*) \{", text, re.M)
         used = set(re.findall(r"(?<![\w.>:])(?:[a-z]\w*(?=\()|[A-Z]\w*|k[A-Z]\w*)", text))
@@ -110,7 +110,7 @@ def syntax_commands(build, sources):
 
 
 def tidy_commands(build, sources):
-    chunks = []  # of each: sources, declared names, used names
+    chunks = []  # each with its sources, declared names and used names
     for source in sources:
         declared, used = source.names()
         fitting = [chunk for chunk in chunks if not chunk[1] & used and not chunk[2] & declared]
@@ -125,7 +125,7 @@ def tidy_commands(build, sources):
     for number, (chunk, _, _) in enumerate(chunks):
         file = build / f"lint_{number}.cpp"
         file.write_text("".join(f'#include "{source.path}"\n' for source in chunk))
-        # A name may shadow one of another source in the same chunk.
+        # -Wshadow is left out, because a name may shadow a name of another source in the same chunk.
         flags = dict.fromkeys(flag for source in chunk for flag in source.flags if flag != "-Wshadow")
         commands.append(["clang-tidy-14", "--quiet", file, "--", *flags])
     return commands

@@ -5,7 +5,7 @@ import subprocess
 
 
 def missing():
-    """The reason why no archive can be made or run here; empty if it can."""
+    """The reason why this machine cannot make or run an archive; empty if it can."""
     for tool in ("zstd", "unshare", "chroot"):
         if not shutil.which(tool):
             return f"{tool} is not found: apt-get install zstd util-linux coreutils"

@@ -87,7 +87,7 @@ def has_osmesa():
 
 
 def is_same(weft, opengl, expected, found):
-    """Compares bytes; for EGL pixels, because files contain the name of the OpenGL implementation."""
+    """Compares bytes; with EGL, compares pixels, because files contain the name of the OpenGL implementation."""
     if opengl == "osmesa":  # which the built program prefers, too
         return read(expected) == read(found)
     run(weft, "diff", expected, found, "--pixel-tolerance", "0", "--pixel-budget", "0")
@@ -95,7 +95,7 @@ def is_same(weft, opengl, expected, found):
 
 
 def enter(root, *words):
-    """Called in a private mount namespace, which unmounts /proc at its end: executes the program as an unprivileged user."""
+    """Executes the program as an unprivileged user in `root`, in a private mount namespace (its end unmounts /proc)."""
     subprocess.run(["mount", "-t", "proc", "proc", os.path.join(root, "proc")], check=True)
     os.chroot(root)
     os.chdir("/data")

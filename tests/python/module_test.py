@@ -89,7 +89,8 @@ class Module(unittest.TestCase):
         of_model = weft.Simulation(model)
         for _ in range(5):
             expected, got = of_scene.advance(), of_model.advance()
-        # The ball is moved and moved back, which rounds; until they touch, the sheet does not know.
+        # The ball's vertices are shifted back and forth, which rounds them. The sheet is not affected before they
+        # touch.
         numpy.testing.assert_array_equal(got["sheet"].positions, expected["sheet"].positions)
         numpy.testing.assert_allclose(got["ball"].positions, expected["ball"].positions, atol=1e-15)
         self.assertEqual(got["ball"].kind, "obstacle")
@@ -223,7 +224,8 @@ class Module(unittest.TestCase):
         numpy.testing.assert_allclose(simulation.advance()["sheet"].positions, before, atol=1e-12)
 
     def test_a_signal_ends_a_frame_that_can_be_computed_again(self):
-        # One frame of a tenth of a second and more; the signal comes in it, and its handler finds the simulation in use.
+        # One frame takes at least a tenth of a second. The signal arrives within it; its handler calls the simulation,
+        # which is in use.
         scene = weft.parse(DRAPE, {"cloth.sheet.particles": [41, 41], "time.fps": 2, "time.duration": 1})
         simulation, refused = weft.Simulation(scene), []
 
@@ -392,7 +394,7 @@ friction = 0.8
             return ({node.name for node in body if isinstance(node, (ast.ClassDef, ast.FunctionDef))} |
                     {node.target.id for node in body if isinstance(node, ast.AnnAssign) and node.target.id[0] != "_"})
 
-        for node in ast.walk(stub):  # older type checkers take the type of the getter for that of the setter
+        for node in ast.walk(stub):  # older type checkers use the getter's type for the setter
             self.assertFalse(isinstance(node, ast.Attribute) and node.attr == "setter")
         there = {name for name in dir(weft) if not name.startswith("_")} - {"annotations"}
         self.assertEqual(names_in(stub.body), there)

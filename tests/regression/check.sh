@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws stills and compares them with their references, as a user's own suite would:
+# Draws stills and compares them with their references, as the regression tests of a user would:
 #
 #     tests/regression/check.sh WEFT OUTPUT [NAME]     one still, or all of stills.txt; exit codes of `weft diff`
 #
@@ -12,7 +12,7 @@ root=$here/../..
 weft=$1 output=$2 only=${3:-}
 mkdir -p "$output"
 
-# Draws a still. The file of an earlier run is removed first: it must not count as one of this run.
+# Draws a still. Removes the file of an earlier run first, so that it does not count as a result of this run.
 draw() { # NAME SCENE FRAME CHANGE...
   name=$1 scene=$2 frame=$3
   shift 3
@@ -32,6 +32,6 @@ while read -r line; do
     *) [ -n "$only" ] || draw $line || exit ;;
   esac
 done <"$here/stills.txt"
-rm -rf "$output/differences" # those of an earlier run would be compared, too
+rm -rf "$output/differences" # `weft diff` would compare those of an earlier run too
 [ -n "$only" ] && exec "$weft" diff "$here/references" "$output/$only.png" --heatmap "$output/differences" --overwrite
 exec "$weft" diff "$here/references" "$output" --heatmap "$output/differences" --overwrite

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Shows that the suite detects small changes of the program: applies each line of mutations.txt to a copy of the last
-# commit, builds it, draws the stills and compares them. Each takes about a minute of processor time, so this is no test.
+# Shows that the regression tests detect small changes of the program: applies each line of mutations.txt to a copy of
+# the last commit, builds it, draws the stills and compares them. Each line takes about a minute of CPU time, so ctest
+# runs only --check.
 #
 #     tests/regression/mutations.sh FOLDER [STILL...]     table in FOLDER/mutations.md; without names, all stills
 #     tests/regression/mutations.sh --check               checks that each line still changes its file: a test
@@ -30,7 +31,7 @@ build() {
   ninja -C "$source/build" weft_tools_program >"$folder/build.log" 2>&1 || { tail "$folder/build.log"; exit 1; }
 }
 
-# Prints the lines of `weft diff`, one for each still.
+# Prints the lines of `weft diff`, one per still.
 compare() { # OUTPUT STILL...
   output=$1
   shift
@@ -70,7 +71,7 @@ while IFS='|' read -r name file change; do
   cmp -s "$source/$file" "$folder/original" && { echo "$name: changes nothing in $file"; exit 1; }
   build
   compare "$folder/$number" "$@" >"$folder/$number.txt"
-  cp "$folder/original" "$source/$file" # with a new date, so that it is rebuilt
+  cp "$folder/original" "$source/$file" # the new time of change makes ninja rebuild it
   # Fields of the line with the largest FLIP.
   awk -v name="$name" '
     / pixels differ/ {

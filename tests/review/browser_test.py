@@ -16,7 +16,7 @@ import webdriver
 WEFT, SOURCE = sys.argv[1:3]
 SKIPPED = 77  # exit code for ctest
 HOSTILE = "<img src=x onerror=alert(1)> & 'co'"
-FRAMES, STEP = 40, 4  # drawn frames: 0, 4, 8 up to 36, in which a falling band differs clearly
+FRAMES, STEP = 40, 4  # drawn frames are 0, 4, 8 up to 36, in which a falling band differs clearly
 PICTURES = FRAMES // STEP
 SIZE = (192, 108)
 
@@ -101,7 +101,7 @@ class Page(unittest.TestCase):
         self.settled()
 
     def settled(self):
-        """Waits until every picture on screen is the one that the controls select; returns the frame."""
+        """Waits until every visible picture is the one that the controls select; returns its frame."""
         return int(self.browser.wait("""
             const viewer = document.querySelector('.viewer'), wanted = viewer.querySelector('.scrubber').value;
             const media = [...viewer.querySelectorAll('video, .layer img')];
@@ -117,7 +117,7 @@ class Page(unittest.TestCase):
         return read_png(base64.b64decode(picture))
 
     def picture_on_screen(self):
-        """The number of the still that the screen resembles most."""
+        """The number of the still that is most similar to the screen."""
         screen = self.shown()
         return min(range(PICTURES), key=lambda k: distance(screen, self.stills[k]))
 
@@ -147,7 +147,7 @@ class Page(unittest.TestCase):
         self.assertEqual((order[-2:]), ["runs/soft-plain", f"runs/img-src-x-onerror-alert-1-co"])
 
     def sweep(self):
-        """Runs with the values 0.02, 0.01, 0.2 of one key and two of another, of which one is invalid; made once for all tests."""
+        """Runs with 0.02, 0.01, 0.2 for a key, and with a valid and an invalid value for another; made once."""
         page = self.folder / "sweep/page"
         if not page.exists():
             subprocess.run([WEFT, "sweep", f"{SOURCE}/scenes/falling_band.toml", "-o", "sweep", "--quality", "draft", "--size", "64x36",
@@ -251,7 +251,7 @@ class Page(unittest.TestCase):
 
     def test_difference_of_equal_videos_is_dark_and_of_others_is_not(self):
         def brightest():
-            # Without the border, which mixes with the surroundings of the picture.
+            # Leaves out the border, whose pixels mix with the surroundings of the picture.
             return max(max(row[6:-6]) for row in self.shown()[2:-2])
 
         self.open_run("plain", "&view=difference&frame=36")

@@ -11,13 +11,13 @@ import urllib.request
 
 
 def missing():
-    """Missing Debian packages; empty if there are none."""
+    """Names of the missing Debian packages; empty if none is missing."""
     programs = {"chromium": "chromium", "chromedriver": "chromium-driver"}
     return [package for program, package in programs.items() if shutil.which(program) is None]
 
 
 class Browser:
-    """One window. Works as a context manager, which ends the processes it started."""
+    """A browser window. As a context manager, it ends the processes that it started."""
 
     def __init__(self, width, height, dark=False):
         with socket.socket() as probe:
@@ -70,7 +70,7 @@ class Browser:
         return self._call("POST", self.session + "/execute/sync", {"script": script, "args": list(arguments)})
 
     def wait(self, script, *arguments, seconds=30):
-        """Waits until the script returns something true, and returns that."""
+        """Waits until the script returns a true value, and returns this value."""
         end = time.monotonic() + seconds
         while True:
             value = self.run(script, *arguments)
@@ -81,7 +81,7 @@ class Browser:
             time.sleep(0.05)
 
     def press(self, *keys):
-        """Keys one after the other: characters, or names such as ArrowLeft. Shift+X holds shift."""
+        """Presses keys one after the other: characters, or names such as ArrowLeft. Shift+X holds shift."""
         codes = {"ArrowLeft": "\ue012", "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Home": "\ue011", "End": "\ue010",
                  "Escape": "\ue00c", "Enter": "\ue007", "Tab": "\ue004", "Space": " "}
         actions = []

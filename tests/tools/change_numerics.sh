@@ -1,6 +1,6 @@
 #!/bin/sh
-# Changes one member of Numerics, builds, and runs tests, to see which tests detect the change.
-# Usage: change_numerics.sh 'newton.slow_after *= 10' [CTEST_OPTION...]; in the folder of the project, after a build.
+# Changes one member of Numerics, builds the program and runs tests, to see which tests detect the change.
+# Usage, in the folder of the project after a build: change_numerics.sh 'newton.slow_after *= 10' [CTEST_OPTION...]
 set -eu
 [ $# -ge 1 ] || { echo "usage: $0 'GROUP.MEMBER *= 10' [CTEST_OPTION...]" >&2; exit 2; }
 change=$1

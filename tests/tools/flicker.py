@@ -3,10 +3,10 @@
 
 Usage: flicker.py FRAME.png FRAME.png FRAME.png ... [--levels 6] [--map OUT.png]
 
-Frames are PNG files of 8 bits in their order, at least three. A pixel flips in frame k where one channel differs from
-that of frame k - 1 and from that of frame k + 1 by more than `--levels`, both times to the same side. Printed are the
-flips of each frame, their mean and the largest number, and how far the corners of the picture, which show the backdrop,
-depart from those of the first frame. `--map` writes where they were, brighter for more. Needs numpy."""
+Frames are PNG files with 8 bits per channel, in order, at least three. A pixel flips in frame k if one of its channels
+differs from frame k - 1 and from frame k + 1 by more than `--levels`, both times in the same direction. Prints the
+number of flips of each frame, their mean and maximum, and the largest deviation of the picture's corners, which show
+the backdrop, from those of the first frame. `--map` writes a picture of the flips, brighter for more. Needs numpy."""
 import argparse
 import struct
 import sys

@@ -3,13 +3,13 @@
 
 Usage: mixed_scenes.py BUILD FIRST END [--folder DIR] [--limit SECONDS]
 
-BUILD is a build folder with bin/weft and bin/weft_judge. Scene number k is the same in each run; those from FIRST to
-END - 1 are written to DIR (a temporary folder by default) and simulated with one thread. A scene has one to four cloths
-of any fabric and mesh, of 2 cm to 20 m, up to three bodies that stand, move by keys or by forces, and sometimes wind,
-gusts, pins with keys, springs and releases, weights, a rope and an attachment, with any method and steps of 2 to 40 ms
-or a tolerance. One line a scene: exit code, CPU seconds, steps, rejected steps, Newton iterations a step, largest
-strain, error of the solver over that of the steps, intersecting pairs in all frames, first warning. The last line sums
-up."""
+BUILD is a build folder with bin/weft and bin/weft_judge. Scene number k is the same in each run. The scenes from FIRST
+to END - 1 are written to DIR (by default a temporary folder) and simulated with one thread. A scene has one to four
+cloths of any fabric and mesh, of 2 cm to 20 m; up to three bodies, which stand or are moved by keys or forces; and
+sometimes wind, gusts, pins with keys, springs and releases, weights, a rope and an attachment. Methods are mixed, with
+steps of 2 to 40 ms or a tolerance. Prints a line per scene: exit code, CPU seconds, steps, rejected steps, Newton
+iterations per step, maximum strain, error of the solver over error of the steps, intersecting pairs in all frames,
+first warning. The last line sums up."""
 import argparse
 import json
 import pathlib
@@ -28,7 +28,7 @@ def vector(*numbers):
 
 
 def one_turn(r, angles):
-    """Rotation about one axis: keys may turn about several axes by less than half a turn only."""
+    """A rotation about one axis. (About several axes, keys may turn by less than half a turn only.)"""
     rotation = [0, 0, 0]
     rotation[r.randrange(3)] = r.choice(angles)
     return vector(*rotation)
@@ -121,7 +121,7 @@ def cloth(r, size, name, height):
 
 
 def scene(number):
-    """The scene's text, and the names of what it has besides cloths and ropes."""
+    """The text of a scene, and the names of its obstacles."""
     r = random.Random(number)
     size = r.choice([1] * 5 + [0.1, 0.3, 4, 20])
     text, bodies, top = header(r, size, number), [], 0
@@ -155,7 +155,7 @@ def scene(number):
 
 
 def run(build, folder, number, limit):
-    """Simulates and judges one scene. Returns its figures as a dictionary."""
+    """Simulates a scene and counts its intersections. Returns its figures as a dictionary."""
     text, bodies = scene(number)
     path, meshes, cache = folder / f"{number}.toml", folder / "meshes", folder / "cache"
     statistics = folder / "statistics.json"
