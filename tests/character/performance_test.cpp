@@ -112,7 +112,7 @@ TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   const auto world = [&](double t) -> Vec3 {
     return global_transforms(slider.body, performance.at(t))[1].translation();
   };
-  // In the world, y of the clip is the height, which begins anew in each repetition; -z of the clip is y.
+  // In the world, y of the clip is the height, which starts again in each repetition; -z of the clip is y.
   EXPECT_LT((world(2.5) - (world(0.5) + Vec3(3, -1, 0))).norm(), 1e-12);
 }
 

@@ -99,8 +99,8 @@ TEST_F(Farms, SubmitOnlyTheReportIfOnlyTheReportFailed) {
   EXPECT_FALSE(contains(submit().err, "all runs are done"));
 }
 
-// Another look does not change the simulation, which writes statistics of the changed scene; pictures of the earlier
-// scene stay.
+// A changed look leaves the simulation valid: it only writes statistics of the changed scene. The pictures still show
+// the earlier scene, so the films are not done.
 TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   ASSERT_EQ(submit().exit_code, 0);
   ASSERT_TRUE(do_tasks().empty()) << log("simulate_0");
@@ -193,8 +193,8 @@ TEST_F(Farms, AreRememberedByADryRun) {
   EXPECT_EQ(support::read_bytes(folder_ / "a b/farm/jobs"), "7\tsimulate\n");
 }
 
-// Tasks that wait in the queue would run other scripts than were submitted. Here, Slurm does not answer whether tasks
-// wait.
+// If scripts were replaced, tasks in the queue would run scripts other than those with which they were submitted. Here,
+// Slurm does not answer whether tasks wait.
 TEST_F(Farms, ADryRunReplacesNoScriptsOfTasksThatMayWait) {
   const std::string command = "submit s.toml -o one --memory 100 --time 10 --dry-run";
   ASSERT_EQ(with_failing_slurm(command).exit_code, 0);

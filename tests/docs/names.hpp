@@ -11,7 +11,8 @@ namespace weft::docs {
 struct Known {
   std::set<std::string> words;       ///< identifiers in sources, tests, shaders, scenes and scripts
   std::set<std::string> file_names;  ///< without their folders
-  std::set<std::string> tests;       ///< Suite.Name, as gtest lists them (parameters as 0), and without their prefix
+  std::set<std::string> tests;       ///< Suite.Name as gtest lists it (parameters as 0), also without the prefix of the
+                                     ///< instance
 };
 
 /// Reads all hand-written files under root.

@@ -43,7 +43,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
     expected.block<3, 3>(3 * i, 3 * i) += (0.5 + i) * Mat3::Identity();
   }
   assembly.keep_constant();
-  // Rows are assembled twice: start() clears what the first time added, except for the constant part.
+  // Rows are assembled twice: start() clears the blocks of the first time, except for the constant part.
   for (int time = 0; time < 2; ++time) {
     assembly.start(0, 4, matrix);
     assembly.start(4, kRows, matrix);

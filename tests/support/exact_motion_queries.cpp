@@ -125,7 +125,7 @@ MotionQuery touching_query(Random& random) {
   return q;
 }
 
-// A unit vector perpendicular to two others.
+// A unit vector perpendicular to two others, or the z axis if these are parallel.
 Vec3 across(const Vec3& u, const Vec3& v) {
   const Vec3 n = u.cross(v);
   return n.norm() > 0 ? Vec3(n.normalized()) : Vec3(Vec3::UnitZ());

@@ -1,5 +1,5 @@
-// Runs small random scenes of one sheet that falls on a body. Each runs as it is, turned by 90°, mirrored, and with
-// four times the frame rate. Compares the differences between runs with the errors that they report.
+// Runs small random scenes of one sheet that falls on a body, each also turned by 90°, mirrored, and with four times
+// the frame rate. Compares the differences between runs with the errors that they report.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

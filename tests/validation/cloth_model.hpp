@@ -1,5 +1,5 @@
 // The cloth of a scene as forces and masses only: equilibrium by Newton's method with the exact Jacobian, stability by
-// the inertia of the Jacobian, and free vibrations. For what a run cannot show: an unstable equilibrium, a spectrum.
+// the inertia of the Jacobian, and free vibrations. A run can show neither an unstable equilibrium nor a spectrum.
 #pragma once
 
 #include <gtest/gtest.h>

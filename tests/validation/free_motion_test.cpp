@@ -28,7 +28,8 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
   scene::Scene scene = testing::sheet_alone(0.2, 9, 0);
   scene.cloths[0].material.stretch_viscosity = scene.cloths[0].material.shear_viscosity = 0.5;
   scene.cloths[0].material.bend_viscosity = 1e-6;
-  scene.cloths[0].material.bend_friction = 0;  // Newton's method cannot resolve its kink at rest to 1e-8
+  scene.cloths[0].material.bend_friction = 0;  // its force has a kink at rest, which Newton's method cannot resolve to
+                                               // 1e-8
   const model::Model model = environment::Environment(scene).model;
   ClothSystem system(model);
   // Crumpled and moving, so that all forces act.

@@ -74,8 +74,8 @@ void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
     throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
 }
 
-/// Metadata of a picture of `snapshot`. If the film has motion blur, the metadata name the shutter angle 0, since the
-/// thumbnail has none. If the camera is computed, they say that it depends only on the frames up to this one.
+/// Metadata of a picture of `snapshot`. For a film with motion blur, they contain the shutter angle 0, since the
+/// thumbnail has no motion blur. For a computed camera, they state that it depends only on the frames up to this one.
 Metadata describe_thumbnail(const Stills& stills, const frame::FrameSnapshot& snapshot, const FramePainter& painter) {
   render::Settings settings = stills.settings();
   if (snapshot.stage && snapshot.stage->motion_blur > 0) settings.motion_blur = 0;

@@ -73,7 +73,7 @@ void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   EXPECT_NEAR(found.distance, expected, tolerance * size);
   EXPECT_LE(found.lower_bound, expected + tolerance * size);
   EXPECT_LE(found.lower_bound, found.distance);
-  // The direction of a short difference is accurate only to 1e-16 size / distance; the plane is tilted by that angle.
+  // The shorter the difference, the less accurate its direction: the plane may be tilted by 1e-16 size / distance.
   EXPECT_GE(found.lower_bound, expected - tolerance * size - 1e-15 * size * size / std::max(expected, 1e-300));
   Vec3 difference = Vec3::Zero();
   double sum_a = 0, sum_b = 0;
