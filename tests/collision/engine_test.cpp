@@ -178,6 +178,28 @@ TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
   for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
 }
 
+// One corner of the sheet goes through the floor, then all of it.
+TEST(Engine, PairsFailAnewOnlyUntilTheyWerePushedApart) {
+  Sheet sheet(3, 0.05);
+  Engine engine = sheet.engine();
+  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  std::vector<Vec3> corner = sheet.x, all = sheet.falling(0.06);
+  corner[0] = all[0];
+  const auto fails_anew = [&](std::span<const Vec3> end) {
+    EXPECT_FALSE(engine.is_separated(sheet.x, end));
+    return engine.fails_anew();
+  };
+  begin_step(engine, sheet.x, sheet.x);
+  EXPECT_TRUE(fails_anew(corner));
+  std::vector<Vec3> pushed = corner;
+  ASSERT_TRUE(engine.push_apart(sheet.x, pushed, movable).separated);
+  EXPECT_FALSE(fails_anew(corner));
+  EXPECT_TRUE(fails_anew(all));
+  begin_step(engine, sheet.x, sheet.x);
+  EXPECT_TRUE(fails_anew(corner));
+}
+
 // A step that restarts from an intermediate state uses the contacts of that state: none of those at the start, and one
 // for each pair that was pushed apart. Slip is measured from the start of the step. Other contacts keep corners behind
 // the plane of their pair, without friction.

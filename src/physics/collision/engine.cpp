@@ -266,6 +266,11 @@ std::span<const CornerPair> Engine::find_intersections(std::span<const Vec3> x) 
   return failing_;
 }
 
+bool Engine::fails_anew() const {
+  return std::ranges::any_of(
+      failing_, [&](const CornerPair& pair) { return std::ranges::find(pushed_pairs_, pair) == pushed_pairs_.end(); });
+}
+
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_move_pins,
                                     PlaneKinds which) {

@@ -65,6 +65,8 @@ class Engine {
   /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests or
   /// pushes apart pairs.
   std::span<const CornerPair> failing() const { return failing_; }
+  /// Whether failing() has a pair that was in none of the calls of push_apart() since begin_step().
+  bool fails_anew() const;
 
   /// Call between two steps. Deletes the state of separation lists, velocity cones and coherent detection, so that
   /// results do not depend on earlier steps.

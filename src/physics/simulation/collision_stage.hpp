@@ -95,6 +95,8 @@ class CollisionStage {
   bool is_separated(const SystemState& now, const SystemState& next) {
     return engine_.is_separated(trajectory_start(now), next.x);
   }
+  /// After is_separated() has returned false: whether a pair without a plane was not pushed apart before in this step.
+  bool fails_anew() const { return engine_.fails_anew(); }
 
   /// After is_separated() has returned false: adds contacts for the pairs without a plane, and returns how many
   /// contacts are new. The forces of these contacts keep the pairs apart in the next solve; push_apart() would move

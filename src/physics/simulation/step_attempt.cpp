@@ -95,16 +95,18 @@ void StepLoop::update_weather(double t, double until_stage) {
 StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
   const SystemState& now = progress_.now;
   int continuations = 0;
-  bool is_separated = false;
+  bool fails_anew = true;
   for (bool is_first = true;; is_first = false, start = Start::next) {
     const bool may_continue = continuations < numerics.newton.slow_after;
-    // If the last iterate was separated, the solve runs to its end. Otherwise it pauses early for another check, unless
-    // no continuation is left.
-    const bool check_early = !is_separated && (is_first || may_continue);
+    // The solve pauses early for another check, if a continuation is left and pairs failed for the first time in this
+    // step. Otherwise it runs to its end: the contacts of all pairs that failed are in it already. (Measured with
+    // pauses also then: a step of a sewn dress takes 89 Newton iterations, not 31, as one pair fails twenty times.)
+    const bool check_early = fails_anew && may_continue;
     bool solved = false;
     if (Rejection rejection = solve_contacts(attempt, start, is_first, check_early, solved, report)) return rejection;
     const Stopwatch watch(report.collide);
-    is_separated = collisions_->is_separated(now, next_);
+    const bool is_separated = collisions_->is_separated(now, next_);
+    fails_anew = !is_separated && collisions_->fails_anew();
     if (is_separated && solved) return std::nullopt;
     if (!is_separated && !may_continue && solved) return push_apart(attempt);
     if (is_separated || !may_continue) continue;
