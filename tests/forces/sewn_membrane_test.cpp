@@ -73,9 +73,9 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
     sewn.interpolate_rest_shape(0.5 * (2 * progress - kStep));  // an attempt that is rejected
     sewn.interpolate_rest_shape(progress);
     EXPECT_FALSE(ended);
-    ended = sewn.accept_rest_shape(held, kOnset);
+    ended = sewn.accept_rest_shape(held, kOnset, kStep);
     free.interpolate_rest_shape(progress);
-    free.accept_rest_shape(held, 1);
+    free.accept_rest_shape(held, 1, kStep);
     if (step != 80) continue;
     ByteWriter saved;
     sewn.serialize_rest_shape(saved, progress);
@@ -85,7 +85,8 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
     EXPECT_EQ(restored.energy(held), sewn.energy(held));
   }
   EXPECT_TRUE(ended);
-  EXPECT_FALSE(sewn.accept_rest_shape(held, kOnset));
+  EXPECT_FALSE(sewn.accept_rest_shape(held, kOnset, kStep));
+  EXPECT_FALSE(sewn.is_catching_up()) << "its threads stay locked";
   // The width ends at the onset of locking, within two steps: a step changes it by 1 / 100 of the start's excess, at up
   // to twice the mean speed.
   EXPECT_NEAR(sewn.max_strain(held), kOnset, 2 * kStep * kHeld);
@@ -103,13 +104,38 @@ TEST(SewnMembranes, MakeUpForTheTimeInWhichTheyWereStopped) {
   TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
   for (const double progress : {0.2, 0.4, 0.6, 0.8, 1.0}) {
     sewn.interpolate_rest_shape(progress);
-    sewn.accept_rest_shape(held, progress < 0.5 ? 0.1 : 10);
+    sewn.accept_rest_shape(held, progress < 0.5 ? 0.1 : 10, 0.2);
     if (progress == 0.4) {
       EXPECT_NEAR(sewn.widening().fraction, 0.8, 1e-12);
     }
   }
   EXPECT_EQ(sewn.widening().fraction, 0);
   EXPECT_NEAR(sewn.max_strain(held), 1, 1e-12);
+}
+
+// Something holds the cloth at the width of its start until the sewing has ended, and then releases it.
+TEST(SewnMembranes, CatchUpAfterTheSewingOnceTheirThreadsAreReleased) {
+  constexpr double kOnset = 0.1, kStep = 0.25;
+  mesh::Sheet sheet = flat_sheet();
+  sheet.sewn = true;
+  const Positions released = sheet.rest;
+  for (Vec3& x : sheet.rest) x.x() *= 2;
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
+  for (const double progress : {0.25, 0.5, 0.75, 1.0}) {
+    sewn.interpolate_rest_shape(progress);
+    EXPECT_EQ(sewn.accept_rest_shape(sheet.rest, kOnset, kStep), progress == 1);
+  }
+  EXPECT_NEAR(sewn.widening().fraction, 0.75, 1e-12);
+  EXPECT_FALSE(sewn.is_catching_up()) << "its threads are locked";
+  sewn.accept_rest_shape(released, kOnset, kStep);
+  for (const double left : {0.5, 0.25, 0.0}) {
+    EXPECT_TRUE(sewn.is_catching_up());
+    EXPECT_FALSE(sewn.accept_rest_shape(released, kOnset, kStep)) << "the sewing has ended before";
+    sewn.interpolate_rest_shape(1);
+    EXPECT_NEAR(sewn.widening().fraction, left, 1e-12);
+    EXPECT_NEAR(sewn.max_strain(released), 1 - 1 / (1 + left), 1e-12);
+  }
+  EXPECT_FALSE(sewn.is_catching_up());
 }
 
 // The start is half as long along weft as the pattern, and something holds it at the length of the pattern.
@@ -122,7 +148,7 @@ TEST(SewnMembranes, AreNotStoppedBeforeTheyAreAsWideAsTheirPattern) {
   for (const double progress : {0.2, 0.4, 0.6, 0.8, 1.0}) {
     sewn.interpolate_rest_shape(progress);
     EXPECT_NEAR(sewn.max_strain(held), 1 / (0.5 + 0.5 * progress) - 1, 1e-12);
-    sewn.accept_rest_shape(held, 0.1);
+    sewn.accept_rest_shape(held, 0.1, 0.2);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "film/environment/environment.hpp"
 #include "film/production/scene_simulation.hpp"
+#include "physics/simulation/cloth_system.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/small_character.hpp"
@@ -193,6 +194,38 @@ TEST_F(Garments, TakeAllTheirStepsWhileTheyAreSewn) {
   int frame = 0;
   for (; frame < 15; ++frame) EXPECT_EQ(simulation.advance().steps, 4) << "frame " << frame + 1;
   for (; frame < 18; ++frame) EXPECT_EQ(simulation.advance().steps, 1) << "frame " << frame + 1;
+}
+
+// Something holds a cloth at the width of its start until the sewing has ended, and then releases it. While threads are
+// locked, nothing changes, so a frame may be one step; while the cloth catches up, it may not.
+TEST(SewnCloth, CatchesUpAfterTheSewingOnceItsThreadsAreReleased) {
+  constexpr double kStep = 0.02, kSewing = 0.1;
+  scene::Scene scene = testing::sheet_alone(0.2, 5, 0);
+  scene.cloths[0].shape = scene::ClothShape::aligned_triangles;
+  scene.cloths[0].material.max_stretch = 0.1;
+  model::Model model = environment::Environment(scene).model;
+  const std::vector<Vec3> released = model.cloths[0].start;
+  model.cloths[0].sheet.sewn = true;
+  model.cloths[0].sewing = kSewing;
+  for (Vec3& x : model.cloths[0].sheet.rest) x *= 2;
+  const std::vector<Vec3> held = model.cloths[0].sheet.rest;
+  ClothSystem cloth(model);
+  std::size_t widened = 0;
+  for (int step = 1; step <= 6; ++step) {
+    cloth.sew(step * kStep);
+    cloth.finish_step(step * kStep);
+    widened += cloth.accept(held, kStep).size();
+  }
+  EXPECT_EQ(widened, 1U);
+  EXPECT_TRUE(cloth.is_constant_between(2 * kSewing, 3 * kSewing));
+  EXPECT_TRUE(cloth.accept(released, kStep).empty());
+  EXPECT_GT(cloth.max_strain(released), 0.3);
+  int steps = 0;
+  for (; !cloth.is_constant_between(2 * kSewing, 3 * kSewing) && steps < 10; ++steps)
+    EXPECT_TRUE(cloth.accept(released, kStep).empty()) << "its widening is reported once";
+  // The cloth is stopped in the second of five steps, so that two thirds of the way are left.
+  EXPECT_EQ(steps, 4);
+  EXPECT_LT(cloth.max_strain(released), 1e-12);
 }
 
 }  // namespace

@@ -94,11 +94,15 @@ void TriangleMembrane::interpolate_rest_shape(double progress) {
   if (!starts_.empty()) pack();
 }
 
-bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_extension) {
-  if (accepted_progress_ == 1) return false;
+bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_extension, double elapsed) {
+  const bool was_sewn = accepted_progress_ == 1;
   for (std::size_t e = 0; e < starts_.size(); ++e) {
     Start& start = starts_[e];
-    start.lag = progress_ - progress_of(start, progress_);
+    if (was_sewn && start.lag == 0) continue;
+    if (!was_sewn)
+      start.lag = progress_ - progress_of(start, progress_);
+    else if (!start.is_stopped)
+      start.lag = std::max(0.0, start.lag - elapsed);
     // Sewing shortens only threads that are longer at the start than in the pattern. It releases the others.
     const Gradient s = gradient(elements_[e], x);
     const double longest = 1 + max_extension;
@@ -106,7 +110,12 @@ bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_ext
         (s.u.norm() > longest && start.excess(0, 0) > 0) || (s.v.norm() > longest && start.excess(1, 1) > 0);
   }
   accepted_progress_ = progress_;
-  return progress_ == 1;
+  return !was_sewn && progress_ == 1;
+}
+
+bool TriangleMembrane::is_catching_up() const {
+  return accepted_progress_ == 1 &&
+         std::ranges::any_of(starts_, [](const Start& start) { return start.lag > 0 && !start.is_stopped; });
 }
 
 TriangleMembrane::Widening TriangleMembrane::widening() const {

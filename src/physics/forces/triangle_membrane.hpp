@@ -46,8 +46,13 @@ class TriangleMembrane : public Membrane {
   /// `max_extension` with corners at x [m], until the next call. Thus cloth whose pattern is too
   /// narrow for a body stays wide enough. Threads that are shorter at the start than in the pattern
   /// do not count, because further sewing releases them. Returns whether the progress has become 1
-  /// in this step.
-  bool accept_rest_shape(std::span<const Vec3> x, double max_extension);
+  /// in this step. `elapsed`: length of the step relative to the duration of the sewing. After the
+  /// step in which the progress becomes 1, each call advances triangles that lag and are not stopped
+  /// by `elapsed`; call interpolate_rest_shape(1) afterwards.
+  bool accept_rest_shape(std::span<const Vec3> x, double max_extension, double elapsed);
+  /// Whether the next accept_rest_shape() advances triangles: the progress is 1, and a triangle that
+  /// is not stopped lags.
+  bool is_catching_up() const;
   /// The triangle whose shape is wider than in the pattern by the largest fraction of its width.
   struct Widening {
     double fraction = 0;  ///< 0 if all triangles have their shape in the pattern

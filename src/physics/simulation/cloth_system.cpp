@@ -267,6 +267,7 @@ bool ClothSystem::is_constant_between(double t0, double t1) const {
              [&](const KeyedRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; }) &&
          std::ranges::all_of(sewing_, [&](const Sewing& sewing) {
            return sewing.progress_at(t0 - begin_) == sewing.progress_at(t1 - begin_) &&
+                  !sewing.membrane->is_catching_up() &&
                   (sewing.ties == nullptr || sewing.ties->are_constant_between(t0, t1));
          });
 }
@@ -313,11 +314,17 @@ bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
   return true;
 }
 
-std::vector<ClothSystem::Widening> ClothSystem::accept(std::span<const Vec3> x) {
+std::vector<ClothSystem::Widening> ClothSystem::accept(std::span<const Vec3> x, double h) {
   std::vector<Widening> widened;
   for (Sewing& sewing : sewing_) {
     if (!sewing.tearing_seams.empty()) sewing.ties->accept(x);
-    if (sewing.limit == nullptr || !sewing.membrane->accept_rest_shape(x, sewing.limit->onset())) continue;
+    if (sewing.limit == nullptr) continue;
+    const bool catches_up = sewing.membrane->is_catching_up();
+    const double elapsed = sewing.duration > 0 ? h / sewing.duration : 1;
+    const bool ends = sewing.membrane->accept_rest_shape(x, sewing.limit->onset(), elapsed);
+    // From now on, rest shapes follow from the saved lags alone, so that a resumed run has the same bits.
+    if (ends || catches_up) sewing.set_progress(1);
+    if (!ends) continue;
     const auto [fraction, corners] = sewing.membrane->widening();
     if (fraction > 0) widened.push_back({sewing.cloth, fraction, (x[corners[0]] + x[corners[1]] + x[corners[2]]) / 3});
   }

@@ -90,8 +90,8 @@ class ClothSystem {
   /// amounts of air. With the midpoint rule, the stage is earlier than t.
   void finish_step(double t);
 
-  /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1. Both are
-  /// scene times [s]; sew() takes the time since the start of the run.
+  /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1, and no
+  /// triangle catches up after the sewing. Both are scene times [s]; sew() takes the time since the start of the run.
   bool is_constant_between(double t0, double t1) const;
 
   /// Updates the enclosed air for the step with its stage at time t [s since the start of the run]; call it after
@@ -110,10 +110,11 @@ class ClothSystem {
     double fraction;    ///< by which its widest triangle is wider than in the pattern
     Vec3 place;         ///< of this triangle
   };
-  /// Accepts a step that ends with particles at x [m]: updates which ties of tearable seams hold,
-  /// tears overloaded ones, and stops the sewing of triangles whose threads lock. Returns the cloths
-  /// whose sewing ended with this step, if they were widened.
-  std::vector<Widening> accept(std::span<const Vec3> x);
+  /// Accepts a step over h [s] that ends with particles at x [m]: updates which ties of tearable
+  /// seams hold, tears overloaded ones, and stops the sewing of triangles whose threads lock. After
+  /// the sewing, triangles whose threads are no longer locked catch up. Returns the cloths whose
+  /// sewing ended with this step, if they were widened.
+  std::vector<Widening> accept(std::span<const Vec3> x, double h);
   /// The load of each seam that can tear.
   std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
   /// Copies the state of sewing, and which ties of seams hold or are torn. `cloths[k]`: number, in this object, of

@@ -241,7 +241,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   for (const std::string& text : attachments_.accept(next_.particles()))
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
   cloth_.finish_step(step_end_ - start_);
-  for (const ClothSystem::Widening& wide : cloth_.accept(next_.particles())) {
+  for (const ClothSystem::Widening& wide : cloth_.accept(next_.particles(), h)) {
     if (wide.fraction < kMinReportedWidening) continue;
     report.warnings.push_back(
         fmt::format("frame {}: '{}' is too narrow for what it surrounds: near ({:.4g}, {:.4g}, {:.4g}) m it is sewn up "
