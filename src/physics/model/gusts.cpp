@@ -16,7 +16,7 @@ constexpr double kRatio = 1.5;
 constexpr int kShellsBelow = 3;
 // k_e times the integral length: (π/2 Σ E/k) / (2/3 Σ E), summed over these shells with energies E
 // and wave numbers k (relative to k_e). For the whole spectrum, this product is 0.747.
-constexpr double kLengthFactor = 0.837;
+constexpr double kLengthFactor = 0.836;
 // Rate at which the phase of a wave changes for an observer that moves with the wind, relative to the turnover rate of
 // eddies of its size (Fung et al., 1992, Section 2).
 constexpr double kUnsteadiness = 0.5;
