@@ -205,6 +205,48 @@ TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
     EXPECT_GT(face_normal(face, x).dot(at(40, 1, 0)), std::cos(0.3));  // less than 15 degrees away from the crossing
 }
 
+// The top of a box is a limb of its own, and thus an open surface. The cloth is lower than the top, beside the box or
+// in it.
+TEST(PinchedByAnOpenLimb, IsOnItsSideBeyondTheBorderButNotInTheBody) {
+  testing::MovingScene scene;
+  const std::vector<Triangle> cloth{{0, 1, 2}};
+  std::vector<Vec3> x{{0.11, 0, 0.095}, {0.13, 0, 0.095}, {0.11, 0.02, 0.095}};
+  scene.add({x, cloth});
+  testing::TestMesh box;
+  for (const double z : {-0.1, 0.1, 0.1})  // bottom, upper rim of the sides, top
+    for (const Vec3& corner : {Vec3(-0.1, -0.1, z), Vec3(0.1, -0.1, z), Vec3(0.1, 0.1, z), Vec3(-0.1, 0.1, z)})
+      box.x.push_back(corner);
+  box.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6},  {1, 6, 5},
+                   {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}, {8, 9, 10}, {8, 10, 11}};
+  scene.add(box);
+  x.insert(x.end(), box.x.begin(), box.x.end());
+  const std::vector<Surface> surfaces = scene.surfaces();
+  BroadPhase broad_phase(surfaces, x);
+  std::vector<std::size_t> body_of(3, 0);
+  body_of.resize(x.size(), 1);
+  std::vector<Index> limb_of(x.size(), 0);
+  std::fill(limb_of.begin() + 3, limb_of.begin() + 11, 1);
+  PinchedPairs pinched(3, body_of, limb_of);
+  const CornerPair pair{cloth[0], surfaces[1].triangles.back()};
+  pinched.add(pair);
+  pinched.note_origins(broad_phase, x);
+  EXPECT_EQ(pinched.origins().at({cloth[0], 1, 0}).side, 1);
+  const std::vector<PinchedPairs::Push> beside = pinched.find_pushes(broad_phase, x, 0.05);
+  ASSERT_EQ(beside.size(), 3U);
+  for (const auto& [push, has_room] : beside) {
+    EXPECT_NEAR(push.distance, push.normal.dot(x[push.vertices[0]] - Vec3(0.1, x[push.vertices[0]].y(), 0.1)), 1e-12);
+    EXPECT_GT(push.distance, 0.01);
+    EXPECT_GT(push.normal.x(), 0.5) << "away from the border";
+  }
+  for (const auto& [shift, is_pinched] : {std::pair(-0.11, true), std::pair(0.0, false)}) {
+    std::vector<Vec3> moved = x;
+    for (std::size_t v = 0; v < 3; ++v) moved[v].x() += shift;
+    for (std::size_t b = 0; b < 2; ++b) broad_phase.refit(b, moved, moved, 0.001);
+    pinched.renew(cloth, broad_phase, moved);
+    EXPECT_EQ(!pinched.empty(), is_pinched) << shift;
+  }
+}
+
 // All corners of the cloth are outside the lower box; a corner of the box pierces the cloth.
 TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
   pinched_.add(with(1));

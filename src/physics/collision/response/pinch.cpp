@@ -32,10 +32,19 @@ SurfacePoint PinchedPairs::nearest_on_limb(const Corner& corner, const BroadPhas
   return nearest_point(x[corner.particle], surfaces, corner.body, x, towards, belongs_to_limb(corner.limb));
 }
 
+// Whether the particle of a corner is on this side of the limb (see Origin). `nearest`: from nearest_on_limb(). A limb
+// may be an open surface, such as a forearm that ends at the elbow. Beyond its border, `nearest` may have a negative
+// height although the particle is in front of the body, so the whole body decides there.
+bool PinchedPairs::is_on_side(int side, const Corner& corner, const SurfacePoint& nearest, const BroadPhase& surfaces,
+                              std::span<const Vec3> x) const {
+  if (side * nearest.height > 0) return true;
+  return side > 0 && nearest.height < 0 && !is_inside(x[corner.particle], nearest.normal, surfaces, corner.body, x);
+}
+
 // Whether the particle of a corner is on the side of the limb on which the limb reached the cloth.
 bool PinchedPairs::is_on_its_side(const Corner& corner, const Origin& origin, const BroadPhase& surfaces,
                                   std::span<const Vec3> x) const {
-  return origin.side * nearest_on_limb(corner, surfaces, x).height > 0;
+  return is_on_side(origin.side, corner, nearest_on_limb(corner, surfaces, x), surfaces, x);
 }
 
 bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const {
@@ -92,7 +101,8 @@ void PinchedPairs::list_particles() {
 void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0) {
   for (auto& [key, origin] : origins_) {
     if (origin.side != 0) continue;
-    origin.side = nearest_on_limb({key.cloth[0], key.body, key.limb}, surfaces, x_t0).height < 0 ? -1 : 1;
+    const Corner corner{key.cloth[0], key.body, key.limb};
+    origin.side = is_on_side(1, corner, nearest_on_limb(corner, surfaces, x_t0), surfaces, x_t0) ? 1 : -1;
   }
   list_particles();
 }
@@ -144,12 +154,13 @@ std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surf
   for (const auto& [corner, origin] : particles_) {
     const Vec3& p = x[corner.particle];
     SurfacePoint nearest = nearest_on_limb(corner, surfaces, x);
-    is_back[corner] = origin.side * nearest.height > 0;
+    const bool back = is_back[corner] = is_on_side(origin.side, corner, nearest, surfaces, x);
     // The nearest point may be on a side of the limb from which the cloth did not come.
-    if (!is_back[corner]) nearest = nearest_on_limb(corner, surfaces, x, outward(p, origin.faces, x));
-    const double height = origin.side * nearest.height;
+    if (!back) nearest = nearest_on_limb(corner, surfaces, x, outward(p, origin.faces, x));
+    const int side = !back ? origin.side : nearest.height < 0 ? -1 : 1;  // differs from origin.side beyond a border
+    const double height = side * nearest.height;
     if (height >= max_height) continue;
-    const Vec3 exit_direction = origin.side * nearest.normal;
+    const Vec3 exit_direction = side * nearest.normal;
     pushes.push_back(
         {{{corner.particle, nearest.face[0], nearest.face[1], nearest.face[2]},
           {1, -nearest.weights[0], -nearest.weights[1], -nearest.weights[2]},

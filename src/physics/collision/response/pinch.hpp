@@ -38,7 +38,7 @@ class PinchedPairs {
 
   /// Where the limb first met the cloth.
   struct Origin {
-    int side = 0;  ///< +1: the cloth was outside the limb; −1: inside, or behind an open surface; 0: not recorded
+    int side = 0;  ///< +1: the cloth was outside the limb; −1: inside the body, or behind an open one; 0: not recorded
     std::vector<Triangle> faces;  ///< faces of the limb that first met the triangle or else its neighbour
   };
 
@@ -127,6 +127,8 @@ class PinchedPairs {
   }
   SurfacePoint nearest_on_limb(const Corner& corner, const BroadPhase& surfaces, std::span<const Vec3> x,
                                const Vec3& towards = Vec3::Zero()) const;
+  bool is_on_side(int side, const Corner& corner, const SurfacePoint& nearest, const BroadPhase& surfaces,
+                  std::span<const Vec3> x) const;
   bool is_on_its_side(const Corner& corner, const Origin& origin, const BroadPhase& surfaces,
                       std::span<const Vec3> x) const;
   std::vector<Triangle> faces_near(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
