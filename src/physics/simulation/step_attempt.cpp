@@ -25,7 +25,8 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
     Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
                                        : solve_with_velocity_constraints(attempt, start, report);
-    if (collisions_->obstructed_pins().empty() || !may_release_pins(attempt)) return rejection;
+    // An accepted step needs no release: obstructed pins may be those of an early check, after which the solve went on.
+    if (!rejection || collisions_->obstructed_pins().empty() || !may_release_pins(attempt)) return rejection;
     for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
       pins_.release_particle(given.particle, collisions_->describe(given, progress_.now));
   }
