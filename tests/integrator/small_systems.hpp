@@ -77,7 +77,7 @@ class HardeningSpring : public Particles {
 
 /// Two particles of 1 kg with f0 = −s x1 and f1 = −s x0. If s > 0 they separate ever faster. If s > rate² (see
 /// StagePoint), the matrix is indefinite although its diagonal is definite.
-class Saddle final : public System {
+class Saddle : public System {
  public:
   explicit Saddle(double s) : s_(s) { system_.matrix = solver::BlockMatrix(2, {{0, 1}}); }
   std::span<const double> masses() const override { return masses_; }

@@ -344,7 +344,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   iterations_before_pause_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear, stage);
   impact_changes_.clear();
-  if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h);
+  if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h, report);
   report.times = times_;
   if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
   write_end_state(now, stage, h, held, next);

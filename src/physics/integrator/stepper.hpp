@@ -46,10 +46,11 @@ struct StageTimes {
 struct StepReport {
   Verdict verdict = Verdict::solved;
   int newton_iterations = 0;
-  int linear_iterations = 0;
-  double local_error = 0;  ///< estimate of the error of positions that the method adds in this step [m]
+  int linear_iterations = 0;  ///< of Newton's method and, with BDF2, of impacts
+  double local_error = 0;     ///< estimate of the error of positions that the method adds in this step [m]
   /// Estimate of the error of positions that Newton's method adds: the largest remaining velocity
-  /// error of a diagonal block times `Numerics::Newton::lasting_time` [m].
+  /// error of a diagonal block times `Numerics::Newton::lasting_time` [m]. Includes the error of the
+  /// linear solve of impacts if its iterations have run out.
   double solver_error = 0;
   /// Remaining velocity error and its bound, in the diagonal block with the largest ratio
   /// left / allowed [m/s].
@@ -211,7 +212,7 @@ class Stepper {
   void report_worst(StepReport& report) const;
   void write_end_state(const State& now, const Stage& stage, double h, std::span<const HeldParticle> held,
                        State& next) const;
-  void split_impacts(System& system, const State& now, const Stage& stage, double h);
+  void split_impacts(System& system, const State& now, const Stage& stage, double h, StepReport& report);
   Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
 
   Method method_;
