@@ -160,7 +160,7 @@ double ForbiddenRegion::distance_out(const Vec3& p, const Vec3& d) const {
 
 double ForbiddenRegion::midpoint_depth(const Vec3& p, const Vec3& q) const {
   const Vec3 middle = 0.5 * (p + q);
-  return is_near(middle, 0) && inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
+  return inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
 }
 
 }  // namespace weft::untangle

@@ -27,7 +27,7 @@ class ForbiddenRegion {
 
   std::size_t number() const { return number_; }
   /// Whether p is at most `distance` [m] outside of the bounding box of the surface or, for a floor, less than
-  /// `distance` above it. If false, callers treat p as outside the region by more than `distance`.
+  /// `distance` above it. If false, p is outside a body or floor by more than `distance`, but may be behind a layer.
   bool is_near(const Vec3& p, double distance) const;
   /// Whether p is inside. Uses the winding number for a body, so that points in several of its shells are inside.
   bool inside(const Vec3& p) const;

@@ -66,6 +66,17 @@ Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move
   return sum.stableNormalized();
 }
 
+// Whether a region reaches into the bounding box of the solid, or one of its threads crosses the surface. The space
+// behind a layer has no end. Cloth that is far behind and apart from the layer, such as the back of a coat that is worn
+// over an apron, may stay there.
+bool reaches(const UntangleInput& input, const ForbiddenRegion& solid, std::span<const Index> members,
+             std::span<const Vec3> x) {
+  return std::ranges::any_of(members, [&](Index i) {
+    return solid.is_near(x[i], 0) ||
+           std::ranges::any_of(input.neighbours[i], [&](Index j) { return solid.crosses_surface(x[i], x[j]); });
+  });
+}
+
 // All particles that are connected to this one.
 std::vector<Index> mesh_of(const UntangleInput& input, Index first) {
   std::vector<Index> mesh{first};
@@ -86,8 +97,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
                                       std::span<const double> above, std::span<const Vec3> x) {
   const Index particles = input.particles();
   std::vector<std::uint8_t> inside(particles, 0);
-  for (Index i = 0; i < particles; ++i)
-    inside[i] = input.can_move[input.bodies.body_of(i)] != 0 && solid.is_near(x[i], 0) && solid.inside(x[i]);
+  for (Index i = 0; i < particles; ++i) inside[i] = input.can_move[input.bodies.body_of(i)] != 0 && solid.inside(x[i]);
   std::vector<Index> move_of(x.size(), -1);  // per vertex: index among the moves of the present region
   std::vector<InsideRegion> regions;
   for (Index first = 0; first < particles; ++first) {
@@ -101,6 +111,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
           inside[j] = 0;
           members.push_back(j);
         }
+    if (!reaches(input, solid, members, x)) continue;
     InsideRegion region;
     region.cloth = input.bodies.body_of(first);
     region.body = solid.number();
@@ -151,7 +162,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
       std::size_t through = 0;
       for (const Index i : mesh_of(input, members.front())) {
         const Vec3 target = x[i] + way * d;
-        if (!input.movable[i] || (solid.is_near(target, 0) && solid.inside(target))) return;
+        if (!input.movable[i] || solid.inside(target)) return;
         through += move_of[i] < 0 && solid.crosses_surface(x[i], target);
         moves.push_back({i, target});
       }

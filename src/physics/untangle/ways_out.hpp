@@ -26,11 +26,11 @@ struct InsideRegion {
   std::vector<Move> moves;  ///< out of the solid, to the height `above` over its surface
 };
 
-/// Finds all regions that are inside `solid` at x [m], of cloth that can move (UntangleInput::can_move), and chooses
-/// the cheapest way out of each: every particle goes to its nearest exit, or all particles move in one direction, or
-/// the whole mesh moves. For example, a sheet that cuts a ball into two parts moves to the side of the smaller part of
-/// the ball; a garment that is too small moves outward on all sides. `above`: height over the surface, per body of
-/// cloth [m].
+/// Finds all regions that are inside `solid` at x [m], of cloth that can move (UntangleInput::can_move). Behind a
+/// layer, only regions count that reach into its bounding box or cross it. Chooses the cheapest way out of each: every
+/// particle goes to its nearest exit, or all particles move in one direction, or the whole mesh moves. For example, a
+/// sheet that cuts a ball into two parts moves to the side of the smaller part of the ball; a garment that is too small
+/// moves outward on all sides. `above`: height over the surface, per body of cloth [m].
 std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
                                       std::span<const double> above, std::span<const Vec3> x);
 

@@ -1,0 +1,81 @@
+// Regions of cloth behind a flat layer, whose bounding box has no depth.
+#include "physics/untangle/ways_out.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <vector>
+
+namespace weft::untangle {
+namespace {
+
+/// A square cloth over the middle of a larger square layer at z = 0 whose front is up. The cloth rises along x by
+/// `slope`; `height` is that of its middle.
+struct ClothOnLayer {
+  static constexpr int kCells = 8;
+  std::vector<Vec3> x;
+  collision::Bodies bodies;
+  std::vector<std::uint8_t> movable;
+
+  ClothOnLayer(double slope, double height) {
+    add(0.2, slope, height, {.deformable = true, .thickness = 0.002});
+    movable.assign(x.size(), 1);
+    add(0.5, 0, 0, {.thickness = 0.002});
+    movable.resize(x.size(), 0);
+  }
+  void add(double half_width, double slope, double height, const collision::BodyTraits& traits) {
+    constexpr Index kRow = kCells + 1;
+    std::vector<std::array<Index, 3>> triangles;
+    for (Index j = 0; j < kRow; ++j)
+      for (Index i = 0; i < kRow; ++i) {
+        const double u = half_width * (2.0 * i / kCells - 1), v = half_width * (2.0 * j / kCells - 1);
+        x.emplace_back(u, v, height + slope * u);
+        if (i == kCells || j == kCells) continue;
+        const Index corner = i + kRow * j;
+        triangles.push_back({corner, corner + 1, corner + kRow + 1});
+        triangles.push_back({corner, corner + kRow + 1, corner + kRow});
+      }
+    bodies.add(triangles, kRow * kRow, traits);
+  }
+  /// Calls test(input, layer).
+  template <class Test>
+  void with_layer(const Test& test) const {
+    const std::vector<Vec3> rest(x.begin(), x.begin() + (kCells + 1) * (kCells + 1));
+    const UntangleInput input(bodies, {SurfaceKind::cloth, SurfaceKind::layer}, x, rest, movable);
+    const collision::BroadPhase surfaces(bodies.surfaces(), x);
+    test(input, ForbiddenRegion(surfaces, 1, x, input.on_border, {}));
+  }
+};
+
+TEST(ClothBehindAFlatLayer, ThatCrossesTheLayerMovesToItsFront) {
+  const ClothOnLayer tilted(0.5, 0.01);
+  tilted.with_layer([&](const UntangleInput& input, const ForbiddenRegion& layer) {
+    const std::vector<InsideRegion> regions = find_inside(input, layer, std::array{0.0015, 0.0}, tilted.x);
+    ASSERT_EQ(regions.size(), 1U);
+    EXPECT_EQ(regions[0].moves.size(), 36U) << "four of nine columns are lower than the layer";
+    for (const Move& move : regions[0].moves) {
+      EXPECT_LT(tilted.x[at(move.particle)].z(), 0);
+      EXPECT_GT(move.target.z(), 0);
+    }
+  });
+}
+
+// Such as the back of a coat that is worn over an apron.
+TEST(ClothBehindAFlatLayer, ThatIsApartFromTheLayerStays) {
+  const ClothOnLayer apart(0, -0.05);
+  apart.with_layer([&](const UntangleInput& input, const ForbiddenRegion& layer) {
+    EXPECT_TRUE(layer.inside(apart.x[0]));
+    EXPECT_TRUE(find_inside(input, layer, std::array{0.0015, 0.0}, apart.x).empty());
+  });
+}
+
+TEST(ClothBehindAFlatLayer, HasTheDepthOfItsThreads) {
+  const ClothOnLayer any(0, 0.01);
+  any.with_layer([](const UntangleInput&, const ForbiddenRegion& layer) {
+    EXPECT_NEAR(layer.midpoint_depth({-0.1, 0.01, -0.05}, {0.1, 0.02, -0.05}), 0.05 / Vec3(0.2, 0.01, 0).norm(), 1e-12);
+    EXPECT_EQ(layer.midpoint_depth({-0.1, 0.01, 0.05}, {0.1, 0.02, 0.05}), 0);
+  });
+}
+
+}  // namespace
+}  // namespace weft::untangle
