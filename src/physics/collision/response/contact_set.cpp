@@ -93,10 +93,10 @@ Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
 // Derivative of w with respect to a slip in units of the stick slip. Exact if w corresponds to the slip, else a
 // positive semidefinite approximation.
 Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
-  const double size = slip.norm();
-  return friction_over_slip(contact, size) *
-         friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(), slip,
-                          slope_of_slip_over_friction(contact, size) * w);
+  const double size = slip.norm(), ratio = friction_over_slip(contact, size);
+  if (ratio == 0) return Mat3::Zero();  // sliding has no friction
+  return ratio * friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(), slip,
+                                  slope_of_slip_over_friction(contact, size) * w);
 }
 
 // Slip of point a relative to point b during the step, in the tangent plane [m].
