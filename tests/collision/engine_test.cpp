@@ -260,6 +260,22 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   EXPECT_TRUE(engine.is_separated(sheet.x, pinched));  // apart from the pinched pairs
 }
 
+// The same ceiling passes through the cloth, which stays above it. Contacts of the exempted pairs would keep it there.
+TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
+  Sheet sheet(2, 0.005, 0.01);
+  std::vector<Vec3> end = sheet.x;
+  for (std::size_t v = end.size() - 4; v < end.size(); ++v) end[v].z() = -0.0001;
+  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  Engine engine = sheet.engine();
+  begin_step(engine, sheet.x, end);
+  ASSERT_FALSE(engine.is_separated(sheet.x, end));
+  ASSERT_TRUE(engine.push_apart(sheet.x, end, movable, true).separated);
+  ASSERT_GT(engine.pinched_pairs(), 0);
+  engine.continue_from(end);
+  EXPECT_TRUE(engine.response().springs().empty());
+}
+
 // A ceiling comes down tilted, and pinches the cloth on one side. A guess of the next end must not exempt further
 // pairs.
 TEST(Engine, NothingIsExemptedForAGuess) {

@@ -220,6 +220,8 @@ void Engine::continue_from(std::span<const Vec3> x) {
   std::vector<Proximity> near;
   find_near(x, near);
   add_contacts(near, motion);
+  // push_apart() may have exempted some of the pairs. Their contacts might push cloth deeper into the limb.
+  std::erase_if(pushed_pairs_, [&](const CornerPair& pair) { return pinched_.exempts(pair); });
   add_failing(pushed_pairs_, motion);
 }
 

@@ -59,8 +59,8 @@ class Engine {
 
   /// Continues the step from x [m], in which obstacles are at the end of the step. Surfaces must not intersect on the
   /// way from x_t0 to x. Finds new contacts at x. Also adds contacts for all pairs that were in failing() when
-  /// push_apart() was called since begin_step(). Friction still measures slip from the start of the step. In later
-  /// calls in this step, pass x as x_t0. x must outlive the step.
+  /// push_apart() was called since begin_step(), and that it has not exempted. Friction still measures slip from the
+  /// start of the step. In later calls in this step, pass x as x_t0. x must outlive the step.
   void continue_from(std::span<const Vec3> x);
   /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests or
   /// pushes apart pairs.
@@ -164,9 +164,9 @@ class Engine {
   double step_ = 0;                                 // h [s]
   std::span<const Vec3> x_t0_;                      // start of the step
   std::vector<PinchedPairs::Push> pinched_pushes_;  // pushes of pinched cloth in this step
-  std::vector<CornerPair> pushed_pairs_;            // failing() at each call of push_apart() in this step
-  std::vector<Proximity> proximities_;              // near pairs at the expected end of the step, or at its start
-  std::span<const CornerPair> failing_;             // of the last call of find_failing()
+  std::vector<CornerPair> pushed_pairs_;  // failing() at each call of push_apart() in this step, if not exempt
+  std::vector<Proximity> proximities_;    // near pairs at the expected end of the step, or at its start
+  std::span<const CornerPair> failing_;   // of the last call of find_failing()
 };
 
 }  // namespace weft::collision
