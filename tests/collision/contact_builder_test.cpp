@@ -249,6 +249,24 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   EXPECT_EQ(response.springs().size(), 1U);
 }
 
+// In a continued step, each corner of a failing pair gets a contact. An edge is a triangle that repeats its second end.
+TEST(ContactBuilder, EachEndOfAnEdgeGetsOneContact) {
+  Scene scene;
+  ContactBuilder builder(scene.bodies, {}, scene.masses);
+  ContactResponse response(ResponseForm::springs, scene.masses);
+  response.begin_step(kBuilderStep);
+  builder.begin_step();
+  std::vector<Vec3> x = scene.x_t0;
+  x[3] = {0.03, 0.03, 0.001}, x[4] = {0.02, 0.02, 0.0015};
+  const CornerPair pair{{3, 4, 4}, {6, 7, 8}};
+  builder.add_failing(pair, closest_features(pair, x), {scene.x_t0, x, x, kBuilderStep}, response);
+  std::vector<Index> ends;
+  for (const Contact& contact : response.springs())
+    for (std::size_t k = 0; k < 4; ++k)
+      if (contact.weights[k] != 0) ends.push_back(contact.particles[k]);
+  EXPECT_EQ(ends, (std::vector<Index>{3, 4})) << "the closest end, and the other one";
+}
+
 // With velocity constraints, every corner of the cloth triangle stays above the obstacle's plane.
 TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
   Scene scene;

@@ -156,7 +156,7 @@ void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closes
 void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                                  ContactResponse& response) const {
   for (const Triangle& corners : {pair.a, pair.b}) {
-    for (Index corner : corners) {
+    for (Index corner : std::span(corners).first(corners[1] == corners[2] ? 2 : 3)) {  // an edge repeats its second end
       if (!is_particle(corner)) continue;
       const FeaturePair corner_pair = pair_with_corner(corner, corners, closest);
       if (corner_pair.vertices == closest.vertices && corner_pair.weights == closest.weights) continue;
