@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -89,16 +90,17 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
-// Arms are tubes, 0.3 m around near the chest: as thick as the arms of a figure with a short trunk.
-TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
-  constexpr double kGirth = 0.3, kLength = 0.6;
+// A wearer whose arms are tubes, 0.3 m around: as thick as the arms of a figure with a short trunk.
+constexpr double kThickArm = 0.3;
+Wearer wearer_with_thick_arms() {
+  constexpr double kLength = 0.6;
   constexpr int kAround = 64, kAlong = 61;
   Wearer wearer = round_wearer();
   for (const double side : {1.0, -1.0}) {
     const auto first = static_cast<Index>(wearer.skin.size());
     for (int j = 0; j < kAlong; ++j)
       for (int i = 0; i < kAround; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kAround, radius = kGirth / (2 * std::numbers::pi);
+        const double angle = 2 * std::numbers::pi * i / kAround, radius = kThickArm / (2 * std::numbers::pi);
         wearer.skin.emplace_back(side * (0.2 + kLength * j / (kAlong - 1)), radius * std::cos(angle),
                                  1.4 + radius * std::sin(angle));
       }
@@ -112,15 +114,114 @@ TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
     (side > 0 ? wearer.left_arm : wearer.right_arm) =
         Limb{Vec3(side * 0.2, 0, 1.4), Vec3(side * 0.45, 0, 1.4), Vec3(side * 0.7, 0, 1.4)};
   }
-  EXPECT_NEAR(*measure(wearer).arm, kGirth, 1e-3 * kGirth);  // a polygon of 64 corners is shorter by 0.04 %
+  return wearer;
+}
+
+TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
+  const Wearer wearer = wearer_with_thick_arms();
+  EXPECT_NEAR(*measure(wearer).arm, kThickArm, 1e-3 * kThickArm);  // a polygon of 64 corners is shorter by 0.04 %
   Pattern pattern;
   pattern.measures = {*measure(wearer).chest, {}, {}, *measure(wearer).arm / 1.5, 1.7};
   const Fit thick = fit(pattern, wearer, "cloth.c");
   EXPECT_LT((thick.factors - Vec2(1.5, 1.5)).norm(), 1e-12);
+  EXPECT_EQ(thick.below_armholes, 1);  // it has no armholes
   EXPECT_NEAR(kNeckHeightRatio * 1.7 * thick.factors.y() + thick.rise, wearer.neck, 1e-12);
   pattern.measures.arm = 1;
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").factors.x(), 1, 1e-12);
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").rise, 0, 1e-12);
+}
+
+Pattern shipped_pattern(const std::string& name) {
+  return load_pattern(std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml", "here");
+}
+
+double length_of_edge(const Pattern& pattern, const std::string& edge) {
+  const auto [p, e] = pattern.find(edge);
+  return Arclength(pattern.panels[p].edges[e].curves).length();
+}
+
+// The T-shirt has sleeves cut in one with the body; the shirt has sleeves of their own.
+TEST(Fit, GivesThickArmsLongArmholesButNoLongBody) {
+  const Wearer wearer = wearer_with_thick_arms();
+  for (const std::string name : {"tshirt", "shirt"}) {
+    Pattern pattern = shipped_pattern(name);
+    pattern.measures = {*measure(wearer).chest, {}, {}, *measure(wearer).arm / 1.5, 1.7};
+    const Fit thick = fit(pattern, wearer, "cloth.c");
+    EXPECT_NEAR(thick.factors.y(), 1.5, 1e-12) << name;
+    EXPECT_NEAR(thick.factors.y() * thick.below_armholes, wearer.neck / (kNeckHeightRatio * 1.7), 1e-12) << name;
+    pattern.measures.arm = 1;
+    EXPECT_EQ(fit(pattern, wearer, "cloth.c").below_armholes, 1) << name;
+  }
+}
+
+TEST(Fit, ShortensBothSidesOfASeamAlikeBelowTheArmholes) {
+  const auto ratio = [](const Pattern& changed, const Pattern& drawn, const std::string& edge) {
+    return length_of_edge(changed, edge) / length_of_edge(drawn, edge);
+  };
+  for (const std::string name : {"tshirt", "shirt"}) {
+    const Pattern drawn = shipped_pattern(name);
+    Pattern changed = drawn;
+    shorten_below_armholes(changed, 0.5);
+    for (std::size_t p = 0; p < drawn.panels.size(); ++p)
+      EXPECT_EQ(changed.panels[p].position, drawn.panels[p].position) << name;
+    for (const Seam& seam : drawn.seams)
+      EXPECT_NEAR(length_of_edge(changed, seam.a) - length_of_edge(drawn, seam.a),
+                  length_of_edge(changed, seam.b) - length_of_edge(drawn, seam.b), 1e-12)
+          << name << ": " << seam.a;
+    for (const std::string edge : {"front.side_l", "front.side_r", "back.side_l", "back.side_r"})
+      EXPECT_NEAR(ratio(changed, drawn, edge), 0.5, 1e-12) << name << ": " << edge;
+    for (const std::string edge : {"front.hem", "front.neck", "front.shoulder_l"})
+      EXPECT_NEAR(ratio(changed, drawn, edge), 1, 1e-12) << name << ": " << edge;
+  }
+  const Pattern tshirt = shipped_pattern("tshirt"), shirt = shipped_pattern("shirt");
+  Pattern short_tshirt = tshirt, short_shirt = shirt;
+  shorten_below_armholes(short_tshirt, 0.5);
+  shorten_below_armholes(short_shirt, 0.5);
+  for (const std::string edge : {"front.under_r", "back.cuff_l", "back.sleeve_r"})
+    EXPECT_NEAR(ratio(short_tshirt, tshirt, edge), 1, 1e-12) << edge;
+  for (const std::string edge : {"front.armhole_l", "back.armhole_r", "sleeve_l.cap_front", "sleeve_r.cap_back"})
+    EXPECT_NEAR(ratio(short_shirt, shirt, edge), 1, 1e-12) << edge;
+  // The sleeve is 12 cm long below its cap, and 1.5 cm narrower at the cuff, on each side.
+  EXPECT_NEAR(length_of_edge(short_shirt, "sleeve_l.under_front"), std::hypot(0.06, 0.015), 1e-12);
+}
+
+// A yoke, a sleeve and a skirt panel of a garment whose armhole starts 1.2 m above the floor: 0.2 m above the origin of
+// the front. The skirt is drawn upside down.
+TEST(Fit, ShortensPanelsWithoutAnArmholeByTheHeightAtWhichTheyStart) {
+  const auto rectangle = [](const std::string& name, const Vec2& position) {
+    Panel panel;
+    panel.name = name;
+    panel.around = Around::torso;
+    panel.position = position;
+    const Vec2 a(0, 0), b(0.4, 0), c(0.4, 0.5), d(0, 0.5);
+    panel.edges = {
+        {"low", {straight(a, b)}}, {"right", {straight(b, c)}}, {"top", {straight(c, d)}}, {"left", {straight(d, a)}}};
+    return panel;
+  };
+  Pattern pattern;
+  pattern.panels = {rectangle("front", Vec2(0, 1)), rectangle("sleeve", Vec2(0, 0)), rectangle("yoke", Vec2(0, 1.3)),
+                    rectangle("skirt", Vec2(0, 0.9)), rectangle("collar", Vec2(0, 0))};
+  std::vector<PanelEdge>& front = pattern.panels[0].edges;
+  front[1].curves = {straight(Vec2(0.4, 0), Vec2(0.4, 0.2))};
+  front.insert(front.begin() + 2, PanelEdge{"armhole", {straight(Vec2(0.4, 0.2), Vec2(0.4, 0.5))}});
+  pattern.panels[1].around = Around::left_arm, pattern.panels[1].position.reset();
+  pattern.panels[3].rotation = 180;
+  pattern.panels[4].around = Around::neck, pattern.panels[4].position.reset();
+  for (const auto& [a, b] : {std::pair{"front.armhole", "sleeve.top"}, {"front.top", "collar.low"}}) {
+    Seam& seam = pattern.seams.emplace_back();
+    seam.a = a, seam.b = b;
+  }
+  shorten_below_armholes(pattern, 0.5);
+  EXPECT_NEAR(length_of_edge(pattern, "front.right"), 0.1, 1e-12);
+  EXPECT_NEAR(length_of_edge(pattern, "front.armhole"), 0.3, 1e-12);
+  EXPECT_NEAR(length_of_edge(pattern, "front.left"), 0.4, 1e-12);  // of it, 0.2 m are below the armhole
+  EXPECT_NEAR(length_of_edge(pattern, "sleeve.left"), 0.25, 1e-12);
+  EXPECT_NEAR(length_of_edge(pattern, "yoke.left"), 0.5, 1e-12);
+  EXPECT_NEAR(length_of_edge(pattern, "collar.left"), 0.5, 1e-12);
+  // It starts from 0.4 to 0.9 m, then from 0.8 to 1.05 m.
+  EXPECT_NEAR(length_of_edge(pattern, "skirt.left"), 0.25, 1e-12);
+  const auto [p, low] = pattern.find("skirt.low");
+  EXPECT_NEAR(pattern.panels[p].edges[low].curves[0].start().y(), -0.15, 1e-12);
 }
 
 // A flat figure: each arm is one rectangle, whose sections are lines.

@@ -91,15 +91,19 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     const garment::Fit fit = garment::fit(pattern, body, where);
     const garment::Measures own = garment::measure(body);
     made.details.fitted = fmt::format(
-        "{:.3g} times as wide and {:.3g} times as long as drawn; its wearer has {:.2f} m around the chest, {:.2f} "
+        "{:.3g} times as wide and {:.3g} times as long as drawn{}; its wearer has {:.2f} m around the chest, {:.2f} "
         "around the waist, {:.2f} around the hips, {}and is {:.2f} m tall",
-        fit.factors.x(), fit.factors.y(), *own.chest, *own.waist, *own.hip,
-        own.arm ? fmt::format("{:.2f} around the arms, ", *own.arm) : "", *own.height);
+        fit.factors.x(), fit.factors.y(),
+        fit.below_armholes == 1 ? ""
+                                : fmt::format(" ({:.3g} below the armholes)", fit.factors.y() * fit.below_armholes),
+        *own.chest, *own.waist, *own.hip, own.arm ? fmt::format("{:.2f} around the arms, ", *own.arm) : "",
+        *own.height);
     factors = factors.cwiseProduct(fit.factors);
     rise = cloth.scale * fit.rise + (1 - cloth.scale) * fit.anchor;
     if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, body);
         !warning.empty() && cloth.pins.empty())
       made.details.warnings.push_back(fmt::format("{}: {}", where, warning));
+    if (fit.below_armholes != 1) garment::shorten_below_armholes(pattern, fit.below_armholes);
   }
   pattern.scale_by(factors, rise);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);

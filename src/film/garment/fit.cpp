@@ -124,6 +124,55 @@ bool hangs_from_waist(const Pattern& pattern) {
   return (drawn.waist || drawn.hip) && top < 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *drawn.height;
 }
 
+bool is_on_arm(const Panel& panel) {
+  return panel.around == Around::left_arm || panel.around == Around::right_arm;
+}
+
+// For each panel, the height of its lowest corner at an armhole, in the drawing as it is turned at the start [m]:
+// - on the trunk, the lowest end of an edge that is sewn to a panel around an arm;
+// - on a panel around an arm, the lowest end of an edge that is sewn to a panel elsewhere;
+// - if a sleeve is cut in one with a panel of the trunk, the corner at which the side seam and the under seam of the
+//   sleeve meet. Both are sewn to the same panel. The under seam ends at the opening of the sleeve, an edge without a
+//   seam that is farther from the middle of the wearer.
+// Absent if the panel has no such corner.
+std::vector<std::optional<double>> find_armholes(const Pattern& pattern) {
+  std::vector<std::vector<Index>> sewn_to;  // by panel and edge: index of the other panel; −1: none
+  for (const Panel& panel : pattern.panels) sewn_to.emplace_back(panel.edges.size(), -1);
+  for (const Seam& seam : pattern.seams) {
+    const auto [p, e] = pattern.find(seam.a);
+    const auto [q, f] = pattern.find(seam.b);
+    sewn_to[p][e] = static_cast<Index>(q);
+    sewn_to[q][f] = static_cast<Index>(p);
+  }
+  std::vector<std::optional<double>> lowest(pattern.panels.size());
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
+    const Panel& panel = pattern.panels[p];
+    const std::vector<Index>& partners = sewn_to[p];
+    const std::size_t count = panel.edges.size();
+    const Eigen::Rotation2Dd turn(panel.rotation * kDegree);
+    const auto turned_start = [&](std::size_t e) { return Vec2(turn * panel.edges[e % count].curves.front().start()); };
+    const auto add = [&](const Vec2& corner) { lowest[p] = std::min(lowest[p].value_or(corner.y()), corner.y()); };
+    for (std::size_t e = 0; e < count; ++e)
+      if (partners[e] >= 0 && is_on_arm(pattern.panels[at(partners[e])]) != is_on_arm(panel))
+        add(turned_start(e)), add(turned_start(e + 1));
+    if (lowest[p] || is_on_arm(panel)) continue;
+    const double origin = panel.position.value_or(Vec2(0, 0)).x();
+    for (std::size_t e = 0; e < count; ++e) {
+      const std::size_t next = (e + 1) % count;
+      if (partners[e] < 0 || at(partners[e]) == p || partners[next] != partners[e]) continue;
+      const Vec2 corner = turned_start(next);
+      // Seen from the corner, the opening follows one of both edges.
+      for (const std::size_t opening : {(e + 2) % count, (e + count - 1) % count}) {
+        const Vec2 a = turned_start(opening), b = turned_start(opening + 1);
+        const bool is_outside =
+            std::min(std::abs(origin + a.x()), std::abs(origin + b.x())) > std::abs(origin + corner.x());
+        if (partners[opening] < 0 && is_outside && corner.y() < std::max(a.y(), b.y())) add(corner);
+      }
+    }
+  }
+  return lowest;
+}
+
 // Whether a thigh is nearer to level than to upright, as of a wearer that sits. Sections at the hips then contain it.
 bool raises_thigh(const Wearer& wearer) {
   const auto is_raised = [](const std::optional<Limb>& leg) {
@@ -169,7 +218,7 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 where);
   const Measures own = measure(wearer);
   const bool from_waist = hangs_from_waist(pattern);
-  double across = 0, up = 1, rise = 0, anchor = 0;
+  double across = 0, up = 1, below_armholes = 1, rise = 0, anchor = 0;
   for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm}) {
     if (from_waist && (girth == &Measures::chest || girth == &Measures::arm)) continue;
     if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
@@ -178,13 +227,59 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
     anchor = trunk.waist();
     up = anchor / (kWaistHeightRatio * *drawn.height);
   } else if (drawn.height) {
-    const double neck = kNeckHeightRatio * *drawn.height;
-    up = wearer.neck / neck;
+    const double neck = kNeckHeightRatio * *drawn.height, of_necks = wearer.neck / neck;
+    up = of_necks;
     if (drawn.arm && own.arm) up = std::max(up, *own.arm / *drawn.arm);
+    if (up > of_necks && std::ranges::any_of(find_armholes(pattern), [](const auto& a) { return a.has_value(); }))
+      below_armholes = of_necks / up;
     anchor = wearer.neck;
     rise = anchor - up * neck;
   }
-  return {{across > 0 ? across : up, up}, rise, anchor};
+  return {{across > 0 ? across : up, up}, below_armholes, rise, anchor};
+}
+
+void shorten_below_armholes(Pattern& pattern, double factor) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const std::vector<std::optional<double>> armholes = find_armholes(pattern);
+  const bool bent = pattern.has_bent_panels();
+  const auto start_height = [&](const Panel& panel) -> std::optional<double> {
+    if (panel.position) return panel.position->y();
+    return bent ? std::nullopt : std::optional(0.0);
+  };
+  // Panel::scale along the vertical axis of the drawing as it is turned at the start.
+  const auto start_scale = [](const Panel& panel) {
+    const Eigen::Matrix2d turn = Eigen::Rotation2Dd(panel.rotation * kDegree).toRotationMatrix();
+    const Eigen::Matrix2d scale = turn * panel.scale.asDiagonal() * turn.transpose();
+    return scale(1, 1);
+  };
+  // Heights at which the armholes start, on the trunk and on the arms [m].
+  std::array<double, 2> levels{kInfinity, kInfinity};
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p)
+    if (const Panel& panel = pattern.panels[p]; armholes[p] && start_height(panel)) {
+      double& level = levels[is_on_arm(panel) ? 1 : 0];
+      level = std::min(level, *start_height(panel) + start_scale(panel) * *armholes[p]);
+    }
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
+    Panel& panel = pattern.panels[p];
+    if (panel.around == Around::neck || panel.around == Around::head) continue;
+    // Points of the drawing below `limit` approach the height `fixed`. A panel of which no height is known is wholly
+    // below the armholes: its seams place it.
+    double fixed = 0, limit = kInfinity;
+    const double level = levels[is_on_arm(panel) ? 1 : 0];
+    if (armholes[p])
+      fixed = limit = *armholes[p];
+    else if (const std::optional<double> start = start_height(panel); start && std::isfinite(level))
+      fixed = limit = (level - *start) / start_scale(panel);
+    const Eigen::Rotation2Dd turn(panel.rotation * kDegree);
+    for (PanelEdge& edge : panel.edges)
+      for (Curve& curve : edge.curves)
+        for (Vec2& point : curve.control) {
+          Vec2 turned = turn * point;
+          if (turned.y() >= limit) continue;
+          turned.y() = fixed + factor * (turned.y() - fixed);
+          point = turn.inverse() * turned;
+        }
+  }
 }
 
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
