@@ -5,6 +5,7 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "film/environment/environment.hpp"
 #include "film/environment/made_cloth.hpp"
@@ -108,6 +109,32 @@ TEST(MannequinAsWearer, HasAScaledGarmentAtItsNeckOrWaistIfItIsFitted) {
     cloth.scale = 1.2;
     EXPECT_NEAR(top(), as_drawn, 0.04) << name;
   }
+}
+
+// The hips of the mannequin are 0.92 m around. Panels around the torso need a wearer without `fit` too.
+TEST_F(WearerBodies, ThatAreTooNarrowForASkirtAreWarnedOfWithoutFitToo) {
+  const scene::Scene scene = support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n");
+  const std::string outline =
+      "around = 'torso'\nposition = [0, 0.55]\npath = 'M -0.3 0 L 0.3 0 L 0.25 0.5 L -0.25 0.5 Z'\n"
+      "edges = 'hem left waist right'\n";
+  Wearers wearers(scene);
+  scene::Cloth cloth;
+  cloth.name = "skirt";
+  cloth.shape = scene::ClothShape::pattern;
+  cloth.file = folder_ / "skirt.toml";
+  cloth.edge_length = 0.06;
+  const auto warnings = [&](const std::string& waist) {
+    support::write_bytes(cloth.file, "measures = { waist = " + waist + " }\n[[panel]]\nname = 'front'\n" + outline +
+                                         "[[panel]]\nname = 'back'\nside = 'back'\n" + outline +
+                                         "[[seam]]\na = 'front.left'\nb = 'back.left'\n"
+                                         "[[seam]]\na = 'front.right'\nb = 'back.right'\n");
+    return make_cloth(scene, cloth, wearers).details.warnings;
+  };
+  const std::vector<std::string> wide = warnings("0.9");
+  ASSERT_EQ(wide.size(), 1U);
+  EXPECT_NE(wide[0].find("its waist is 0.90 m around and the hips of its wearer 0.9"), std::string::npos) << wide[0];
+  EXPECT_TRUE(warnings("0.7").empty());
 }
 
 }  // namespace

@@ -347,6 +347,10 @@ TEST(Fit, TellsOfHipsThatHoldNothingUp) {
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1, 1), wearer), "");
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), wearer).substr(0, 50),
             "its waist is 0.96 m around and the hips of its wea");
+  // Nothing slides down a wearer that lies. It has its neck below its hip joints here.
+  Wearer lying = wearer;
+  lying.neck = 0.85;
+  EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), lying), "");
   pattern.measures.chest = 1;
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), wearer), "");
 }

@@ -85,7 +85,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   const garment::Wearer* wearer = pattern.has_bent_panels() ? &wearers.of(cloth, where) : nullptr;
   const garment::Wearer* fitted = cloth.fit ? &wearers.of(cloth, where) : nullptr;
   Vec2 factors(cloth.scale, cloth.scale);
-  double rise = 0;
+  double below_armholes = 1, rise = 0;
   if (fitted != nullptr) {
     const garment::Wearer& body = *fitted;
     const garment::Fit fit = garment::fit(pattern, body, where);
@@ -100,11 +100,12 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
         *own.height);
     factors = factors.cwiseProduct(fit.factors);
     rise = cloth.scale * fit.rise + (1 - cloth.scale) * fit.anchor;
-    if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, body);
-        !warning.empty() && cloth.pins.empty())
-      made.details.warnings.push_back(fmt::format("{}: {}", where, warning));
-    if (fit.below_armholes != 1) garment::shorten_below_armholes(pattern, fit.below_armholes);
+    below_armholes = fit.below_armholes;
   }
+  if (const garment::Wearer* body = fitted != nullptr ? fitted : wearer; body != nullptr && cloth.pins.empty())
+    if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, *body); !warning.empty())
+      made.details.warnings.push_back(fmt::format("{}: {}", where, warning));
+  if (below_armholes != 1) garment::shorten_below_armholes(pattern, below_armholes);
   pattern.scale_by(factors, rise);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
   // A garment with bent panels lies around its wearer, in world coordinates. Other garments have z up.

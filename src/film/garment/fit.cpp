@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -77,10 +78,13 @@ struct Trunk {
   Tube tube;
   double hips, neck;  // heights of the joints [m]
 
-  explicit Trunk(const Wearer& wearer) : tube(wearer, Around::torso), neck(wearer.neck) {
+  explicit Trunk(const Wearer& wearer) : Trunk(wearer, Tube(wearer, Around::torso)) {}
+  Trunk(const Wearer& wearer, Tube torso) : tube(std::move(torso)), neck(wearer.neck) {
     hips = kHipHeightRatio * tube.high();
     if (wearer.left_leg && wearer.right_leg) hips = 0.5 * ((*wearer.left_leg)[0].z() + (*wearer.right_leg)[0].z());
   }
+  // Heights are those of body parts only if the wearer stands upright.
+  bool is_upright() const { return neck > hips; }
   double at(double fraction) const { return hips + fraction * (neck - hips); }
   double girth(double s) const { return tube.girth(s, 0); }
   double max_girth(double low, double high) const {
@@ -92,15 +96,16 @@ struct Trunk {
   // where the girth changes faster than kMaxGirthSlope with height, such as at the end of the ball that joins chest and
   // hips of a puppet.
   double waist() const {
-    const auto is_upright = [&](double s) {
+    const auto is_steep = [&](double s) {
       return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
              kMaxGirthSlope * kSpacing;
     };
     double waist = at(kLowestWaist);
     for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
-      if (girth(s) < girth(waist) && is_upright(s)) waist = s;
+      if (girth(s) < girth(waist) && is_steep(s)) waist = s;
     return waist;
   }
+  double hip_girth() const { return max_girth(at(kLowestHip), waist()); }
 };
 
 // Whether a garment hangs from the waist, as skirts and trousers do: if its highest point starts nearer to the waist of
@@ -188,8 +193,7 @@ Measures measure(const Wearer& wearer) {
   const double waist = trunk.waist();
   const double armpits =
       std::clamp(armpit_height(wearer), std::max(waist, trunk.at(kHighestWaist)), trunk.at(kHighestArmpit));
-  return {trunk.max_girth(waist, armpits), trunk.girth(waist), trunk.max_girth(trunk.at(kLowestHip), waist),
-          arm_girth(wearer), trunk.tube.high()};
+  return {trunk.max_girth(waist, armpits), trunk.girth(waist), trunk.hip_girth(), arm_girth(wearer), trunk.tube.high()};
 }
 
 Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) {
@@ -206,7 +210,7 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
       throw Error(error.code(), "{}.fit: {}", where, error.what());
     }
   }();
-  if (!(trunk.neck > trunk.hips))
+  if (!trunk.is_upright())
     throw Error(ExitCode::scene_invalid,
                 "{}.fit: expected a wearer that stands upright, got one with its neck {:.2f} m and its hips {:.2f} m "
                 "above its lowest point; turn it, or leave out fit",
@@ -285,7 +289,11 @@ void shorten_below_armholes(Pattern& pattern, double factor) {
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
   const Measures& drawn = pattern.measures;
   if (!drawn.waist || !hangs_from_waist(pattern)) return {};
-  const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
+  std::optional<Tube> torso = find_tube(wearer, Around::torso);
+  if (!torso) return {};
+  const Trunk trunk(wearer, *std::move(torso));
+  if (!trunk.is_upright()) return {};
+  const double waist = *drawn.waist * factors.x(), hips = trunk.hip_girth();
   if (hips >= kMinHipToWaistRatio * waist) return {};
   return fmt::format(
       "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, too narrow to hold it up: pin its waist, as "

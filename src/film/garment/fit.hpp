@@ -54,7 +54,8 @@ void shorten_below_armholes(Pattern& pattern, double factor);
 
 /// Returns a warning if the wearer's hip girth is less than kMinHipToWaistRatio (fit.cpp) times the
 /// waist girth of the garment after scaling by `factors`: the garment would slide down. Otherwise
-/// returns an empty string. Checks only garments that hang from the waist, if the pattern states its girth.
+/// returns an empty string. Checks only garments that hang from the waist, if the pattern states its girth, and only
+/// wearers that stand upright.
 std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
 
 }  // namespace weft::garment
