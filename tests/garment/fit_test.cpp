@@ -57,6 +57,25 @@ TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   EXPECT_NEAR(*measures.height, 1.7, 0.011);
 }
 
+// Sections of a body a quarter or four times as tall are a quarter or four times as far apart: the results differ by
+// the factor alone, which is a power of two. The pattern is for a body of 1.75 m.
+TEST(Fit, MeasuresDollsAndGiantsAsPreciselyAsPeople) {
+  const Measures own = measure(round_wearer());
+  for (const double factor : {0.25, 4.0}) {
+    Wearer wearer = round_wearer();
+    for (Vec3& x : wearer.skin) x *= factor;
+    for (Limb* leg : {&*wearer.left_leg, &*wearer.right_leg})
+      for (Vec3& joint : *leg) joint *= factor;
+    wearer.neck *= factor;
+    const Measures measures = measure(wearer);
+    for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::height})
+      EXPECT_DOUBLE_EQ(*(measures.*girth), factor * *(own.*girth));
+    Pattern pattern;
+    pattern.measures = {0.88, {}, {}, {}, 1.75};
+    EXPECT_EQ(fit(pattern, wearer, "cloth.c").gap, factor);
+  }
+}
+
 // A puppet has a ball between chest and hips. At the bottom of the ball, its sections shrink to a point, which is no
 // waist.
 TEST(Fit, TakesNoTipOfAPartForTheWaist) {
@@ -83,6 +102,7 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
   const double height = wearer.neck / kNeckHeightRatio / 1.2;
   pattern.measures = {{}, {}, *own.hip / 0.9, {}, height};
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(0.9, 1.2)).norm(), 1e-12);
+  EXPECT_EQ(fit(pattern, wearer, "cloth.c").gap, 1);
   pattern.measures = {{}, {}, {}, {}, height};
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.2, 1.2)).norm(), 1e-12);
   pattern.measures = {};
@@ -143,9 +163,10 @@ double length_of_edge(const Pattern& pattern, const std::string& edge) {
 // The T-shirt has sleeves cut in one with the body; the shirt has sleeves of their own.
 TEST(Fit, GivesThickArmsLongArmholesButNoLongBody) {
   const Wearer wearer = wearer_with_thick_arms();
+  const Measures own = measure(wearer);
   for (const std::string name : {"tshirt", "shirt"}) {
     Pattern pattern = shipped_pattern(name);
-    pattern.measures = {*measure(wearer).chest, {}, {}, *measure(wearer).arm / 1.5, 1.7};
+    pattern.measures = {*own.chest, {}, {}, *own.arm / 1.5, 1.7};
     const Fit thick = fit(pattern, wearer, "cloth.c");
     EXPECT_NEAR(thick.factors.y(), 1.5, 1e-12) << name;
     EXPECT_NEAR(thick.factors.y() * thick.below_armholes, wearer.neck / (kNeckHeightRatio * 1.7), 1e-12) << name;
@@ -325,7 +346,7 @@ TEST(Fit, RefusesAWearerThatSitsIfItsHipsOrHeightsCount) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
-// Sections are 10 mm apart: a body of 1.7 km would have 170,000.
+// Nobody is 1.7 km tall: the file of the body is in another unit.
 TEST(Fit, RefusesABodyInMillimetres) {
   Wearer wearer = round_wearer();
   for (Vec3& x : wearer.skin) x *= 1000;

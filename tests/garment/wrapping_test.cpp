@@ -65,6 +65,22 @@ TEST(Tubes, HaveTheFrontAtTheAngle0AndTheLeftAt90) {
   EXPECT_LT((arm.along(-0.3) - Vec3(-1, 0, 0)).norm(), 1e-9);
 }
 
+// The ball is 3.4 m tall, twice as tall as a person. A triangle starts 12 cm deep in it; in a person, vertices deeper
+// than 8 cm stay where they are.
+TEST(Skins, PushOutWhatIsDeepInAGiant) {
+  constexpr double kRadius = 1.7;
+  const mesh::Mesh ball = mesh::make_sphere(kRadius, 128);
+  Wearer giant;
+  giant.skin = ball.positions;
+  giant.triangles = ball.topology.triangles;
+  giant.regions.assign(giant.skin.size(), Region::trunk);
+  const double depth = 0.12, side = 0.05;
+  std::vector<Vec3> x{Vec3(kRadius - depth, 0, 0), Vec3(kRadius - depth, side, 0), Vec3(kRadius - depth, 0, side)};
+  const std::vector<mesh::Triangle> triangles{{0, 1, 2}};
+  move_out_of_skin(giant, triangles, 0.01, x);
+  for (const Vec3& each : x) EXPECT_GT(each.norm(), kRadius);
+}
+
 // A vest of two panels around the trunk, with a hole at the left, and a sleeve.
 const std::string kVest = R"(
 [[panel]]

@@ -101,6 +101,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     factors = factors.cwiseProduct(fit.factors);
     rise = cloth.scale * fit.rise + (1 - cloth.scale) * fit.anchor;
     below_armholes = fit.below_armholes;
+    pattern.gap *= fit.gap;
   }
   if (const garment::Wearer* body = fitted != nullptr ? fitted : wearer; body != nullptr && cloth.pins.empty())
     if (const std::string warning = garment::warn_if_hips_do_not_hold(pattern, factors, *body); !warning.empty())

@@ -23,8 +23,6 @@ constexpr double kWaistHeightRatio = 0.63;
 // Limits of the heights at which parts of the trunk are searched, above the hip joints, as fractions of the height from
 // hip joints to neck. The armpits have a limit because sections above them include the shoulders.
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kHighestArmpit = 0.75;
-// Distance between measured sections [m].
-constexpr double kSpacing = 0.01;
 // Maximum change of the girth per height at the waist: 2π, which is that of a cone with an inclination of 45 degrees.
 constexpr double kMaxGirthSlope = 2 * std::numbers::pi;
 // Minimum ratio of the wearer's hip girth to the waist girth of a garment at which the garment does not slide down. In
@@ -67,7 +65,7 @@ std::optional<double> arm_girth(const Wearer& wearer) {
     const std::optional<Tube> arm = find_tube(wearer, left ? Around::left_arm : Around::right_arm);
     if (!limb || !arm) return std::nullopt;
     const double length = ((*limb)[1] - (*limb)[0]).norm();
-    for (double s = -kEnd * length; s <= -kBegin * length; s += kSpacing)
+    for (double s = -kEnd * length; s <= -kBegin * length; s += arm->spacing())
       narrowest = std::min(narrowest, arm->girth(s, 0));
   }
   return narrowest;
@@ -89,19 +87,20 @@ struct Trunk {
   double girth(double s) const { return tube.girth(s, 0); }
   double max_girth(double low, double high) const {
     double largest = 0;
-    for (double s = low; s <= high; s += kSpacing) largest = std::max(largest, girth(s));
+    for (double s = low; s <= high; s += tube.spacing()) largest = std::max(largest, girth(s));
     return largest;
   }
   // Height of the waist: of the narrowest section at which the skin is steep enough to hold a waistband. It is not
   // where the girth changes faster than kMaxGirthSlope with height, such as at the end of the ball that joins chest and
   // hips of a puppet.
   double waist() const {
+    const double spacing = tube.spacing();
     const auto is_steep = [&](double s) {
-      return std::max(std::abs(girth(s + kSpacing) - girth(s)), std::abs(girth(s) - girth(s - kSpacing))) <=
-             kMaxGirthSlope * kSpacing;
+      return std::max(std::abs(girth(s + spacing) - girth(s)), std::abs(girth(s) - girth(s - spacing))) <=
+             kMaxGirthSlope * spacing;
     };
     double waist = at(kLowestWaist);
-    for (double s = waist; s <= at(kHighestWaist); s += kSpacing)
+    for (double s = waist; s <= at(kHighestWaist); s += spacing)
       if (girth(s) < girth(waist) && is_steep(s)) waist = s;
     return waist;
   }
@@ -222,7 +221,7 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
                 where);
   const Measures own = measure(wearer);
   const bool from_waist = hangs_from_waist(pattern);
-  double across = 0, up = 1, below_armholes = 1, rise = 0, anchor = 0;
+  double across = 0, up = 1, below_armholes = 1, rise = 0, anchor = 0, gap = 1;
   for (const auto girth : {&Measures::chest, &Measures::waist, &Measures::hip, &Measures::arm}) {
     if (from_waist && (girth == &Measures::chest || girth == &Measures::arm)) continue;
     if (drawn.*girth && own.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
@@ -230,16 +229,18 @@ Fit fit(const Pattern& pattern, const Wearer& wearer, const std::string& where) 
   if (drawn.height && from_waist) {
     anchor = trunk.waist();
     up = anchor / (kWaistHeightRatio * *drawn.height);
+    gap = nearest_power_of_two(up);
   } else if (drawn.height) {
     const double neck = kNeckHeightRatio * *drawn.height, of_necks = wearer.neck / neck;
     up = of_necks;
+    gap = nearest_power_of_two(of_necks);
     if (drawn.arm && own.arm) up = std::max(up, *own.arm / *drawn.arm);
     if (up > of_necks && std::ranges::any_of(find_armholes(pattern), [](const auto& a) { return a.has_value(); }))
       below_armholes = of_necks / up;
     anchor = wearer.neck;
     rise = anchor - up * neck;
   }
-  return {{across > 0 ? across : up, up}, below_armholes, rise, anchor};
+  return {{across > 0 ? across : up, up}, below_armholes, rise, anchor, gap};
 }
 
 void shorten_below_armholes(Pattern& pattern, double factor) {

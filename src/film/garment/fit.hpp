@@ -16,7 +16,7 @@ namespace weft::garment {
 ///   joins the trunk, but at most kHighestArmpit.
 /// - Hip: the widest section from kLowestHip to the waist.
 /// - Arm: the narrowest section in the middle of both upper arms; absent if an arm lacks joints or is flat.
-/// - Height: that of the crown, rounded down to 1 cm.
+/// - Height: that of the crown, rounded down to a multiple of Tube::spacing().
 /// Throws Error(scene_invalid) if Tube refuses the body without the arms.
 Measures measure(const Wearer& wearer);
 
@@ -28,6 +28,9 @@ struct Fit {
   /// Height of the wearer's neck or, for garments that hang from the waist, of its waist [m]: a further scale leaves
   /// the garment there. 0 if the pattern states no height.
   double anchor = 0;
+  /// Factor on Pattern::gap: the ratio of the heights, rounded to a power of two, so that garments for people start as
+  /// far from the skin as their patterns say. 1 if the pattern states no height.
+  double gap = 1;
 };
 
 /// Factors on the lengths of a pattern. Across: the largest ratio wearer's girth / drawn girth among the girths that

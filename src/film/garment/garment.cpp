@@ -281,7 +281,7 @@ class Sewing {
       for (std::size_t k = 0; k < 3; ++k) of[k] = bent[p][at(own[k])];
     }
     std::vector<Vec3>& x = garment_.sheet.rest;
-    x = join_in_space(garment_.sheet.triangles, corners, at(vertex_count_), spacing_);
+    x = join_in_space(garment_.sheet.triangles, corners, at(vertex_count_), spacing_, size_factor(*wearer_));
     move_out_of_skin(*wearer_, garment_.sheet.triangles, kClearanceRatio * pattern_.gap, x);
     for (Vec3& each : x) each = wearer_->to_world * each;
   }

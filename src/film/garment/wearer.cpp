@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -18,11 +19,13 @@ constexpr double kShoulderFraction = 0.25;
 constexpr double kWristExtension = 0.3;
 // The widest section of the head is searched down to this fraction of the distance from the crown to the neck.
 constexpr double kHeadFraction = 0.6;
-// Dome at the upper end of the head's tube: height of its top above the crown [m], and ratio of its narrowest section
-// to the widest.
+// Dome at the upper end of the head's tube: height of its top above the crown of a person [m], and ratio of its
+// narrowest section to the widest.
 constexpr double kDomeHeight = 0.08, kMinDomeScale = 0.3;
-// Maximum length of a tube [m]. The tube of a body whose file is in millimetres would have 170,000 sections.
+// Maximum length of a tube [m]. A body that is longer comes from a file in another unit, such as millimetres.
 constexpr double kMaxLength = 100;
+// Height of the people for whom lengths are chosen [m]; see size_factor().
+constexpr double kPersonHeight = 1.7;
 // Minimum number of crossings of triangle sides with the plane of a section (a side shared by two triangles counts
 // twice). With fewer crossings, there is no section.
 constexpr std::size_t kMinSectionPoints = 6;
@@ -34,17 +37,17 @@ double radians(int direction, int directions) {
 /// An axis made of straight lines between its corners, from the low end to the high end.
 struct Axis {
   std::vector<Vec3> corners;
-  double first = 0;  // coordinate s (see Tube) of the first corner [m]
+  double first = 0;            // coordinate s (see Tube) of the first corner [m]
+  double corner_blend = 0.06;  // length on each side of a corner over which the direction changes [m]
 
   double length() const {
     double sum = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) sum += (corners[k] - corners[k - 1]).norm();
     return sum;
   }
-  /// Point and direction at the distance `length` from the low end [m]. The direction is averaged over kCornerBlend on
-  /// both sides, so that it changes gradually at corners.
+  /// Point and direction at the distance `length` from the low end [m]. The direction is averaged over corner_blend
+  /// on both sides, so that it changes gradually at corners.
   std::pair<Vec3, Vec3> at(double length) const {
-    constexpr double kCornerBlend = 0.06;  // length on each side of a corner [m]
     Vec3 along = Vec3::Zero(), point = corners.front();
     double from = 0;
     for (std::size_t k = 1; k < corners.size(); ++k) {
@@ -52,14 +55,21 @@ struct Axis {
       const double to = from + side.norm();
       const bool last = k + 1 == corners.size();
       if (length >= from && (length <= to || last)) point = corners[k - 1] + (length - from) * side.normalized();
-      const double overlap = std::min(last ? length + kCornerBlend : to, length + kCornerBlend) -
-                             std::max(k == 1 ? length - kCornerBlend : from, length - kCornerBlend);
+      const double overlap = std::min(last ? length + corner_blend : to, length + corner_blend) -
+                             std::max(k == 1 ? length - corner_blend : from, length - corner_blend);
       if (overlap > 0) along += overlap * side.normalized();
       from = to;
     }
     return {point, along.normalized()};
   }
 };
+
+// Heights of the lowest and of the highest vertex of the skin [m].
+std::pair<double, double> heights_of(const Wearer& wearer) {
+  double floor = std::numeric_limits<double>::infinity(), crown = -floor;
+  for (const Vec3& x : wearer.skin) floor = std::min(floor, x.z()), crown = std::max(crown, x.z());
+  return {floor, crown};
+}
 
 const Limb& limb(const std::optional<Limb>& limb, const std::string& name, const char* joints) {
   if (limb) return *limb;
@@ -84,6 +94,15 @@ Around mirrored(Around part) {
     default:
       return part;
   }
+}
+
+double nearest_power_of_two(double ratio) {
+  return ratio > 0 ? std::exp2(std::round(std::log2(ratio))) : 1;
+}
+
+double size_factor(const Wearer& wearer) {
+  const auto [floor, crown] = heights_of(wearer);
+  return nearest_power_of_two((crown - floor) / kPersonHeight);
 }
 
 std::optional<Tube::Section> Tube::cut(const Wearer& wearer, const std::vector<mesh::Triangle>& skin,
@@ -114,10 +133,12 @@ std::optional<Tube::Section> Tube::cut(const Wearer& wearer, const std::vector<m
 }
 
 Tube::Tube(const Wearer& wearer, Around part) {
-  double floor = std::numeric_limits<double>::infinity(), crown = -floor;
-  for (const Vec3& x : wearer.skin) floor = std::min(floor, x.z()), crown = std::max(crown, x.z());
+  const auto [floor, crown] = heights_of(wearer);
+  const double size = size_factor(wearer), dome_height = kDomeHeight * size;
+  spacing_ *= size;
   const std::string& name = kAroundNames[static_cast<std::size_t>(part)];
-  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + kDomeHeight : crown)}, floor};
+  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + dome_height : crown)}, floor};
+  axis.corner_blend *= size;
   const bool arm = part == Around::left_arm || part == Around::right_arm;
   const bool leg = part == Around::left_leg || part == Around::right_leg;
   const bool left = part == Around::left_arm || part == Around::left_leg;
@@ -157,17 +178,17 @@ Tube::Tube(const Wearer& wearer, Around part) {
     if (belongs) skin.push_back(t);
   }
 
-  const auto count = static_cast<int>(axis.length() / kSpacing) + 1;
+  const auto count = static_cast<int>(axis.length() / spacing_) + 1;
   first_ = axis.first;
   std::vector<std::optional<Section>> cuts;
   for (int i = 0; i < count; ++i) {
-    const auto [point, along] = axis.at(i * kSpacing);
+    const auto [point, along] = axis.at(i * spacing_);
     Section plane;
     plane.centre = point, plane.along = along;
     plane.front = (-Vec3::UnitY() + along.y() * along).normalized();
     plane.left = along.cross(plane.front);
     cuts.push_back(cut(wearer, skin, plane));
-    const double s = first_ + i * kSpacing;
+    const double s = first_ + i * spacing_;
     if (arm && -s < kShoulderFraction * (axis.corners[2] - axis.corners[1]).norm()) cuts.back() = std::nullopt;
   }
   // A hood hangs from the widest section of the head. Keeps only this section.
@@ -177,12 +198,12 @@ Tube::Tube(const Wearer& wearer, Around part) {
       return section ? std::accumulate(section->support.begin(), section->support.end(), 0.0) : 0.0;
     };
     const double low = crown - kHeadFraction * (crown - wearer.neck);
-    const auto first = cuts.begin() + std::clamp(static_cast<int>((low - first_) / kSpacing), 0, count - 1);
+    const auto first = cuts.begin() + std::clamp(static_cast<int>((low - first_) / spacing_), 0, count - 1);
     const auto found = std::ranges::max_element(first, cuts.end(), {}, girth_of);
     const std::optional<Section> section = *found;
     std::ranges::fill(cuts, std::nullopt);
     *found = section;
-    widest = first_ + static_cast<double>(found - cuts.begin()) * kSpacing;
+    widest = first_ + static_cast<double>(found - cuts.begin()) * spacing_;
   }
   // Where there is no section, uses the nearest section, moved along the axis.
   std::vector<std::size_t> known;
@@ -196,7 +217,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
     if (above != known.begin() && above != known.end() && i - *(above - 1) < nearest - i) nearest = *(above - 1);
     Section section = *cuts[nearest];
     section.centre +=
-        axis.at(static_cast<double>(i) * kSpacing).first - axis.at(static_cast<double>(nearest) * kSpacing).first;
+        axis.at(static_cast<double>(i) * spacing_).first - axis.at(static_cast<double>(nearest) * spacing_).first;
     sections_.push_back(section);
   }
   // Above the widest section, narrows the tube to a dome, so that seams that end at the crown of a hood start near the
@@ -204,7 +225,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
   if (part == Around::head)
     for (std::size_t i = 0; i < sections_.size(); ++i) {
       const double height =
-          std::clamp((first_ + static_cast<double>(i) * kSpacing - widest) / (crown + kDomeHeight - widest), 0.0, 1.0);
+          std::clamp((first_ + static_cast<double>(i) * spacing_ - widest) / (crown + dome_height - widest), 0.0, 1.0);
       const double scale = std::max(std::sqrt(1 - height * height), kMinDomeScale);
       sections_[i].scale = scale;
       for (double& support : sections_[i].support) support *= scale;
@@ -225,10 +246,10 @@ Tube::Tube(const Wearer& wearer, Around part) {
 }
 
 Tube::Section Tube::section(double s) const {
-  const double place = (s - first_) / kSpacing;
+  const double place = (s - first_) / spacing_;
   const double last = static_cast<double>(sections_.size() - 1);
   const double inside = std::clamp(place, 0.0, last);
-  // A limb that is shorter than kSpacing has only one section. Then `below` is 0, and both sections below are the same.
+  // A limb that is shorter than spacing_ has only one section. Then `below` is 0, and both sections below are the same.
   const auto below = std::min(static_cast<std::size_t>(inside), std::max<std::size_t>(sections_.size(), 2) - 2);
   const double fraction = inside - static_cast<double>(below);
   const Section &a = sections_[below], &b = sections_[std::min(below + 1, sections_.size() - 1)];
@@ -240,7 +261,7 @@ Tube::Section Tube::section(double s) const {
   for (std::size_t k = 0; k < mixed.support.size(); ++k)
     mixed.support[k] = (1 - fraction) * a.support[k] + fraction * b.support[k];
   mixed.scale = (1 - fraction) * a.scale + fraction * b.scale;
-  mixed.centre += (place - inside) * kSpacing * mixed.along;
+  mixed.centre += (place - inside) * spacing_ * mixed.along;
   return mixed;
 }
 

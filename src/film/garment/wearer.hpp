@@ -31,6 +31,14 @@ struct Wearer {
   Eigen::Isometry3d to_world = Eigen::Isometry3d::Identity();
 };
 
+/// Power of two that is nearest to `ratio` on a logarithmic scale; 1 if `ratio` is not above 0. Lengths that are
+/// multiplied by it keep their bits apart from the exponent.
+double nearest_power_of_two(double ratio);
+
+/// Factor on lengths that are chosen for people, such as the distance between sections: nearest_power_of_two() of the
+/// wearer's height / 1.7 m. It is 1 for heights from 1.21 to 2.40 m.
+double size_factor(const Wearer& wearer);
+
 /// Part of the body around which a panel starts bent. The tubes of the parts:
 /// - torso, neck: with a vertical axis, around the body without the arms;
 /// - body: with a vertical axis, around the body with the arms; each section contains the section above it;
@@ -66,11 +74,12 @@ class Tube {
   Vec3 along(double s) const;
   /// s of the lower and of the upper end [m].
   double low() const { return first_; }
-  double high() const { return first_ + kSpacing * static_cast<double>(sections_.size() - 1); }
+  double high() const { return first_ + spacing_ * static_cast<double>(sections_.size() - 1); }
+  /// Distance between sections [m].
+  double spacing() const { return spacing_; }
 
  private:
-  static constexpr double kSpacing = 0.01;  // distance between sections [m]; the skin hardly changes over it
-  static constexpr int kDirections = 96;    // number per section; points on a chest are then 10 mm apart
+  static constexpr int kDirections = 96;  // number per section; points on a chest are then 10 mm apart
   /// A convex section, given by its support function: the extent from the centre in each direction.
   struct Section {
     Vec3 centre, front, left, along;
@@ -84,7 +93,8 @@ class Tube {
   static double length(const Ring& points);
   static Ring ring(const Section& section, double outward);
 
-  double first_ = 0;  // s of the first section
+  double first_ = 0;       // s of the first section
+  double spacing_ = 0.01;  // distance between sections [m], times size_factor(); the skin hardly changes over it
   std::vector<Section> sections_;
 };
 

@@ -18,6 +18,8 @@
 namespace weft::garment {
 namespace {
 
+// The lengths below are for people: they are multiplied by size_factor(), except kLayerDistance.
+//
 // Distance between layers at the start [m]; larger than the contact thickness of any fabric.
 constexpr double kLayerDistance = 0.01;
 // Additional width of a ring of panels with a closure or a slit [m], so that the two edges of the opening start apart.
@@ -49,7 +51,7 @@ class PanelPlacer {
   /// `refuse` receives the description of a mistake and must throw.
   PanelPlacer(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer,
               const std::function<void(const std::string&)>& refuse)
-      : pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
+      : size_(size_factor(wearer)), pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
     for (const Panel& panel : pattern.panels) {
       try {
         if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
@@ -102,7 +104,7 @@ class PanelPlacer {
     double ease = 0;
     if (const auto found = eases_.find(part_of(panel)); found != eases_.end()) {
       const auto& [first, of_height] = found->second;
-      const double place = std::clamp((s - first) / kStep, 0.0, static_cast<double>(of_height.size() - 1));
+      const double place = std::clamp((s - first) / step_, 0.0, static_cast<double>(of_height.size() - 1));
       const auto below = std::min(static_cast<std::size_t>(place), of_height.size() - 1);
       const double fraction = place - static_cast<double>(below);
       ease = (1 - fraction) * of_height[below] + fraction * of_height[std::min(below + 1, of_height.size() - 1)];
@@ -110,7 +112,7 @@ class PanelPlacer {
     return pattern_.gap + kLayerDistance * panel.layer + ease;
   }
 
-  // Width of the ring around each part [m]: the sum over its panels of layer 0, by height in steps of kStep.
+  // Width of the ring around each part [m]: the sum over its panels of layer 0, by height in steps of step_.
   std::map<Around, std::map<long, double>> widths() const {
     std::map<Around, std::map<long, double>> of_part;
     for (std::size_t p = 0; p < positions_.size(); ++p) {
@@ -122,9 +124,9 @@ class PanelPlacer {
           Vec2 a = unrolled_position(panel, *positions_[p], meshes_[p].points[at(t[k])]);
           Vec2 b = unrolled_position(panel, *positions_[p], meshes_[p].points[at(t[(k + 1) % 3])]);
           if (a.y() > b.y()) std::swap(a, b);
-          for (auto level = static_cast<long>(std::ceil(a.y() / kStep)); level * kStep <= b.y() && b.y() > a.y();
+          for (auto level = static_cast<long>(std::ceil(a.y() / step_)); level * step_ <= b.y() && b.y() > a.y();
                ++level) {
-            const double x = a.x() + (level * kStep - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+            const double x = a.x() + (level * step_ - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
             auto [entry, fresh] = extents.try_emplace(level, x, x);
             auto& [low, high] = entry->second;
             low = std::min(low, x), high = std::max(high, x);
@@ -163,17 +165,17 @@ class PanelPlacer {
     eases_.clear();
     for (const auto& [part, of_level] : widths()) {
       auto& [first, of_height] = eases_[part];
-      first = kStep * static_cast<double>(of_level.begin()->first);
-      const double slack = has_opening(part) ? kOpeningSlack : 0;
+      first = step_ * static_cast<double>(of_level.begin()->first);
+      const double slack = has_opening(part) ? kOpeningSlack * size_ : 0;
       const bool arm = part == Around::left_arm || part == Around::right_arm;
-      const double min_ease = arm ? std::min(kMinSleeveGap - pattern_.gap, 0.0) : 0;
+      const double min_ease = arm ? std::min(kMinSleeveGap * size_ - pattern_.gap, 0.0) : 0;
       std::vector<double> raw;
       double widest = 0;
       for (const auto& [level, width] : of_level) {
-        const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
+        const double girth = tubes_.at(part).girth(step_ * static_cast<double>(level), pattern_.gap);
         const double ease = std::max(min_ease, (width + slack - girth) / (2 * std::numbers::pi));
         // The cap of a sleeve does not close around the arm. It gets the ease of the height step below.
-        const double kept = arm && width < widest - kCapNarrowing ? raw.back() : ease;
+        const double kept = arm && width < widest - kCapNarrowing * size_ ? raw.back() : ease;
         // In a gap between panels, uses the ease of the nearer panel.
         if (const auto index = static_cast<std::size_t>(level - of_level.begin()->first); index > raw.size()) {
           raw.resize((raw.size() + index) / 2, double(raw.back()));
@@ -229,8 +231,8 @@ class PanelPlacer {
     return position;
   }
 
-  static constexpr double kStep = 0.01;  // height step at which widths are measured [m]
-
+  const double size_;                 // size_factor() of the wearer
+  const double step_ = 0.01 * size_;  // height step at which widths are measured [m]
   const Pattern& pattern_;
   std::span<const FlatMesh> meshes_;
   std::vector<std::optional<Vec2>> positions_;
@@ -304,18 +306,19 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
 }
 
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
-                                std::size_t vertices, double spacing) {
-  // With this weight, the effect of closing a seam decays over the distance kBendingDistance.
-  LeastSquaresPositions<3> places(vertices, spacing * spacing / (kBendingDistance * kBendingDistance));
+                                std::size_t vertices, double spacing, double size) {
+  // With this weight, the effect of closing a seam decays over this distance.
+  const double distance = kBendingDistance * size;
+  LeastSquaresPositions<3> places(vertices, spacing * spacing / (distance * distance));
   for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
   return places.solve();
 }
 
 void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
                       std::span<Vec3> x) {
-  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth inside the skin [m]
+  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth inside the skin of a person [m]
   constexpr int kRounds = 30, kRings = 3;
-  const SkinSearch skin(wearer, kMaxSkinDepth);
+  const SkinSearch skin(wearer, kMaxSkinDepth * size_factor(wearer));
   std::vector<std::vector<Index>> neighbours(x.size());
   std::vector<char> rim(x.size(), 0);
   const std::vector<mesh::Triangle> all(triangles.begin(), triangles.end());

@@ -29,13 +29,15 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
                                            const Wearer& wearer, const std::function<void(const std::string&)>& refuse);
 
 /// One position for each vertex of the garment. Edges of the mesh keep the vectors that they have in their panels as
-/// well as possible (least squares); closing a seam bends its panels over about 10 cm. `corners`: per triangle, the
-/// positions of its corners before sewing; `spacing`: edge length of the mesh [m].
+/// well as possible (least squares); closing a seam bends its panels over about 10 cm times `size`, the size_factor()
+/// of the wearer. `corners`: per triangle, the positions of its corners before sewing; `spacing`: edge length of the
+/// mesh [m].
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
-                                std::size_t vertices, double spacing);
+                                std::size_t vertices, double spacing, double size);
 
 /// Moves vertices that are inside the skin, or less than `clearance` [m] outside it, outward to this distance. Vertices
-/// more than 8 cm from all vertices of the skin do not move. Smooths moved vertices and those around them.
+/// more than 8 cm, times size_factor(), from all vertices of the skin do not move. Smooths moved vertices and those
+/// around them.
 void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
                       std::span<Vec3> x);
 
