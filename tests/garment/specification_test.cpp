@@ -127,6 +127,37 @@ TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
   EXPECT_EQ(skirt.panels[0].around, Around::torso);
 }
 
+// The legs of the jumpsuit are drawn down to 0.1 m below the floor. Its bodice ends at 1.45 m, the height of shoulders.
+TEST_F(Specification, JumpsuitsKeepTheirShouldersAndStartWithShorterLegs) {
+  std::string jumpsuit = changed(kLegs, R"("a": { "translation": [0, 10, 20],)",
+                                 R"("bodice": { "translation": [-20, 70, 20],
+    "vertices": [[0, 0], [40, 0], [40, 75], [0, 75]],
+    "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] }, { "endpoints": [3, 0] } ] },
+  "a": { "translation": [0, -10, 20],)");
+  jumpsuit = changed(jumpsuit, R"("b": { "translation": [0, 10, -20],)", R"("b": { "translation": [0, -10, -20],)");
+  const ReadPattern read = this->read(jumpsuit);
+  ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+  ASSERT_EQ(read.pattern.panels.size(), 3U);
+  for (const Panel& panel : read.pattern.panels) {
+    if (panel.name == "bodice") {
+      EXPECT_NEAR(panel.position->y(), 0.7, 1e-12);
+      EXPECT_EQ(panel.scale, Vec2(1, 1));
+      continue;
+    }
+    // The outline extends from 0 to 0.8 m up.
+    EXPECT_NEAR(panel.position->y(), 0.02, 1e-12) << panel.name;
+    EXPECT_NEAR(panel.position->y() + panel.scale.y() * 0.8, 0.7, 1e-12) << panel.name;
+    EXPECT_EQ(panel.scale.x(), 1) << panel.name;
+  }
+  // Trousers alone are raised.
+  std::string trousers =
+      changed(kLegs, R"("a": { "translation": [0, 10, 20],)", R"("a": { "translation": [0, -10, 20],)");
+  trousers = changed(trousers, R"("b": { "translation": [0, 10, -20],)", R"("b": { "translation": [0, -10, -20],)");
+  const Pattern raised = this->read(trousers).pattern;
+  EXPECT_NEAR(raised.panels[0].position->y(), 0.02, 1e-12);
+  EXPECT_EQ(raised.panels[0].scale, Vec2(1, 1));
+}
+
 // Files of the predecessor of GarmentCode have other units, lists for quadratic curves, and heights relative to a point
 // of the body 1.12 m above the floor.
 TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {

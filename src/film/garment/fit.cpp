@@ -17,9 +17,6 @@ namespace {
 
 // Height of the hip joints as a fraction of the body height, for wearers that lack the joints of a leg.
 constexpr double kHipHeightRatio = 0.52;
-// Height of the mannequin's waist as a fraction of its height. The bodies for which patterns are drawn are assumed to
-// have the same ratio.
-constexpr double kWaistHeightRatio = 0.63;
 // Limits of the heights at which parts of the trunk are searched, above the hip joints, as fractions of the height from
 // hip joints to neck. The armpits have a limit because sections above them include the shoulders.
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kHighestArmpit = 0.75;

@@ -38,7 +38,7 @@ constexpr double kMinLowestPanel = -0.2;
 // Maximum distance by which a leg panel crosses the middle of the body, relative to the distance of its own middle from
 // there. Trousers of the predecessor for legs apart cross by 2 %.
 constexpr double kMaxMiddleCrossing = 0.05;
-// Minimum height above the floor at which the lowest point of a GarmentCode pattern starts [m].
+// Minimum height above the floor at which the lowest point of a GarmentCode pattern, and of legs, starts [m].
 constexpr double kMinStartHeight = 0.02;
 
 /// The direction along an axis of the drawing (up, down, left or right) that is nearest to `direction`.
@@ -85,6 +85,7 @@ class Reader {
     }
     assign_parts();
     fill_pattern(pattern);
+    shorten_low_legs(pattern);
     place_turned_panels(pattern);
     return true;
   }
@@ -346,15 +347,23 @@ class Reader {
   }
 
   void fill_pattern(Pattern& pattern) {
-    double lowest = std::numeric_limits<double>::infinity();
+    // Heights in space of the lowest point, of the lowest point apart from legs, and of the highest point [m].
+    double lowest = std::numeric_limits<double>::infinity(), lowest_without_legs = lowest, highest = -lowest;
     for (const SpecPanel& panel : panels_)
       for (const auto& points : panel.points)
-        for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
+        for (const Vec2& p : points) {
+          const double height = panel.in_space(p).y();
+          lowest = std::min(lowest, height), highest = std::max(highest, height);
+          if (!panel.is_leg()) lowest_without_legs = std::min(lowest_without_legs, height);
+        }
     const bool from_predecessor = is_predecessor_ || lowest < kMinLowestPanel;
     pattern.measures = from_predecessor ? kPredecessorBody : kBody;
     // Trousers are drawn lower than they are worn. If a GarmentCode pattern would start lower than kMinStartHeight, it
-    // is raised to this height.
-    const double floor = from_predecessor ? -kPredecessorOrigin : std::min(0.0, lowest - kMinStartHeight);
+    // is raised to this height. A jumpsuit is drawn at its height: only its legs are too long (shorten_low_legs()).
+    const bool hangs_from_shoulders = highest > 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *kBody.height;
+    const double floor = from_predecessor
+                             ? -kPredecessorOrigin
+                             : std::min(0.0, (hangs_from_shoulders ? lowest_without_legs : lowest) - kMinStartHeight);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
       SpecPanel& of = panels_[p];
       findings_.add_entry("panel", "pattern.panels." + of.name);
@@ -401,6 +410,27 @@ class Reader {
       Seam& seam = pattern.seams.emplace_back();
       seam.a = fmt::format("{}.{}", panels_[p[0]].name, e[0]);
       seam.b = fmt::format("{}.{}", panels_[p[1]].name, e[1]);
+    }
+  }
+
+  /// If legs would start below kMinStartHeight, shortens the start of all leg panels to end there. The highest point of
+  /// the legs keeps its height.
+  void shorten_low_legs(Pattern& pattern) const {
+    double low = kMinStartHeight, high = low;
+    for (std::size_t p = 0; p < panels_.size(); ++p)
+      for (const auto& points : panels_[p].points)
+        for (const Vec2& x : points) {
+          if (!panels_[p].is_leg()) continue;
+          const double height = pattern.panels[p].position->y() + (panels_[p].worn * x).y();
+          low = std::min(low, height), high = std::max(high, height);
+        }
+    if (!(low < kMinStartHeight - kRoundoff && kMinStartHeight < high)) return;
+    const double factor = (high - kMinStartHeight) / (high - low);
+    for (std::size_t p = 0; p < panels_.size(); ++p) {
+      if (!panels_[p].is_leg()) continue;
+      Panel& panel = pattern.panels[p];
+      panel.scale.y() = factor;
+      panel.position->y() = high - factor * (high - panel.position->y());
     }
   }
 

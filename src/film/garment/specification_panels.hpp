@@ -50,6 +50,7 @@ struct SpecPanel {
 
   Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
   bool is_limb() const { return around >= Around::left_arm; }
+  bool is_leg() const { return around == Around::left_leg || around == Around::right_leg; }
 };
 
 /// SVG path data of the outline, transformed by `map`, which must preserve lengths (radii are not scaled).

@@ -17,9 +17,9 @@ enum class Region : std::uint8_t { trunk, left_arm, right_arm, left_leg, right_l
 /// Joints of an arm, from shoulder to wrist, or of a leg, from hip to ankle [m].
 using Limb = std::array<Vec3, 3>;
 
-/// Height of the joint at the base of the mannequin's neck, as a fraction of the body height. The bodies for which
-/// patterns are drawn are assumed to have the same ratio.
-inline constexpr double kNeckHeightRatio = 0.83;
+/// Heights of the joint at the base of the mannequin's neck and of its waist, as fractions of the body height. The
+/// bodies for which patterns are drawn are assumed to have the same ratios.
+inline constexpr double kNeckHeightRatio = 0.83, kWaistHeightRatio = 0.63;
 
 /// A body at the start, in its own axes: x to its left, y to its back, z up, origin on the floor below its hips [m].
 struct Wearer {
