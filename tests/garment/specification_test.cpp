@@ -1,6 +1,7 @@
 // Patterns of GarmentCode read as garments.
 #include "film/garment/specification.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -169,6 +170,47 @@ TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
   EXPECT_NEAR(read.pattern.panels[2].position->y(), 0.2 + 1.12, 1e-12);
   EXPECT_EQ(read.pattern.measures.height, 1.66);
   EXPECT_EQ(this->read(kSpecification).pattern.measures.height, 1.72);
+}
+
+// Front and back of a garment of the predecessor, `low` cm wide at the lower end, `high` at the upper end, and `length`
+// long. The lower end is `from` cm above the origin, which is 1.12 m above the floor.
+std::string two_panels(double low, double high, double length, double from) {
+  const auto panel = [&](const std::string& name, int depth, bool clockwise) {
+    const std::string a = fmt::format("[{}, 0]", -low / 2), b = fmt::format("[{}, 0]", low / 2),
+                      c = fmt::format("[{}, {}]", high / 2, length), d = fmt::format("[{}, {}]", -high / 2, length);
+    return fmt::format(
+        R"("{}": {{ "translation": [0, {}, {}], "vertices": [{}, {}, {}, {}], "edges": [ {{ "endpoints": [0, 1] }},
+          {{ "endpoints": [1, 2] }}, {{ "endpoints": [2, 3] }}, {{ "endpoints": [3, 0] }} ] }})",
+        name, from, depth, a, clockwise ? d : b, c, clockwise ? b : d);
+  };
+  return R"({ "pattern": { "panels": { )" + panel("front", 20, false) + ", " + panel("back", -20, true) +
+         R"( }, "stitches": [ [ { "panel": "front", "edge": 1 }, { "panel": "back", "edge": 2 } ],
+           [ { "panel": "front", "edge": 3 }, { "panel": "back", "edge": 0 } ] ] } })";
+}
+
+// Templates of the predecessor are narrower than the body that they are for: 0.98 m around the chest, 0.81 around the
+// waist and 1.04 around the hips, the widest section of which is at 0.49 of 1.66 m.
+TEST_F(Specification, OfTheForerunnerHasTheGirthsOfPanelsThatAreNarrowerThanItsBody) {
+  const auto measures_of = [&](double low, double high, double length, double from) {
+    const ReadPattern read = this->read(two_panels(low, high, length, from));
+    EXPECT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+    return read.pattern.measures;
+  };
+  const Measures tee = measures_of(43, 43, 70, -32);
+  EXPECT_NEAR(*tee.chest, 0.86, 1e-9);
+  EXPECT_EQ(tee.waist, 0.81);
+  EXPECT_NEAR(*tee.hip, 0.86, 1e-9);
+  const Measures skirt = measures_of(70, 30, 60, -65);
+  EXPECT_EQ(skirt.chest, 0.98);
+  EXPECT_NEAR(*skirt.waist, 0.6, 1e-9);
+  EXPECT_NEAR(*skirt.hip, 2 * (0.7 - 0.4 * (0.49 * 1.66 - 1.12 + 0.65) / 0.6), 1e-9);
+  const Measures wide = measures_of(70, 60, 70, -32);
+  EXPECT_EQ(wide.chest, 0.98);
+  EXPECT_EQ(wide.hip, 1.04);
+  // Panels that are far narrower do not surround the body.
+  const Measures apron = measures_of(30, 15, 60, -65);
+  EXPECT_EQ(apron.waist, 0.81);
+  EXPECT_EQ(apron.hip, 1.04);
 }
 
 // The body of a specification may stand with its legs apart.

@@ -357,7 +357,9 @@ class Reader {
           if (!panel.is_leg()) lowest_without_legs = std::min(lowest_without_legs, height);
         }
     const bool from_predecessor = is_predecessor_ || lowest < kMinLowestPanel;
-    pattern.measures = from_predecessor ? kPredecessorBody : kBody;
+    // Templates of the predecessor are up to a quarter narrower than its body.
+    pattern.measures =
+        from_predecessor ? limit_to_panels(kPredecessorBody, panels_, stitches_, -kPredecessorOrigin) : kBody;
     // Trousers are drawn lower than they are worn. If a GarmentCode pattern would start lower than kMinStartHeight, it
     // is raised to this height. A jumpsuit is drawn at its height: only its legs are too long (shorten_low_legs()).
     const bool hangs_from_shoulders = highest > 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *kBody.height;

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "film/garment/outline.hpp"
 #include "film/garment/triangulation.hpp"
 
@@ -9,6 +13,58 @@ namespace weft::garment {
 namespace {
 
 constexpr int kPointsPerSpecCurve = 8;
+// Height of the widest section of the hips of a body, as a fraction of its height.
+constexpr double kHipLevelRatio = 0.49;
+// Panels whose widths add up to less than this fraction of a girth do not surround the body: an apron, for example.
+constexpr double kMinRingRatio = 0.6;
+// Distance between the heights at which widths are measured [m].
+constexpr double kLevelDistance = 0.01;
+
+// Sum of the widths of the panels around the trunk at a height in space [m]. Turned panels lie on others.
+double ring_width(std::span<const SpecPanel> panels, double height) {
+  double sum = 0;
+  for (const SpecPanel& panel : panels) {
+    if (panel.around != Around::torso || panel.turned) continue;
+    std::vector<Vec3> outline, cuts;
+    for (const auto& points : panel.points)
+      for (const Vec2& p : points) outline.push_back(panel.in_space(p));
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Vec3 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+      if ((a.y() < height) != (b.y() < height)) cuts.emplace_back(a + (height - a.y()) / (b.y() - a.y()) * (b - a));
+    }
+    if (cuts.empty()) continue;
+    // All cuts lie on a line. The one that is farthest from any point of the line is an end.
+    const auto farthest = [&](const Vec3& from) -> Vec3 {
+      return *std::ranges::max_element(cuts, {}, [&](const Vec3& x) { return (x - from).squaredNorm(); });
+    };
+    const Vec3 end = farthest(cuts[0]);
+    sum += (farthest(end) - end).norm();
+  }
+  return sum;
+}
+
+// Length of the edges without a stitch in the upper halves of the panels around trunk and legs, if they are nearer to
+// level than to upright [m].
+double rim_length(std::span<const SpecPanel> panels, std::span<const SpecStitch> stitches) {
+  double sum = 0;
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    const SpecPanel& panel = panels[p];
+    if ((panel.around != Around::torso && !panel.is_leg()) || panel.turned) continue;
+    for (std::size_t e = 0; e < panel.edges.size(); ++e) {
+      const auto is_here = [&](const SpecStitch& stitch) {
+        return (stitch.panel[0] == p && stitch.edge[0] == e) || (stitch.panel[1] == p && stitch.edge[1] == e);
+      };
+      if (std::ranges::any_of(stitches, is_here)) continue;
+      const Vec3 start = panel.in_space(panel.edges[e].start), end = panel.in_space(panel.edges[e].end);
+      const double rise = std::abs(end.y() - start.y());
+      if (0.5 * (start.y() + end.y()) < panel.middle.y() || 2 * rise * rise > (end - start).squaredNorm()) continue;
+      Vec2 last = panel.edges[e].end;
+      for (std::size_t k = panel.points[e].size(); k-- > 0; last = panel.points[e][k])
+        sum += (panel.points[e][k] - last).norm();
+    }
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -53,6 +109,27 @@ void derive_geometry(SpecPanel& panel) {
   Vec2 low = around[0], high = around[0];
   for (const Vec2& p : around) low = low.cwiseMin(p), high = high.cwiseMax(p);
   panel.middle = panel.in_space(0.5 * (low + high));
+}
+
+Measures limit_to_panels(const Measures& body, std::span<const SpecPanel> panels, std::span<const SpecStitch> stitches,
+                         double floor) {
+  Measures measures = body;
+  const auto limit = [](std::optional<double>& girth, double width) {
+    if (width > kMinRingRatio * *girth) girth = std::min(*girth, width);
+  };
+  const double waist = floor + kWaistHeightRatio * *body.height, neck = floor + kNeckHeightRatio * *body.height;
+  double top = -std::numeric_limits<double>::infinity(), chest = 0;
+  for (const SpecPanel& panel : panels)
+    for (const auto& points : panel.points)
+      for (const Vec2& p : points) top = std::max(top, panel.in_space(p).y());
+  for (double height = waist; height < neck; height += kLevelDistance)
+    chest = std::max(chest, ring_width(panels, height));
+  limit(measures.hip, ring_width(panels, floor + kHipLevelRatio * *body.height));
+  if (top > 0.5 * (waist + neck))
+    limit(measures.chest, chest);
+  else
+    limit(measures.waist, rim_length(panels, stitches));
+  return measures;
 }
 
 std::optional<std::size_t> find_turned_panels(std::span<SpecPanel> panels, std::span<const SpecStitch> stitches) {

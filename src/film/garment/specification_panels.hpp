@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "film/garment/pattern.hpp"
 #include "film/garment/wearer.hpp"
 
 namespace weft::garment {
@@ -58,6 +59,15 @@ std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map);
 
 /// Sets `points`, `mirrored`, `outward`, `middle` and `area` from the edges and the placement of a panel.
 void derive_geometry(SpecPanel& panel);
+
+/// The measures of `body`, with the girths of the panels where these are narrower. `floor`: height of the floor in
+/// space [m]. Requires SpecPanel::around and SpecPanel::turned.
+/// - Hip: at most the width of the panels around the trunk at the height of the hips.
+/// - Chest, if the garment ends nearer to the neck than to the waist: at most the largest such width above the waist.
+/// - Waist, if it ends lower: at most the length of its upper rim.
+/// Panels that are much narrower than a girth do not surround the body; they do not change this girth.
+Measures limit_to_panels(const Measures& body, std::span<const SpecPanel> panels, std::span<const SpecStitch> stitches,
+                         double floor);
 
 /// Sets `turned` of all panels. The right_wrong stitches divide each connected set of panels into two sides; the panels
 /// on the side with the smaller total area are turned. If a closed chain of stitches would turn a panel over, returns
