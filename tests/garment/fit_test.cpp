@@ -317,7 +317,10 @@ TEST(Fit, HangsWhatEndsAtTheWaistFromItWhateverMeasuresAreStated) {
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.2, 1.1 / (0.63 * 1.72))).norm(), 0.02);
   EXPECT_EQ(fit(pattern, wearer, "cloth.c").rise, 0);
   EXPECT_NE(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
-  panel.position = Vec2(0, 0.84);  // now its top is at the shoulders
+  panel.scale = Vec2(1, 1.6);  // now its top starts at the shoulders
+  EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
+  panel.scale = Vec2(1, 1);
+  panel.position = Vec2(0, 0.84);  // now again
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(2, 1.46 / (0.83 * 1.72))).norm(), 1e-12);
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
 }

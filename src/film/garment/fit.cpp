@@ -119,7 +119,8 @@ bool hangs_from_waist(const Pattern& pattern) {
     const Vec2 origin = panel.position.value_or(Vec2(0, 0));
     for (const PanelEdge& edge : panel.edges)
       for (const Curve& curve : edge.curves)
-        for (const Vec2& p : curve.control) top = std::max(top, origin.y() + Vec2(turn * p).y());
+        for (const Vec2& p : curve.control)
+          top = std::max(top, origin.y() + Vec2(turn * Vec2(panel.scale.cwiseProduct(p))).y());
   }
   if (!is_known) return drawn.waist && !drawn.chest;
   return (drawn.waist || drawn.hip) && top < 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *drawn.height;
