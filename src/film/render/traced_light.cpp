@@ -15,7 +15,7 @@ using Kind = PixelPoints::Kind;
 
 constexpr float kGoldenAngle = 2.39996323f;  // [rad]
 constexpr std::size_t kRowsAtOnce = 8;       // chunk of parallel loops [rows]
-constexpr int kTurns = 64;                   // number of rotations of the points on a lamp to which rays are traced
+constexpr int kTurns = 64;                   // number of rotations of the points on a lamp, a power of 2 (turn_of())
 constexpr int kFirstRays = 1;                // rays per point of the first pass, which finds penumbrae
 constexpr int kFloorTile = 16;               // side of a tile of shaded floor [pixels]
 constexpr int kPenumbraTile = 8;             // side of a tile in which penumbrae are searched [points]
@@ -30,22 +30,11 @@ constexpr float kMinFloorChange = 0.002f;
 
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
 
-/// A rotation for each pixel, from 0 to kTurns - 1. Any 4 x 4 pixels have 16 evenly spread rotations, in an order
-/// without visible rows or columns (the 8 x 8 matrix of Bayer, "An optimum method for two-level rendition of
-/// continuous-tone pictures", 1973).
+/// A rotation for each pixel, from 0 to kTurns - 1. Both factors are odd, so that each row and each column has all
+/// rotations: the filter of step 2, which never mixes even and odd ones, leaves no stripes. Of such factors, these
+/// leave the least noise (tests/bench/history.md, section "Rays").
 int turn_of(int x, int y) {
-  static constexpr auto kOrder = [] {
-    std::array<int, kTurns> order{};
-    for (int i = 0; i < kTurns; ++i) {
-      const int u = i % 8, v = i / 8;
-      for (int bit = 0; bit < 3; ++bit) {
-        const int a = u >> bit & 1, b = v >> bit & 1;
-        order[i] |= ((a ^ b) << 1 | b) << (4 - 2 * bit);
-      }
-    }
-    return order;
-  }();
-  return kOrder[static_cast<std::size_t>((y & 7) * 8 + (x & 7))];
+  return (11 * x + 17 * y) & (kTurns - 1);
 }
 
 /// Point k of n points that are evenly spread over a disc of radius 1 (Vogel 1979). `turn`: rotation of all points
