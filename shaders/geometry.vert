@@ -22,7 +22,9 @@ out float surface_heat;
 // p is the position relative to the eye.
 out vec3 normal_squares, normal_products, plane;
 invariant gl_Position;
+#ifdef CLIPPED
 out float gl_ClipDistance[1];  // height above the floor [m], for mirror.hpp
+#endif
 void main() {
   surface_normal_world = normal_world;
   surface_uv = vertex_uv;
@@ -37,10 +39,11 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
-  // llvmpipe clips at 0 even if GL_CLIP_DISTANCE0 is off. Without the added 1 mm, rounding would remove parts of the
-  // floor.
+#ifdef CLIPPED
+  // Rounding must not remove surfaces that lie on the floor, thus the added 1 mm.
   gl_ClipDistance[0] =
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
+#endif
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
   if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
     float near = frame.frustum.z;

@@ -1,4 +1,4 @@
-// Tests open floor near the horizon.
+// Tests the floor near the horizon, at the scale of kilometres, and from below.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,6 +35,44 @@ TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
       EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
     EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
   }
+}
+
+// The drawn floor extends for 130 km, where single precision rounds by millimetres.
+TEST(Picture, TiltedFloorOfKilometresIsDrawn) {
+  constexpr int kTilts = 8;
+  for (int k = 0; k < kTilts; ++k) {
+    const double tilt = std::numbers::pi / 9, turn = 2 * std::numbers::pi * k / kTilts;
+    const Vec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn), std::cos(tilt));
+    const Vec3 across = normal.cross(Vec3::UnitY()).normalized(), away = normal.cross(across);
+    const Vec3 place = 1234.5 * across, target = place + 350 * away;
+    frame::FrameSnapshot snapshot;
+    snapshot.stage = stage_without_sky();
+    frame::Surface& floor = add_square(snapshot, frame::ObjectKind::obstacle, place, normal, across, 5);
+    floor.infinite_floor = true;
+    floor.appearance.color = Vec3::Constant(0.6);
+    add_square(snapshot, frame::ObjectKind::obstacle, place + normal, normal, across, 200);
+    snapshot.cameras = {camera_at(place + 1000 * normal + 1500 * away, target, 20)};
+    snapshot.lights = {sun(-normal)};
+    Settings settings;
+    settings.width = 32;
+    settings.height = 20;
+    settings.quality = Quality::draft;
+    // Where the floor is missing, the backdrop is darker by 20 levels.
+    EXPECT_NEAR(Renderer(settings).draw(snapshot).pixel(16, 10)[1], 0.6 * 255, 4) << k;
+  }
+}
+
+TEST(Picture, WhatIsBelowTheFloorIsVisibleFromBelow) {
+  frame::FrameSnapshot snapshot;
+  add_floor(snapshot);
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0, -1), -Vec3::UnitZ(), Vec3::UnitX(), 0.5)
+      .appearance.color = Vec3(0.8, 0.1, 0.1);
+  snapshot.cameras = {camera_at(Vec3(0, 0, -3), Vec3::Zero(), 30)};
+  snapshot.lights = {sun(Vec3::UnitZ())};
+  Settings settings;
+  settings.width = settings.height = 32;
+  const image::Image image = Renderer(settings).draw(snapshot);
+  EXPECT_GT(image.pixel(16, 16)[0], image.pixel(16, 16)[2] + 50);
 }
 
 }  // namespace

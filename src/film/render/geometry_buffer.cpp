@@ -40,6 +40,7 @@ GeometryBuffer::GeometryProgram::GeometryProgram(const Gl& gl, const Variant& va
   if (variant.holes) defines.emplace_back("HOLES");
   if (variant.trimmed) defines.emplace_back("TRIMMED");
   if (variant.peeled) defines.emplace_back("PEELED");
+  if (variant.clipped) defines.emplace_back("CLIPPED");
   program = Program(gl, "geometry.vert", "geometry.frag", defines);
   surface = program.uniform("surface");
   nearer = program.uniform("nearer");
@@ -58,10 +59,11 @@ GeometryBuffer::Layers::Layers(const Gl& gl, int width, int height)
       seen(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       depth_stencil(make_texture(gl, GL_DEPTH32F_STENCIL8, width, height, GL_NEAREST)) {}
 
-GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
+GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height, bool clips)
     : gl_(&gl),
       width_(width),
       height_(height),
+      clips_(clips),
       normal_heat_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
       uv_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       seen_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
@@ -185,7 +187,7 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
 /// pixel; it is 0 for surfaces that are not painted.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
   const auto use_for = [&](int laid) -> const GeometryProgram& {
-    const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});
+    const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled, clips_});
     gl_->Uniform1f(program.surface, number);
     gl_->Uniform1f(program.nearer, nearer(surface));
     gl_->Uniform1i(program.laid, laid);

@@ -20,7 +20,10 @@ enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, sha
 
 class GeometryBuffer {
  public:
-  GeometryBuffer(const Gl& gl, int width, int height);
+  /// `clips`: for reflections in the floor of the frame block; leaves out surfaces below it while GL_CLIP_DISTANCE0 is
+  /// enabled. llvmpipe clips also if this is disabled, so other pictures have no clip distances: their floor would lose
+  /// parts by rounding, and surfaces below it would be invisible from below.
+  GeometryBuffer(const Gl& gl, int width, int height, bool clips = false);
 
   /// Draws the floor (if not null) and all surfaces except those flagged in `left_out` (empty: no
   /// exceptions), in the view of the bound frame block. `eye`: position of the eye of this view
@@ -56,9 +59,10 @@ class GeometryBuffer {
 
  private:
   /// Shader variant. If any surface has paint (`painted`) or trims (`trimmed`), the shaders of all surfaces write them.
-  /// pictured: the surface has a picture; holes: the picture cuts holes; peeled: for draw_layer().
+  /// pictured: the surface has a picture; holes: the picture cuts holes; peeled: for draw_layer(); clipped: for
+  /// `clips`.
   struct Variant {
-    bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
+    bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false, clipped = false;
     auto operator<=>(const Variant&) const = default;
   };
   struct GeometryProgram {
@@ -87,6 +91,7 @@ class GeometryBuffer {
 
   const Gl* gl_;
   int width_, height_;
+  bool clips_;
   std::map<Variant, GeometryProgram> programs_;
   Texture normal_heat_, uv_, seen_, depth_stencil_, trims_;
   Framebuffer target_;

@@ -33,7 +33,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
     : gl_(&gl),
       width_((width + kDivisor - 1) / kDivisor),
       height_((height + kDivisor - 1) / kDivisor),
-      geometry_(gl, width_, height_),
+      geometry_(gl, width_, height_, true),
       traced_light_(gl, plainer(quality), width_, height_),
       shading_(gl, quality, width_, height_, geometry_),
       frame_block_(gl),
