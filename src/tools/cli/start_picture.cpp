@@ -21,7 +21,8 @@ using simulation::IntersectionPlace;
 // Maximum number of close-ups.
 constexpr std::size_t kCloseUps = 5;
 constexpr double kCloseUpAngle = 30;  // vertical field of view [degrees]
-// Height of the region that a close-up shows: minimum [m], and ratio to the size of the place.
+// Height of the region that a close-up shows: minimum [m], in scenes of less than 1 m this fraction of their diagonal;
+// and ratio to the size of the place.
 constexpr double kMinCloseUpHeight = 0.1, kCloseUpHeightRatio = 1.6;
 // A later camera replaces an earlier one only if its visible_fraction() is more than this times as large.
 constexpr double kMinVisibilityGain = 1.25;
@@ -62,7 +63,8 @@ double visible_fraction(const frame::FrameSnapshot& snapshot, const Intersection
 frame::Camera find_close_up_camera(const frame::FrameSnapshot& snapshot, const IntersectionPlace& place,
                                    double aspect) {
   const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
-  const double height = std::max(kMinCloseUpHeight, kCloseUpHeightRatio * place.size);
+  const double least = kMinCloseUpHeight * std::min(1.0, render::subject_bounds(snapshot).diagonal().norm());
+  const double height = std::max(least, kCloseUpHeightRatio * place.size);
   const double distance = 0.5 * height / std::tan(kCloseUpAngle * std::numbers::pi / 360) + 0.5 * place.size;
   frame::Camera best;
   double best_fraction = -1;
