@@ -70,6 +70,15 @@ std::vector<int> ink_below(const Image& sheet, const Image& picture) {
   return ink;
 }
 
+TEST(ContactSheet, CombiningAccentsFillNoLine) {
+  auto all = pictures(1);
+  all[0].left = "e";
+  all[0].right = "";
+  const int height = contact_sheet_size(all, 1).height;
+  for (int i = 0; i < 200; ++i) all[0].left += "\u0301";
+  EXPECT_EQ(contact_sheet_size(all, 1).height, height);
+}
+
 TEST(ContactSheet, WrapsLongTextAndCutsNothing) {
   auto all = pictures(1);
   const auto sum = [](const std::vector<int>& ink) {

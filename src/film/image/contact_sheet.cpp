@@ -31,13 +31,14 @@ void paste(Image& onto, const Image& image, int x, int y) {
 
 // Length [bytes] of the longest prefix of `text` that fits into `max_width` [pixels]; at least one character.
 std::size_t fitting(const Font& font, std::string_view text, int max_width) {
-  std::size_t length =
-      // A character is at least one pixel wide and at most 4 bytes long.
-      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, max_width)));
-  // Whether byte `at` is a continuation byte of UTF-8.
-  const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };
-  while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > max_width)) --length;
-  while (is_continued(length)) ++length;
+  std::size_t length = 0;
+  for (int width = 0; length < text.size();) {
+    std::size_t next = length + 1;
+    while (next < text.size() && (text[next] & 0xC0) == 0x80) ++next;  // continuation bytes of UTF-8
+    width += font.width(text.substr(length, next - length));
+    if (length > 0 && width > max_width) break;
+    length = next;
+  }
   return length;
 }
 
