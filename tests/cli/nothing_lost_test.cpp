@@ -66,6 +66,12 @@ TEST_F(NothingLost, AVideoThatCannotHaveItsNameIsKeptUnderAnother) {
   const Outcome outcome = disturbed({"run", "s.toml", "-o", "a.mp4"}, [&] { write("a.mp4"); });
   EXPECT_TRUE(contains(outcome.err, "all 21 frames are kept in a.partial.mp4")) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "a.partial.mp4"));
+  // The next run that completes the video removes them, but no file of others.
+  fs::remove(folder_ / "a.mp4");
+  write("b.partial.mp4");
+  for (const char* video : {"a.mp4", "b.mp4"}) expect_well({"run", "s.toml", "-o", video, "--overwrite"});
+  EXPECT_FALSE(fs::exists(folder_ / "a.partial.mp4"));
+  expect_kept("b.partial.mp4");
 }
 
 TEST_F(NothingLost, ARunThatIsGoneOnWithReplacesItsOwnOutputsOnly) {

@@ -15,6 +15,7 @@
 #include "film/video/decoder.hpp"
 #include "film/video/encoder.hpp"
 #include "tools/cli/commands.hpp"
+#include "tools/cli/own_files.hpp"
 #include "tools/cli/path_ledger.hpp"
 #include "tools/cli/signals.hpp"
 #include "tools/cli/stages.hpp"
@@ -253,6 +254,7 @@ ExitCode join(const JoinOptions& options) {
   PathLedger paths;
   for (const fs::path& file : files) paths.reads(file, "a part of the film");
   paths.writes("-o", options.output);
+  if (!film.of_videos()) paths.writes("-o", video::partial_name(options.output));
   paths.check_absent(options.overwrite);
   paths.check_writable();
   const double fps = fps_of(film.first().file, film.first().film) / frames.step;
@@ -268,6 +270,8 @@ ExitCode join(const JoinOptions& options) {
     settings.crf = options.video.crf.value_or(settings.crf);
     settings.metadata = metadata;
     encode(files, options.output, settings);
+    const auto scene = metadata.find("scene");
+    if (scene != metadata.end()) remove_kept_frames(options.output, scene->second);
   }
   log::info(fmt::format("{}: frames {} from {} file{}", options.output.string(), frames.text(), files.size(),
                         files.size() == 1 ? "" : "s"));

@@ -9,9 +9,11 @@
 #include "core/error.hpp"
 #include "core/input_file.hpp"
 #include "core/json.hpp"
+#include "core/temporary_file.hpp"
 #include "film/image/exr.hpp"
 #include "film/image/png.hpp"
 #include "film/video/decoder.hpp"
+#include "film/video/encoder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -40,6 +42,10 @@ bool has_entry(const std::map<std::string, std::string>& metadata, const std::st
   return found != metadata.end() && found->second == value;
 }
 
+bool is_of_scene(const std::map<std::string, std::string>& metadata, const std::string& scene) {
+  return metadata.contains("weft_version") && has_entry(metadata, "scene", scene);
+}
+
 }  // namespace
 
 std::string scene_hash_of(const fs::path& file) {
@@ -48,8 +54,7 @@ std::string scene_hash_of(const fs::path& file) {
 
 bool is_picture_of(const fs::path& file, const std::string& scene, int frame) {
   const auto metadata = metadata_of(file);
-  return metadata.contains("weft_version") && has_entry(metadata, "scene", scene) &&
-         has_entry(metadata, "frame", fmt::format("{}", frame));
+  return is_of_scene(metadata, scene) && has_entry(metadata, "frame", fmt::format("{}", frame));
 }
 
 bool is_own_mesh(const fs::path& file) {
@@ -60,11 +65,16 @@ bool is_output_of(const fs::path& file, const std::string& scene) {
   std::error_code error;
   if (fs::file_size(file, error) == 0 && !error) return true;
   if (file.extension() == ".ply" && is_own_mesh(file)) return true;
-  const auto metadata = metadata_of(file);
-  if (metadata.contains("weft_version") && has_entry(metadata, "scene", scene)) return true;
+  if (is_of_scene(metadata_of(file), scene)) return true;
   const std::string name = json_text(scene);
   return starts_with_one_of(file, {fmt::format("{{\n  \"scene\": {},", name),
                                    fmt::format("{{\"event\":\"scene_loaded\",\"scene\":{},", name)});
+}
+
+void remove_kept_frames(const fs::path& video, const std::string& scene) {
+  const fs::path kept = video::partial_name(video);
+  std::error_code ignored;
+  if (may_replace(kept) && is_of_scene(metadata_of(kept), scene)) fs::remove(kept, ignored);
 }
 
 }  // namespace weft::cli

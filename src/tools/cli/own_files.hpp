@@ -21,4 +21,8 @@ bool is_own_mesh(const std::filesystem::path& file);
 /// scenes do not count: they have no mark; see Store::holds_scene().
 bool is_output_of(const std::filesystem::path& file, const std::string& scene);
 
+/// Call it when a video is complete. Removes the file with its frames that an earlier command has left because it could
+/// not finish the video (video::partial_name()), if this file is a video of the scene and may_replace() is true for it.
+void remove_kept_frames(const std::filesystem::path& video, const std::string& scene);
+
 }  // namespace weft::cli
