@@ -37,7 +37,11 @@ TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
     EXPECT_TRUE(support::read_bytes(folder_ / ("my " + name + ".toml")).starts_with("#:schema ./weft.schema.json\n"));
   }
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
+  support::write_bytes(folder_ / "weft.schema.json", "{}\n");  // of an older version
   EXPECT_EQ(run_weft({"new", "my drape"}, folder_).exit_code, 6) << "it is there already";
+  EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), "{}\n");
+  EXPECT_EQ(run_weft({"new", "my drape", "--overwrite"}, folder_).exit_code, 0);
+  EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
   EXPECT_EQ(run_weft({"new", "other", "--template", "dress"}, folder_).exit_code, 2);
   for (const char* name : {"folder/", ".", ".."}) EXPECT_EQ(run_weft({"new", name}, folder_).exit_code, 2) << name;
 }
