@@ -90,7 +90,10 @@ TEST_F(SlowVideo, IsRefusedBeforeTheSimulation) {
       "time = { duration = 400, fps = 0.005, step = 0.1 }\n[[obstacle]]\nname = 'b'\nshape = 'sphere'\n");
   const Outcome outcome = run_weft({"run", "s.toml", "-o", "a.mp4", "--stats", "s.json"}, folder_);
   EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
-  EXPECT_EQ(outcome.err, "weft: fps: expected 0.01 to 1000 frames a second, got 0.005\n");
+  EXPECT_EQ(
+      outcome.err,
+      "weft: fps: expected 0.01 to 1000 frames a second in a video, got 0.005; change fps, or the STEP of --frames, "
+      "which divides it, or write pictures\n");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "s.json"));
 }
 

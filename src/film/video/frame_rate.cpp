@@ -18,7 +18,11 @@ constexpr int kMaxTerm = 100000;
 
 AVRational frame_rate(double fps) {
   if (!(fps >= 0.01 && fps <= 1000)) {
-    throw Error(ExitCode::output_failed, "fps: expected 0.01 to 1000 frames a second, got {}", fps);
+    throw Error(
+        ExitCode::output_failed,
+        "fps: expected 0.01 to 1000 frames a second in a video, got {}; change fps, or the STEP of --frames, which "
+        "divides it, or write pictures",
+        fps);
   }
   for (const int n : {24, 30, 48, 60, 120}) {
     const double broadcast = n * 1000.0 / 1001.0;
