@@ -43,6 +43,15 @@ TEST(Framing, ViewsStraightDownAreThoseFromTheFrontThatAreNearlySo) {
   }
 }
 
+// A lens of 2,000 mm shows 0.58 degrees of the height, one of 1 mm 169 degrees, on a wide sensor more.
+TEST(Framing, LongAndShortLensesKeepTheirAngles) {
+  for (const double angle : {0.12, 0.58, 169.0, 177.0}) {
+    const View view = make_view(camera_at(Vec3(0, -5, 0), Vec3::Zero(), angle), Vec3::UnitZ(), 1,
+                                Box3(Vec3::Constant(-1), Vec3::Constant(1)), std::nullopt);
+    EXPECT_NEAR(view.tan_half_height / std::tan(angle * std::numbers::pi / 360), 1, 1e-12) << angle;
+  }
+}
+
 TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     for (const double aspect : {16.0 / 9, 1.0, 0.5}) {

@@ -63,7 +63,8 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
   View view;
   view.eye = camera.position;
   view.axes = view_axes(camera.target - camera.position, up);
-  view.tan_half_height = std::tan(std::clamp(camera.field_of_view, 1.0, 170.0) * std::numbers::pi / 360);
+  // The limits are beyond all usual lenses; a spline through the keys of a zoom may reach beyond them.
+  view.tan_half_height = std::tan(std::clamp(camera.field_of_view, 0.01, 179.0) * std::numbers::pi / 360);
   view.tan_half_width = view.tan_half_height * aspect;
 
   const double radius = 0.5 * subjects.diagonal().norm();
