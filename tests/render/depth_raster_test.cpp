@@ -41,6 +41,9 @@ TEST(DepthRaster, CoversTheTexelsWhoseCentresLieInsideAndGivesThemTheDepthOfTheP
 TEST(DepthRaster, WhatReachesOutOfTheMapIsCutOff) {
   const std::vector<float> depths = fill({-500, -500, 0.5f}, {500, -500, 0.5f}, {0, 900, 0.5f});
   for (const float depth : depths) EXPECT_EQ(depth, 0.5f);
+  // Corners beyond the range of int.
+  for (const float depth : fill({-1e10f, -1e10f, 0.5f}, {1e10f, -1e10f, 0.5f}, {0, 2e10f, 0.5f}))
+    EXPECT_EQ(depth, 0.5f);
   for (const float depth : fill({70, 3, 0}, {90, 3, 0}, {80, 30, 0})) EXPECT_EQ(depth, 9);
 }
 

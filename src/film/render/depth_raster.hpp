@@ -20,9 +20,12 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
   const float b_x = b.x() - a.x(), b_y = b.y() - a.y(), c_x = c.x() - a.x(), c_y = c.y() - a.y();
   const float area = b_x * c_y - c_x * b_y;
   if (!(std::abs(area) > 1e-12f)) return;  // edge-on
-  // First and last texel along one axis whose centre may be inside the triangle.
-  const auto first = [](float low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5f))); };
-  const auto last = [](float high, int size) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5f))); };
+  // First and last texel along one axis whose centre may be inside the triangle. Corners near the near plane may be
+  // beyond the range of int.
+  const auto first = [](float low) { return static_cast<int>(std::max(0.0f, std::ceil(low - 0.5f))); };
+  const auto last = [](float high, int size) {
+    return static_cast<int>(std::min(static_cast<float>(size - 1), std::floor(high - 0.5f)));
+  };
   const auto [x_min, x_max] = std::minmax({a.x(), b.x(), c.x()});
   const auto [y_min, y_max] = std::minmax({a.y(), b.y(), c.y()});
   if (!(x_max > 0 && y_max > 0 && x_min < static_cast<float>(width) && y_min < static_cast<float>(height))) return;

@@ -43,8 +43,9 @@ class Canvas {
     if (along(a) > along(b)) std::swap(a, b);
     const double length = along(b) - along(a);
     if (!(length > 0)) return;
-    const int from = std::max(0, static_cast<int>(std::ceil(along(a) - 0.5)));
-    const int to = std::min(steep ? height_ : width_, static_cast<int>(std::ceil(along(b) - 0.5)));
+    const double end = steep ? height_ : width_;
+    const int from = static_cast<int>(std::clamp(std::ceil(along(a) - 0.5), 0.0, end));
+    const int to = static_cast<int>(std::clamp(std::ceil(along(b) - 0.5), 0.0, end));
     for (int step = from; step < to; ++step) {
       const double share = (step + 0.5 - along(a)) / length;
       const double cross_place = across(a) + share * (across(b) - across(a)) - 0.5;

@@ -153,7 +153,7 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
   const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
   const auto [y_min, y_max] = std::minmax({a.y, b.y, c.y});
   if (!(x_max >= 0 && y_max >= 0 && x_min < static_cast<float>(width_) && y_min < static_cast<float>(height_))) return;
-  const int x0 = std::max(0, static_cast<int>(x_min)), y0 = std::max(0, static_cast<int>(y_min));
+  const int x0 = static_cast<int>(std::max(0.0f, x_min)), y0 = static_cast<int>(std::max(0.0f, y_min));
   const int x1 = static_cast<int>(std::min(x_max, static_cast<float>(width_ - 1)));
   const int y1 = static_cast<int>(std::min(y_max, static_cast<float>(height_ - 1)));
 
