@@ -200,6 +200,31 @@ TEST(ReflectedLight, TheFloorHidesWhatIsBelowIt) {
   EXPECT_EQ(found.light.at(0), Vector3f::Zero());
 }
 
+// The light of the surroundings contains a floor that suns light, but no light of spots. A white floor is 1 m above the
+// origin; the lamp is far below it, behind a plate in the second case.
+TEST(ReflectedLight, FloorInTheLightOfASpotAddsThisLight) {
+  frame::Light sun, spot;
+  sun.direction = Vec3(0, 0, 1);
+  spot.kind = frame::Light::Kind::spot;
+  spot.position = Vec3(0, 0, -1000);
+  spot.target = Vec3(0, 0, 1);
+  spot.cone_angle = 90;
+  const Mesh plate = rectangle(1000, 1000, -0.5);
+  for (const bool shaded : {false, true}) {
+    const std::vector<DrawnMesh> drawn(shaded ? 1 : 0, plate.drawn());
+    RayScene scene;
+    scene.build(drawn);
+    const auto reflected = [&](const frame::Light& light) {
+      const ReflectingSurface white{{{2, Vector3f::Ones(), Vector3f::Ones()}}};
+      const ReflectedLight reflection(scene, {white}, {make_lamp(light, Vec3::Ones())}, no_light(),
+                                      Floor{Vec3(0, 0, 1), Vec3(0, 0, -1), {}}, Vector3f::Ones());
+      return mean_arriving(reflection, 8000).light.at(0).x();
+    };
+    EXPECT_NEAR(reflected(sun), shaded ? -1 : 0, 0.01);
+    EXPECT_NEAR(reflected(spot), shaded ? 0 : 1, 0.01);
+  }
+}
+
 TEST(ReflectedLight, HolesOfPicturesDoNotDarkenTheirColor) {
   frame::Texture lace{2, 1, {255, 0, 0, 255, 0, 0, 0, 0}};
   frame::Appearance look;

@@ -169,9 +169,10 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     shadow.wanted = mask(on_surface + on_floor > 0 && strength > 0);
     if ((shadow.wanted == 0).all()) continue;
     const Lanes dark = rays_->blocked(shadow);
-    // The surroundings already contain the fully lit floor. Therefore, a shadow on the floor subtracts light.
-    const Lanes added =
-        (shadow.wanted != 0).select(strength * (on_surface - dark * (on_surface + on_floor)), Lanes::Zero());
+    // The surroundings already contain the floor, fully lit by suns (expose()). Therefore, the shadow of a sun on the
+    // floor subtracts light.
+    const Lanes lit = lamp.is_spot() ? Lanes(on_surface + on_floor) : on_surface;
+    const Lanes added = (shadow.wanted != 0).select(strength * (lit - dark * (on_surface + on_floor)), Lanes::Zero());
     result.light.x += added * lamp.packed.color.x();
     result.light.y += added * lamp.packed.color.y();
     result.light.z += added * lamp.packed.color.z();

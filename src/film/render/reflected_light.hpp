@@ -66,8 +66,8 @@ class ReflectedLight {
   struct Arriving {
     Lanes open = Lanes::Zero();  ///< 1 if the ray hits no surface; the floor counts as part of the surroundings
     /// The radiance along the ray is `open` times that of the surroundings, plus `light`. If the ray hits a surface,
-    /// `light` is all of the radiance. If the ray hits shaded floor, `light` is negative, because the surroundings
-    /// contain the fully lit floor.
+    /// `light` is all of the radiance. The surroundings contain the floor, fully lit by suns but not by spots. If the
+    /// ray hits the floor, `light` is the difference: negative in the shadow of a sun, positive in the light of a spot.
     Lanes3 light;
   };
   Arriving arriving(const Rays& rays) const;
