@@ -23,11 +23,11 @@ class BoundedQueue {
   /// Waits for space. Returns false if the queue is closed or cancelled; the producer should then stop.
   [[nodiscard]] bool push(T item) {
     std::unique_lock lock(mutex_);
-    room_.wait(lock, [&] { return items_.size() < capacity_ || closed_ || cancelled_; });
+    space_available_.wait(lock, [&] { return items_.size() < capacity_ || closed_ || cancelled_; });
     if (closed_ || cancelled_) return false;
     items_.push_back(std::move(item));
     lock.unlock();
-    arrived_.notify_one();
+    item_available_.notify_one();
     return true;
   }
 
@@ -35,7 +35,7 @@ class BoundedQueue {
   /// was closed with an exception, throws that exception instead.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
-    arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });
+    item_available_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });
     if (items_.empty() || cancelled_) {
       if (failure_ && !cancelled_) std::rethrow_exception(failure_);
       return std::nullopt;
@@ -43,7 +43,7 @@ class BoundedQueue {
     std::optional<T> item(std::move(items_.front()));
     items_.pop_front();
     lock.unlock();
-    room_.notify_one();
+    space_available_.notify_one();
     return item;
   }
 
@@ -55,8 +55,8 @@ class BoundedQueue {
       if (!closed_) failure_ = std::move(failure);
       closed_ = true;
     }
-    arrived_.notify_all();
-    room_.notify_all();
+    item_available_.notify_all();
+    space_available_.notify_all();
   }
 
   /// The consumer calls cancel() when it pops no further items. Discards the waiting items.
@@ -66,14 +66,14 @@ class BoundedQueue {
       cancelled_ = true;
       items_.clear();
     }
-    arrived_.notify_all();
-    room_.notify_all();
+    item_available_.notify_all();
+    space_available_.notify_all();
   }
 
  private:
   const std::size_t capacity_;
   std::mutex mutex_;
-  std::condition_variable room_, arrived_;
+  std::condition_variable space_available_, item_available_;
   std::deque<T> items_;
   bool closed_ = false;
   bool cancelled_ = false;

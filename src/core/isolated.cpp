@@ -87,7 +87,7 @@ void send(int descriptor, std::string_view bytes) {
   // At the soft limit, the kernel sends SIGXCPU; at the hard limit, a second later, SIGKILL.
   if (isolation.cpu_seconds > 0) limit(RLIMIT_CPU, isolation.cpu_seconds, isolation.cpu_seconds + 1);
 #ifndef __SANITIZE_ADDRESS__  // the address sanitizer reserves terabytes of addresses
-  if (isolation.addresses > 0) limit(RLIMIT_AS, isolation.addresses, isolation.addresses);
+  if (isolation.max_address_space > 0) limit(RLIMIT_AS, isolation.max_address_space, isolation.max_address_space);
 #endif
   char kind = kDone;
   std::string bytes;

@@ -12,7 +12,7 @@ struct Isolation {
   std::string name = "the process";         ///< name of the child in messages
   unsigned cpu_seconds = 0;                 ///< CPU time limit; 0: none
   unsigned wall_seconds = 0;                ///< wall time limit, after which the child is killed; 0: none
-  std::uint64_t addresses = 0;              ///< address space limit [bytes]; 0: none
+  std::uint64_t max_address_space = 0;      ///< address space limit [bytes]; 0: none
   const std::atomic<bool>* stop = nullptr;  ///< if it becomes true, the child is killed; nullptr: never
 };
 

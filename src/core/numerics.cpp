@@ -3,16 +3,16 @@
 namespace weft {
 namespace {
 
-constexpr Numerics chosen() {
-  Numerics chosen;
+constexpr Numerics make_numerics() {
+  Numerics result;
 #ifdef WEFT_CHANGED_NUMERICS  // tests/tools/change_numerics.sh defines it, for example as newton.slow_after *= 10
-  chosen.WEFT_CHANGED_NUMERICS;
+  result.WEFT_CHANGED_NUMERICS;
 #endif
-  return chosen;
+  return result;
 }
 
 }  // namespace
 
-constinit const Numerics numerics = chosen();
+constinit const Numerics numerics = make_numerics();
 
 }  // namespace weft

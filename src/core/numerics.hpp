@@ -49,7 +49,7 @@ struct Numerics {
     int check_after = 4;
     /// Number of Newton iterations after which a solve counts as slow. In a slow solve, the normal
     /// forces that limit friction stay fixed, and the bound of the velocity error that the solver
-    /// may leave is at least `solver.newton_tolerance` times unseen_velocity(). With implicit Euler,
+    /// may leave is at least `solver.newton_tolerance` times min_visible_velocity(). With implicit Euler,
     /// it is also at least `solver.newton_tolerance` times `velocity_ratio` times the truncation
     /// error of the velocity in this step. From half of this number on, each linear
     /// solve includes all diagonal blocks. Larger: friction and normal forces, or cloths that press
@@ -60,11 +60,11 @@ struct Numerics {
     double velocity_ratio = 0.5;
     /// Time for which a velocity error is assumed to displace cloth [s]. Smaller: most of the error
     /// of a run comes from the solver. Larger: more iterations.
-    double lasting_time = 0.15;
+    double error_duration = 0.15;
     /// Visibility thresholds: smaller errors of acceleration [m/s²] and velocity [m/s] are not visible. As bounds of
     /// solver errors, both are multiplied by `solver.newton_tolerance`.
-    double unseen_acceleration = 0.01;
-    double unseen_velocity() const { return unseen_acceleration * lasting_time; }
+    double min_visible_acceleration = 0.01;
+    double min_visible_velocity() const { return min_visible_acceleration * error_duration; }
     /// A cloth or rigid body counts as about to slide if its friction, summed over its contacts,
     /// exceeds this fraction of the maximum.
     double about_to_slide = 0.9;
@@ -78,7 +78,7 @@ struct Numerics {
   struct Steps {
     /// Local error that the step control aims at, relative to `time.tolerance`. Nearer to 1: more
     /// steps are rejected.
-    double aim = 0.7;
+    double target_error_ratio = 0.7;
     /// Minimum and maximum ratio of the length of a step to that of the step before. After a
     /// rejection, the maximum is 1. Larger `largest_factor`: BDF2 amplifies earlier errors.
     double least_factor = 0.2;
@@ -88,7 +88,7 @@ struct Numerics {
     /// shorter is not solved, the run ends. Without `time.tolerance`, this value has no effect.
     double min_step = 1e-5;
     /// Cloth counts as at rest only if no particle is faster than this [m/s]; see
-    /// StepLoop::may_rest().
+    /// StepLoop::may_merge_steps().
     double rest_velocity = 0.02;
   } steps;
 
@@ -96,7 +96,7 @@ struct Numerics {
   struct Contact {
     /// Ratio of the detection distance to the largest contact thickness. Smaller: contacts are
     /// found late in a step.
-    double detection = 1.5;
+    double detection_ratio = 1.5;
     /// Verlet margin m of near pairs, in detection distances: the search reuses its list of near
     /// pairs until a vertex has moved farther than this. Larger: longer lists. Smaller: more
     /// searches. Other bounds follow from m, also in detection distances:
@@ -107,7 +107,7 @@ struct Numerics {
     ///   step is halved,
     /// - m: if no obstacle moves farther than this in a step, the step loop assumes that cloth
     ///   between obstacles would have no more space in shorter steps.
-    double margin = 0.25;
+    double verlet_margin = 0.25;
     /// Maximum contact thickness of a cloth other than a rope, in units of its smallest particle
     /// spacing. Larger: a sheared sheet collides with itself.
     double thickness_of_spacing = 0.25;
@@ -165,10 +165,10 @@ struct Numerics {
     /// Pushing apart restores a gap of max(2 `least_gap`, min(`restored_gap`, half of the gap at the start)) [m].
     double restored_gap = 2e-4;
     /// Maximum number of rounds of pushing apart. If pairs still fail, their particles move back:
-    /// by half of their motion in up to `rounds` / 2 further rounds, then to the start of the step
-    /// in up to `rounds` rounds; then all particles move back. Smaller: particles move back farther
+    /// by half of their motion in up to `max_rounds` / 2 further rounds, then to the start of the step
+    /// in up to `max_rounds` rounds; then all particles move back. Smaller: particles move back farther
     /// than necessary.
-    int rounds = 24;
+    int max_rounds = 24;
   } separation;
 
   /// Velocity constraints of Etzmuß et al. (2001), if `contact.response` selects them: a contact of a particle with an
@@ -180,11 +180,11 @@ struct Numerics {
     /// Minimum sine of the angle between the normal of a wall and the span of the normals of the walls before it. If
     /// the sine is smaller, the wall adds no constraint.
     double min_independent_sine = 0.05;
-    /// `flips`: number of changes of a particle's constraints in a step; further changes do not cause
-    /// another solve. `solves`: maximum number of solves in a step. `max_walls`: maximum
+    /// `max_constraint_changes`: number of changes of a particle's constraints in a step; further changes do not cause
+    /// another solve. `max_solves`: maximum number of solves in a step. `max_walls`: maximum
     /// number of walls per particle.
-    int flips = 3;
-    int solves = 6;
+    int max_constraint_changes = 3;
+    int max_solves = 6;
     int max_walls = 8;
     /// A change of constraints needs no further solve if it changes the constraint force per mass
     /// by less than `negligible_acceleration` [m/s²], or friction by less than `negligible_change`

@@ -10,7 +10,7 @@ namespace weft {
 /// Positions xₖ at an earlier time, and their weight wₖ in the velocity of a method: v = r (x − Σ wₖ xₖ), where r [1/s]
 /// is dv/dx of the method. Likewise, dq/dt of any quantity q(x) is r (q(x) − Σ wₖ q(xₖ)). If q is a length and the body
 /// turns rigidly, r (q(x) − Σ wₖ q(xₖ)) is zero, however large the angle per step is; ∂q/∂x v is not zero.
-struct Past {
+struct EarlierPositions {
   std::span<const Vec3> x;
   double weight = 0;
 };

@@ -51,7 +51,7 @@ struct StageTime {
 /// alone, because other threads draw and encode while this thread simulates. True: the time of all
 /// threads, to include the helper threads of parallel loops; correct only if the process does
 /// nothing else. Set it before any stage runs.
-inline bool charge_all_threads = false;
+inline bool stopwatch_includes_all_threads = false;
 
 /// Adds the wall and CPU time from its construction to its destruction to those of a stage.
 class Stopwatch {
@@ -62,7 +62,7 @@ class Stopwatch {
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
-  static double cpu_seconds() { return charge_all_threads ? process_cpu_seconds() : thread_cpu_seconds(); }
+  static double cpu_seconds() { return stopwatch_includes_all_threads ? process_cpu_seconds() : thread_cpu_seconds(); }
 
   StageTime& stage_;
   WallTimer timer_;

@@ -214,7 +214,7 @@ TEST(SpeedReport, StagesOfARunAddUpToIt) {
   EXPECT_LT(run.all().wall_s, all);
   EXPECT_GE(run.newton_iterations, run.steps);
   EXPECT_GT(run.peak_memory, run.memory_before);
-  charge_all_threads = false;
+  stopwatch_includes_all_threads = false;
   set_thread_count(0);
 }
 

@@ -47,7 +47,7 @@ struct Sheet {
     made.add(triangles, static_cast<Index>(particles()),
              {.deformable = true, .thickness = kThickness, .friction = 0.3});
     for (std::size_t p = 0; p < planes.size(); ++p)
-      made.add(std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, 4, {.friction = 0.3, .moving = false});
+      made.add(std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, 4, {.friction = 0.3, .may_move = false});
     return made;
   }
   Engine engine(const EngineParameters& parameters = {}) const { return {bodies(), parameters, x, masses}; }

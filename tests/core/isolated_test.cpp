@@ -17,7 +17,8 @@ namespace {
 
 std::string reason(const std::function<std::string()>& work, unsigned cpu_seconds = 60) {
   try {
-    run_isolated(work, {.name = "the reader", .cpu_seconds = cpu_seconds, .addresses = std::uint64_t{16} << 30});
+    run_isolated(work,
+                 {.name = "the reader", .cpu_seconds = cpu_seconds, .max_address_space = std::uint64_t{16} << 30});
   } catch (const std::runtime_error& error) {
     return error.what();
   }

@@ -134,7 +134,7 @@ TEST_F(Acting, StoresAsManyKeysAsThePlanSays) {
   EXPECT_EQ(count_key_frames(scene_, (make(), character_)).bytes, make().keys.bytes());
   character_.dressing = 3;
   EXPECT_EQ(count_key_frames(scene_, (make(), character_)).keys, 1u) << "it never moves";
-  EXPECT_FALSE(make().keys.moving());
+  EXPECT_FALSE(make().keys.is_moving());
 }
 
 scene::BodyPart part(const std::string& name) {
@@ -486,7 +486,7 @@ TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
   ASSERT_EQ(environment.model.bodies.size(), 2u);
   const model::Body& body = environment.model.bodies[1];
   EXPECT_EQ(body.name, "rod");
-  EXPECT_TRUE(body.deforms() && body.moving && body.collide);
+  EXPECT_TRUE(body.deforms() && body.may_move && body.collide);
   EXPECT_EQ(body.friction, 0.9);
   std::vector<Vec3> start(body.mesh.positions.size()), later = start;
   environment.model.place(1, 0, start);

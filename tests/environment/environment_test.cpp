@@ -160,7 +160,7 @@ TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
   scene.obstacles[0].pose = {{1, 2, 3}, motion::about({0, 0, 1}, 90 * kDegree)};
   scene.obstacles[0].collide = false;
   const Environment environment(scene);
-  EXPECT_FALSE(environment.model.bodies[0].moving);
+  EXPECT_FALSE(environment.model.bodies[0].may_move);
   EXPECT_FALSE(environment.model.bodies[0].collide);
   for (const double t : {0.0, 5.0}) {
     EXPECT_LT((bounds_of(environment, t).min() - Vec3(-1, 1, 0)).norm(), kRounding);
@@ -204,7 +204,7 @@ scene::Scene scene_with_tumbling_torus() {
 
 TEST(Obstacle, InMotionIsElsewhereAtAnotherTimeAndKeepsItsShapeAndFollowsItsPose) {
   const Environment environment(scene_with_tumbling_torus());
-  ASSERT_TRUE(environment.model.bodies[0].moving);
+  ASSERT_TRUE(environment.model.bodies[0].may_move);
   EXPECT_NE(placed(environment, 1), placed(environment, 0));
   const std::vector<Vec3>& torus = environment.model.bodies[0].mesh.positions;
   for (const double t : {0.2, 0.5, 1.7, 9.0}) {

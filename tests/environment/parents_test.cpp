@@ -43,7 +43,7 @@ TEST(Parent, LeavesWhatFollowsWhereItsOwnPoseSaysUntilItMoves) {
   EXPECT_LT((ring.position - Vec3(3, 0, 1)).norm(), kPlaceRounding);
   EXPECT_LT((hand.position - Vec3(2, 0, 0)).norm(), kPlaceRounding);
   EXPECT_LT(ring.rotation.angularDistance(Quat::Identity()), kPlaceRounding);
-  for (const model::Body& body : environment.model.bodies) EXPECT_TRUE(body.moving) << body.name;
+  for (const model::Body& body : environment.model.bodies) EXPECT_TRUE(body.may_move) << body.name;
 }
 
 TEST(Parent, CarriesTheOwnMotionOfWhatFollowsThroughAChain) {
@@ -121,7 +121,7 @@ height = 0.2
 position = [0, 0, 1.85]
 follow = "man.head"
 )"));
-  ASSERT_TRUE(environment.model.bodies[0].moving);
+  ASSERT_TRUE(environment.model.bodies[0].may_move);
   EXPECT_LT((environment.model.pose(0, 0).position - Vec3(0, 0, 1.85)).norm(), 1e-9);
   const auto& parts = environment.bodies[1].parts;
   ASSERT_EQ(std::ranges::count(parts, "head", &Part::name), 1);

@@ -8,7 +8,7 @@
 #include "forces/sheets.hpp"
 #include "forces/triangle_meshes.hpp"
 #include "physics/forces/bands.hpp"
-#include "physics/forces/cord.hpp"
+#include "physics/forces/rope_force.hpp"
 #include "physics/forces/stretch_limit.hpp"
 
 namespace weft::forces {
@@ -99,21 +99,21 @@ const Case kCases[] = {
        sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 0.8, elastic, 0, 1e-6 * elastic, 0});
        return std::make_unique<Bands>(sheet, 0, 0);
      }},
-    {"cord",
+    {"rope",
      [](double elastic, double viscous) {
-       return std::make_unique<Cord>(std::vector<double>(19, 0.02), false, 0,
-                                     CordParameters{.stretch = elastic,
-                                                    .stretch_viscosity = viscous,
-                                                    .bend = 1e-5 * elastic,
-                                                    .bend_viscosity = 1e-5 * viscous});
+       return std::make_unique<RopeForce>(std::vector<double>(19, 0.02), false, 0,
+                                          RopeForceParameters{.stretch = elastic,
+                                                              .stretch_viscosity = viscous,
+                                                              .bend = 1e-5 * elastic,
+                                                              .bend_viscosity = 1e-5 * viscous});
      }},
     {"closed_cord",
      [](double elastic, double viscous) {
-       return std::make_unique<Cord>(std::vector<double>(20, 0.02), true, 0,
-                                     CordParameters{.stretch = elastic,
-                                                    .stretch_viscosity = viscous,
-                                                    .bend = 1e-5 * elastic,
-                                                    .bend_viscosity = 1e-5 * viscous});
+       return std::make_unique<RopeForce>(std::vector<double>(20, 0.02), true, 0,
+                                          RopeForceParameters{.stretch = elastic,
+                                                              .stretch_viscosity = viscous,
+                                                              .bend = 1e-5 * elastic,
+                                                              .bend_viscosity = 1e-5 * viscous});
      }},
 };
 

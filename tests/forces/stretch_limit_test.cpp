@@ -91,9 +91,9 @@ TEST(StretchLimit, OfShearAloneOrOfStretchAloneLeavesTheOther) {
 }
 
 /// The force plus what its linearisation adds [N].
-Positions linear_force(const StretchLimit& limit, const Positions& x, const LockLinearisation& lag) {
+Positions linear_force(const StretchLimit& limit, const Positions& x, const LockLinearisation& linearisation) {
   Positions force = testing::force_of(limit, x, testing::zeros(x));
-  limit.add_linearisation_difference(x, lag, force);
+  limit.add_linearisation_difference(x, linearisation, force);
   return force;
 }
 
@@ -101,23 +101,23 @@ TEST(StretchLimit, IsLinearisedWhereItsThreadsHaveTheTensionForeseen) {
   const Lock lock(kLimit);
   for (const auto& limit : both(kLimit, kNone)) {
     const Positions start = drawn(1.08, 1.02), far = drawn(1.2, 1.02);
-    LockLinearisation lag;
-    limit->begin(start, lag);
-    limit->update(far, true, lag);
+    LockLinearisation linearisation;
+    limit->begin(start, linearisation);
+    limit->update(far, true, linearisation);
     const Positions itself = testing::force_of(*limit, far, testing::zeros(far));
-    const Positions linear = linear_force(*limit, far, lag);
+    const Positions linear = linear_force(*limit, far, linearisation);
     const double foreseen = lock.stress(0.08) + 0.12 * lock.stiffness(0.08);
     for (std::size_t i = 0; i < far.size(); ++i)
       EXPECT_LT((linear[i] - foreseen / lock.stress(0.2) * itself[i]).norm(), 1e-9 * Lock::kTension) << i;
-    limit->update(far, false, lag);
+    limit->update(far, false, linearisation);
     const double tension = kBelow.weft * 0.2 + foreseen;
-    ASSERT_FALSE(lag.beyond_onset.empty());
-    for (const std::uint32_t t : lag.beyond_onset) {
-      const double e = lag.extensions[t];
+    ASSERT_FALSE(linearisation.beyond_onset.empty());
+    for (const std::uint32_t t : linearisation.beyond_onset) {
+      const double e = linearisation.extensions[t];
       EXPECT_LT(e, 0.2);
       EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);  // twice the tolerance of the search
     }
-    EXPECT_TRUE(std::ranges::all_of(linear_force(*limit, drawn(0, 1.02), lag), [](const Vec3& f) {
+    EXPECT_TRUE(std::ranges::all_of(linear_force(*limit, drawn(0, 1.02), linearisation), [](const Vec3& f) {
       return f.isZero(0);
     })) << "threads without a length";
   }
@@ -127,11 +127,12 @@ TEST(StretchLimit, IsItselfWhereItIsLinearisedAndBelowTheOnset) {
   for (const auto& limit : both(kLimit, kNone))
     for (const double weft : {1.02, 1.09, 1.3}) {
       const Positions x = drawn(weft, 1.01);
-      LockLinearisation lag;
-      limit->begin(x, lag);
-      limit->update(x, true, lag);
-      EXPECT_EQ(lag.beyond_onset.empty(), weft < 1.05);
-      const Positions force = testing::force_of(*limit, x, testing::zeros(x)), linear = linear_force(*limit, x, lag);
+      LockLinearisation linearisation;
+      limit->begin(x, linearisation);
+      limit->update(x, true, linearisation);
+      EXPECT_EQ(linearisation.beyond_onset.empty(), weft < 1.05);
+      const Positions force = testing::force_of(*limit, x, testing::zeros(x)),
+                      linear = linear_force(*limit, x, linearisation);
       for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((linear[i] - force[i]).norm(), 1e-9 * Lock::kTension);
     }
 }

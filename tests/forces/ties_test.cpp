@@ -91,9 +91,9 @@ TEST(Ties, OfSeamsThatTearPartForGoodOnceTheyHaveHeld) {
   ties.set_strengths(0, 0.5);
   accept(1.5);
   ties.set_strengths(0, 1);
-  EXPECT_TRUE(accept(5).holds) << "was sewn already, but had not held yet";
+  EXPECT_TRUE(accept(5).is_closed) << "was sewn already, but had not held yet";
   EXPECT_NEAR(accept(1.5).load, 0.5 * kPull, 1e-12);
-  EXPECT_FALSE(accept(2).holds);
+  EXPECT_FALSE(accept(2).is_closed);
   EXPECT_EQ(accept(1.5).load, 0);
   ties.set_strengths(0, 1);
   EXPECT_EQ(pull(ties, 1.5 * Ties::kRest), 0);
@@ -112,7 +112,7 @@ TEST(Ties, OfSeamsThatTearMayOpenAndCloseAgain) {
     const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, distance * Ties::kRest, 0)};
     ties.set_strengths(t, 1);
     ties.accept(x);
-    return ties.measure_seams(x).at(0).holds;
+    return ties.measure_seams(x).at(0).is_closed;
   };
   EXPECT_TRUE(accept(0.5, 1.5));
   EXPECT_FALSE(accept(1.5, 5)) << "is open";

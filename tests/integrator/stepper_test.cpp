@@ -104,7 +104,7 @@ TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
     State next;
     const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
     ASSERT_EQ(report.verdict, Verdict::solved);
-    EXPECT_LE(report.left, report.allowed);
+    EXPECT_LE(report.remaining_error, report.allowed);
     // Reported errors are true within a factor of 3.
     EXPECT_LT((next.v[0] - exact.v[0]).norm(), 3 * report.allowed) << tolerance;
     EXPECT_LE(report.solver_error, tolerance * report.local_error);
@@ -308,12 +308,12 @@ TEST(Stepper, LinearSolveOfImpactsIsCountedAndJudged) {
   EXPECT_EQ(struck.verdict, Verdict::solved);
   EXPECT_EQ(struck.newton_iterations, calm.newton_iterations);
   EXPECT_GT(struck.linear_iterations, calm.linear_iterations);
-  EXPECT_LT(struck.solver_error, 1e-9 * numerics.newton.lasting_time);
+  EXPECT_LT(struck.solver_error, 1e-9 * numerics.newton.error_duration);
   // One iteration solves the systems of Newton's method, which are antisymmetric, but not that of the impact. Computed
   // by hand: an error of 0.04 m/s.
   const StepReport rough = report_of(StruckSaddle(0), 1);
   EXPECT_EQ(rough.verdict, Verdict::solved);
-  EXPECT_GT(rough.solver_error, 0.01 * numerics.newton.lasting_time);
+  EXPECT_GT(rough.solver_error, 0.01 * numerics.newton.error_duration);
   EXPECT_EQ(report_of(StruckSaddle(397), 1000).verdict, Verdict::indefinite);
 }
 

@@ -131,7 +131,7 @@ TEST(KeyFrames, HaveTheSameBitsForAnyNumberOfThreads) {
 TEST(KeyFrames, TakeTwiceTheirPositionsWhereCubic) {
   EXPECT_EQ(KeyFrames(Interpolation::linear, 0, 1, random_keys(4, 10), false).bytes(), 4u * 10 * 24);
   EXPECT_EQ(KeyFrames(Interpolation::cubic, 0, 1, random_keys(4, 10), false).bytes(), 2u * 4 * 10 * 24);
-  EXPECT_FALSE(KeyFrames(Interpolation::cubic, 0, 1, random_keys(1, 10), false).moving());
+  EXPECT_FALSE(KeyFrames(Interpolation::cubic, 0, 1, random_keys(1, 10), false).is_moving());
 }
 
 }  // namespace

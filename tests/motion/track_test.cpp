@@ -47,7 +47,7 @@ TEST(Pose, BestRotationIsFoundThroughStretchAndIsNoMirrorImage) {
 TEST(Track, WithoutKeysHoldsTheRestPose) {
   const Pose rest{{1, 2, 3}, about({1, 1, 0}, 0.5)};
   const Track track({}, rest);
-  EXPECT_FALSE(track.moving());
+  EXPECT_FALSE(track.is_moving());
   for (const double t : {-1.0, 0.0, 100.0}) {
     const PoseSample pose = track.at(t);
     EXPECT_EQ(pose.position, rest.position);
@@ -59,7 +59,7 @@ TEST(Track, WithoutKeysHoldsTheRestPose) {
 
 TEST(Track, OfOneKeyHoldsItInsteadOfTheRestPose) {
   const Track track({Interpolation::cubic, {{1, {{4, 5, 6}, about({0, 0, 1}, 1)}}}}, {{1, 2, 3}, Quat::Identity()});
-  EXPECT_FALSE(track.moving());
+  EXPECT_FALSE(track.is_moving());
   for (const double t : {0.0, 1.0, 2.0}) {
     EXPECT_EQ(track.at(t).position, Vec3(4, 5, 6));
     EXPECT_LT(between(track.at(t).rotation, about({0, 0, 1}, 1)), kRoundingOfTurns);
@@ -84,7 +84,7 @@ TEST_P(Tracks, PassThroughTheirKeysFromBothSides) {
 TEST_P(Tracks, RestBeforeTheFirstAndFromTheLastKeyOn) {
   const PoseTrack keys = tumbling(GetParam());
   const Track track(keys);
-  EXPECT_TRUE(track.moving());
+  EXPECT_TRUE(track.is_moving());
   EXPECT_NE(track.at(0.0).angular_velocity.norm(), 0);
   for (const double t : {-1e-11, -7.0, 3.0, 50.0}) {
     const PoseSample pose = track.at(t);

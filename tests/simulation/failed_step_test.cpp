@@ -145,7 +145,7 @@ TEST(FailedStep, TakesBackPinchedClothAndPinsThatLag) {
       report.frame = frame + 1;
       steps.advance(frame / model.time.fps, (frame + 1) / model.time.fps, report);
     };
-    const auto take_obstructions = [&] { return steps.take_pinches().pairs + steps.take_lags().particles; };
+    const auto take_obstructions = [&] { return steps.take_pinches().pairs + steps.take_lag_report().particles; };
     int found = 0;
     for (int frame = 0; found == 0; ++frame) {
       ASSERT_LT(frame, 10);

@@ -229,10 +229,10 @@ TEST(LaggingPin, IsNotSaidToBeAtItsTargetWhenItIsReleased) {
     pins.release_particle(pins.held().front().constraint.particle, "'box' near (0, 0, 0) m");
     pins.begin_step(0, 0.01, x);
     pins.accept();
-    EXPECT_EQ(pins.take_lags().messages.size(), 1u) << "it yields";
+    EXPECT_EQ(pins.take_lag_report().messages.size(), 1u) << "it yields";
     pins.begin_step(0.01, 0.01, x);
     pins.accept();
-    EXPECT_EQ(pins.take_lags().messages.size(), is_released ? 0u : 1u);
+    EXPECT_EQ(pins.take_lag_report().messages.size(), is_released ? 0u : 1u);
   }
 }
 

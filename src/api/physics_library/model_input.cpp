@@ -128,7 +128,7 @@ void check_triangles(const model::Cloth& cloth) {
   if (const mesh::FlatTriangles flat = mesh::find_flat_triangles(cloth.sheet); flat.count > 0)
     refuse(cloth.name,
            "triangles at least a {:g}th as high as the longest edge ({:.4g} m), got number {} with {:.3g} m",
-           mesh::kMaxUnevenness, flat.longest_edge, flat.flattest, flat.least_height);
+           mesh::kMaxEdgeToHeightRatio, flat.longest_edge, flat.flattest, flat.least_height);
 }
 
 model::Cloth cloth_of(const Cloth& given, bool self_contact) {
@@ -169,7 +169,7 @@ model::Body body_of(const Body& given, bool is_driven) {
   body.mesh = mesh_of(given.mesh, Edges::any, given.name);
   body.mover = std::make_shared<const model::Mover>(
       motion::Track(track_of(given.keys, given.name), pose_of(given.pose, given.name)));
-  body.moving = is_driven || given.keys.size() > 1;
+  body.may_move = is_driven || given.keys.size() > 1;
   body.collide = given.collide;
   check_range(given.friction, 0, 10, given.name, "a friction");
   body.friction = given.friction;

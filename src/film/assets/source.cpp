@@ -75,7 +75,7 @@ std::string Source::read(const std::function<std::string()>& read) const {
     return run_isolated(read, {.name = "the reader",
                                .cpu_seconds = seconds,
                                .wall_seconds = kWallFactor * seconds,
-                               .addresses = kMaxAddressSpace});
+                               .max_address_space = kMaxAddressSpace});
   } catch (const std::exception& error) {
     fail(error.what());
   }

@@ -55,7 +55,7 @@ model::Body make_obstacle(const scene::Scene& scene, const scene::Obstacle& obst
   body.name = obstacle.name;
   body.mesh = std::visit(MakeMesh{scene, obstacle}, obstacle.shape);
   body.mover = std::make_shared<const model::Mover>(motion::Track(obstacle.motion, obstacle.pose));
-  body.moving = obstacle.motion.keys.size() > 1;
+  body.may_move = obstacle.motion.keys.size() > 1;
   body.collide = obstacle.collide;
   body.friction = obstacle.friction;
   const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
@@ -103,7 +103,7 @@ model::Body make_character(const scene::Character& character, Actor actor, BodyD
   model::Body body;
   body.name = character.name;
   body.mesh = std::move(actor.mesh);
-  body.moving = actor.keys.moving();
+  body.may_move = actor.keys.is_moving();
   body.collide = character.collide;
   body.friction = character.friction;
   body.limbs = std::move(actor.limbs);

@@ -153,7 +153,7 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
         fmt::format("{}: mesh file {}: {} of {} vertices left out, which are in no triangle that has an area; faces "
                     "there cross themselves or have all corners on a line",
                     where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
-  if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / mesh::kMaxUnevenness); mended.any())
+  if (const assets::MendingReport mended = assets::mend_sheet(loaded, 1 / mesh::kMaxEdgeToHeightRatio); mended.any())
     made.details.warnings.push_back(
         fmt::format("{}: mesh file {}: repaired to a sheet: {}", where, cloth.file.string(), mended.describe()));
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
@@ -215,7 +215,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh)
-    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / mesh::kMaxUnevenness);
+    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / mesh::kMaxEdgeToHeightRatio);
   if (cloth.rest == scene::ClothRest::mesh) made.details.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && uses_uv(cloth, rest, where, made);
   if (panels) {
@@ -254,8 +254,8 @@ void check_triangles(const mesh::Sheet& sheet, const std::string& where) {
       "{}: expected triangles at least {:.3g} mm high, a {:g}th of the longest edge ({:.4g} mm), where cloth "
       "meets obstacles; got {} flatter, the flattest number {} at ({:.4g}, {:.4g}, {:.4g}) with {:.3g} mm; mesh "
       "it evenly or merge vertices that are closer",
-      where, 1e3 * flat.longest_edge / mesh::kMaxUnevenness, mesh::kMaxUnevenness, 1e3 * flat.longest_edge, flat.count,
-      flat.flattest + 1, at.x(), at.y(), at.z(), 1e3 * flat.least_height);
+      where, 1e3 * flat.longest_edge / mesh::kMaxEdgeToHeightRatio, mesh::kMaxEdgeToHeightRatio,
+      1e3 * flat.longest_edge, flat.count, flat.flattest + 1, at.x(), at.y(), at.z(), 1e3 * flat.least_height);
 }
 
 }  // namespace
@@ -264,12 +264,12 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
   if (!can_touch_obstacles(scene) || scene::rectangle_particles(cloth) == 0) return;
   const mesh::Grid grid = grid_of(cloth);
   const double longest = std::max({grid.du(0), grid.du(grid.nu - 2), grid.dv(0), grid.dv(grid.nv - 2)});
-  if (longest <= mesh::kMaxUnevenness * grid.min_spacing()) return;
+  if (longest <= mesh::kMaxEdgeToHeightRatio * grid.min_spacing()) return;
   throw Error(ExitCode::scene_invalid,
               "{}:{}:{}: cloth.{}: expected cells at least a {:g}th as long as the longest ({:.4g} mm), where cloth "
               "meets obstacles; got {:.3g} mm; choose a grading closer to 1, or particles that are as far apart along "
               "weft as along warp",
-              scene.file.string(), cloth.line, cloth.column, cloth.name, mesh::kMaxUnevenness, 1e3 * longest,
+              scene.file.string(), cloth.line, cloth.column, cloth.name, mesh::kMaxEdgeToHeightRatio, 1e3 * longest,
               1e3 * grid.min_spacing());
 }
 

@@ -42,7 +42,7 @@ void Environment::add_parents(const scene::Scene& scene) {
   };
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o) {
     model.bodies[o].parent = parent_at_start(scene.obstacles[o].follow);
-    if (scene::has_prescribed_motion(scene, scene.obstacles[o])) model.bodies[o].moving = true;
+    if (scene::has_prescribed_motion(scene, scene.obstacles[o])) model.bodies[o].may_move = true;
   }
   if (std::ranges::all_of(scene.cameras, [](const auto& camera) { return camera.follow.empty(); })) return;
   for (const scene::Camera& camera : scene.cameras) camera_parents.push_back(parent_at_start(camera.follow));

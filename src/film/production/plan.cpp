@@ -51,20 +51,20 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
       "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
       "shear and shear_viscosity are zero"));
   items.push_back(cloth_item(
-      "force: limit to stretch", scene, [](const Cloth& c) { return c.material.locks(); },
+      "force: limit to stretch", scene, [](const Cloth& c) { return c.material.has_strain_limit(); },
       "max_stretch and max_shear are zero"));
   items.push_back(cloth_item(
-      "force: bending", scene, [](const Cloth& c) { return c.material.bends(); }, "bend is zero"));
+      "force: bending", scene, [](const Cloth& c) { return c.material.resists_bending(); }, "bend is zero"));
   items.push_back(cloth_item(
       "force: viscosity", scene,
       [](const Cloth& c) {
         const scene::Material& m = c.material;
-        return m.stretch_viscosity > 0 || m.shear_viscosity > 0 || (m.bends() && m.bend_viscosity > 0);
+        return m.stretch_viscosity > 0 || m.shear_viscosity > 0 || (m.resists_bending() && m.bend_viscosity > 0);
       },
       "all viscosities of what is built are zero"));
   items.push_back(cloth_item(
       "force: bending friction", scene,
-      [](const Cloth& c) { return c.material.bends() && c.material.bend_friction > 0; },
+      [](const Cloth& c) { return c.material.resists_bending() && c.material.bend_friction > 0; },
       "bend or bend_friction is zero"));
   items.push_back(cloth_item(
       "force: air", scene, [&](const Cloth& c) { return scene.physics.air_density > 0 && c.material.drag > 0; },
@@ -80,7 +80,7 @@ void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   const auto counted = [](std::size_t count, const char* what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
   };
-  if (const auto count = std::ranges::count_if(scene.cloths, [](const Cloth& c) { return c.pressure.acts(); }))
+  if (const auto count = std::ranges::count_if(scene.cloths, [](const Cloth& c) { return c.pressure.has_effect(); }))
     items.push_back({"force: pressure of enclosed air", true,
                      fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))});
   if (!scene.ropes.empty())

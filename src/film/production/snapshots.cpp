@@ -254,7 +254,7 @@ Box3 bounds_over_run(const model::Model& model, std::size_t body, double duratio
   constexpr int kSamples = 100;
   std::vector<Vec3> positions(model.bodies[body].mesh.positions.size());
   Box3 bounds;
-  for (int k = 0; k <= (model.bodies[body].moving ? kSamples : 0); ++k) {
+  for (int k = 0; k <= (model.bodies[body].may_move ? kSamples : 0); ++k) {
     model.place(body, duration * k / kSamples, positions);
     bounds.extend(box_around(positions));
   }

@@ -246,7 +246,7 @@ const Table& cloth_rules() {
                   "maximum random displacement of a particle at the start, along each axis; the same in every run")
           .table("material", &Cloth::material, material_rules())
           .table("pressure", &Cloth::pressure, pressure_rules())
-          .written_if([](Cloth& cloth) { return cloth.pressure.acts(); })
+          .written_if([](Cloth& cloth) { return cloth.pressure.has_effect(); })
           .table("look", &Cloth::look, cloth_look_rules())
           .not_simulated()
           .list(Type::list, "pin", &Cloth::pins, pin_rules())

@@ -97,7 +97,7 @@ double SpeedRun::largest_gain(std::size_t number) const {
 SpeedRun run_for_speed(const scene::Scene& scene, const SpeedSetting& setting, const SpeedFrames& frames,
                        const std::function<Drawing()>& open_drawing) {
   set_thread_count(setting.threads);
-  charge_all_threads = true;
+  stopwatch_includes_all_threads = true;
   SpeedRun run{.setting = setting, .memory_before = resident_bytes()};
   production::SceneSimulation simulation(scene);
   simulation.run_preroll();

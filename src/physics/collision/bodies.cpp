@@ -28,7 +28,7 @@ void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_c
     materials_.push_back({traits_.size(), patch.thickness, patch.friction});
   }
   traits_.push_back(traits);
-  deformable_ += traits.deformable && !traits.rigid ? 1 : 0;
+  self_colliding_count_ += traits.deformable && !traits.rigid ? 1 : 0;
   surfaces_.push_back({{}, first_triangle, first_vertex, vertex_count});
   // Renew the spans: reserve() may have moved the triangles.
   for (std::size_t b = 0; b < surfaces_.size(); ++b) {

@@ -17,7 +17,7 @@ struct BodyTraits {
   bool deformable = false;  ///< true: its vertices are particles, which the solve moves
   double thickness = 0;     ///< contact thickness [m]; activation distance of two bodies: at most the mean of theirs
   double friction = 0;      ///< Coulomb coefficient; see ContactMaterial
-  bool moving = true;       ///< false: its vertices never leave their positions at the start of the run
+  bool may_move = true;     ///< false: its vertices never leave their positions at the start of the run
   bool rigid = false;       ///< true: its vertices keep their distances from each other
   Index frame = -1;  ///< if deformable and rigid: first of its four frame particles (mesh::RigidFrame); else −1
 };
@@ -62,7 +62,7 @@ class Bodies {
   std::span<const Triangle> triangles() const { return triangles_; }
   std::span<const Surface> surfaces() const { return surfaces_; }
   /// Surfaces that can collide with themselves: deformable and not rigid. They come first.
-  std::span<const Surface> deformable() const { return std::span(surfaces_).first(deformable_); }
+  std::span<const Surface> deformable() const { return std::span(surfaces_).first(self_colliding_count_); }
 
   Index vertex_count() const { return static_cast<Index>(body_of_.size()); }
   const std::vector<std::size_t>& body_of_vertices() const { return body_of_; }
@@ -96,7 +96,7 @@ class Bodies {
   std::vector<Index> limb_of_;        // per vertex
   std::vector<ContactMaterial> materials_;
   std::vector<std::size_t> material_of_;  // per vertex
-  std::size_t deformable_ = 0;            // number of surfaces in deformable()
+  std::size_t self_colliding_count_ = 0;  // number of surfaces in deformable()
 };
 
 }  // namespace weft::collision

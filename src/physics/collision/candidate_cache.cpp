@@ -64,7 +64,7 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
     return largest;
   });
   // In a slow step, add the Verlet margin so that the pairs last for several steps.
-  const double verlet_margin = 2 * numerics.contact.margin * detection_distance_;
+  const double verlet_margin = 2 * numerics.contact.verlet_margin * detection_distance_;
   const double margin =
       0.5 * detection_distance_ + (parameters_.reuse && largest_motion < verlet_margin ? verlet_margin : 0.0);
   refit(motion, margin);

@@ -24,7 +24,7 @@ struct SearchParameters {
 /// Collects candidate pairs: pairs of triangles whose bounds overlap on the linear trajectories
 /// from x_t0 to x_t1. The bounds are enlarged by a margin at both ends. The margin is half the
 /// detection distance. (Features closer than the detection distance are near.) In slow steps,
-/// SearchParameters::reuse adds a Verlet margin of 2 · Numerics::Contact::margin detection
+/// SearchParameters::reuse adds a Verlet margin of 2 · Numerics::Contact::verlet_margin detection
 /// distances. A step is slow if every vertex moves by less than the Verlet margin along each axis.
 ///
 /// The pairs are valid for a later step if, in that step, each vertex starts within the Verlet

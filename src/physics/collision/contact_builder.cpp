@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 // Number of near pairs that become contacts in one batch: enough work for 16 threads, with little memory.
-constexpr std::size_t kPairsAtOnce = 16 * kFineGrainSize;
+constexpr std::size_t kNearPairsPerBatch = 16 * kFineGrainSize;
 
 double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
@@ -85,9 +85,9 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
     double fraction;
     std::optional<Contact> contact;
   };
-  if (proximities.size() > kPairsAtOnce) {
-    for (; !proximities.empty(); proximities = proximities.subspan(std::min(kPairsAtOnce, proximities.size())))
-      add(proximities.first(std::min(kPairsAtOnce, proximities.size())), pinched, motion, response);
+  if (proximities.size() > kNearPairsPerBatch) {
+    for (; !proximities.empty(); proximities = proximities.subspan(std::min(kNearPairsPerBatch, proximities.size())))
+      add(proximities.first(std::min(kNearPairsPerBatch, proximities.size())), pinched, motion, response);
     return;
   }
   std::vector<Built> all;

@@ -17,7 +17,7 @@ double detection_distance_of(const Bodies& bodies) {
   double max_thickness = 0;
   for (const ContactMaterial& material : bodies.materials())
     max_thickness = std::max(max_thickness, material.thickness);
-  return numerics.contact.detection * max_thickness;
+  return numerics.contact.detection_ratio * max_thickness;
 }
 
 // Lists the rigid bodies that have triangles and frame particles (mesh::RigidFrame).
@@ -54,9 +54,10 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
   separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
   const double detection_distance = candidates_.detection_distance();
   if (parameters.search.coherence)
-    coherence_.emplace(bodies_.surfaces(), candidates_.surface_pairs(), x,
-                       CoherenceParameters{detection_distance, 0.5 * numerics.contact.margin * detection_distance,
-                                           numerics.contact.flat_fold()});
+    coherence_.emplace(
+        bodies_.surfaces(), candidates_.surface_pairs(), x,
+        CoherenceParameters{detection_distance, 0.5 * numerics.contact.verlet_margin * detection_distance,
+                            numerics.contact.flat_fold()});
 }
 
 void Engine::forget() {
@@ -83,20 +84,20 @@ template <class Collect>
 void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
   // Swap the list of pairs between candidates_ and separation_, so that only one copy exists.
   CandidatePairs& pairs = candidates_.pairs();
-  separation_.exchange(pairs.apart);
+  separation_.swap_pairs(pairs.apart);
   list_pairs();
-  separation_.exchange(pairs.apart);
+  separation_.swap_pairs(pairs.apart);
   separation_.watch(x_t0);
   pairs.apart.clear();
   gathered_at_.clear();
 }
 
 // Gathers the pairs of features that may be near while no vertex is farther from x than the Verlet
-// margin of near pairs (Numerics::Contact::margin). Skips pairs of triangles that a separating
+// margin of near pairs (Numerics::Contact::verlet_margin). Skips pairs of triangles that a separating
 // plane keeps far enough apart. Does nothing if no vertex is farther than that from its position in
 // the last search.
 void Engine::gather(std::span<const Vec3> x) {
-  const double verlet_margin = numerics.contact.margin * candidates_.detection_distance();
+  const double verlet_margin = numerics.contact.verlet_margin * candidates_.detection_distance();
   const auto is_near = [&] {
     return parallel_all_of(x.size(), [&](std::size_t v) {
       return (x[v] - gathered_at_[v]).squaredNorm() <= verlet_margin * verlet_margin ||
@@ -128,7 +129,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
   if (!pinched_.empty()) {
-    pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0, is_repeated);
+    pinched_.update_exempted(bodies_.triangles(), candidates_.hierarchies(), x_t0, is_repeated);
     pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.detection_distance());
   }
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
@@ -200,10 +201,10 @@ int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& mot
   parallel_for(pairs.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) closest[p] = closest_features(pairs[p], motion.x_from);
   });
-  int fresh = 0;
+  int added = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p)
-    fresh += builder_.add_failing(pairs[p], closest[p], motion, response_) ? 1 : 0;
-  return fresh;
+    added += builder_.add_failing(pairs[p], closest[p], motion, response_) ? 1 : 0;
+  return added;
 }
 
 void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& motion) {
@@ -289,7 +290,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
     const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched, &carried_, c > 0, which);
     report.obstructed_pins.insert(report.obstructed_pins.end(), pass.obstructed_pins.begin(),
                                   pass.obstructed_pins.end());
-    for (const ObstructedPin& given : pass.obstructed_pins) movable[given.particle] = kFree;
+    for (const ObstructedPin& pin : pass.obstructed_pins) movable[pin.particle] = kFree;
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
@@ -306,9 +307,9 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
         collect_by(x_t0, [&] { candidates_.collect_more(x_t0, x_t1, c >= kTightCollections); });
       continue;
     }
-    if (const auto fresh = find_new_pinch(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
+    if (const auto new_pinch = find_new_pinch(pinched, pinched_, candidates_.hierarchies()); new_pinch && !may_pinch) {
       report.separated = false;
-      report.unseparated_pair = *fresh;
+      report.unseparated_pair = *new_pinch;
       return report;
     }
     pinched.note_origins(candidates_.hierarchies(), x_t0);
@@ -352,7 +353,7 @@ void Engine::serialize_candidates(Archive& archive) {
   bool to_one_place = low == high;
   archive.value(to_one_place);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (!bodies_[b].moving) continue;
+    if (!bodies_[b].may_move) continue;
     for (std::vector<Vec3>* x : {&from, &low, &high}) {
       if (x == &high && to_one_place) continue;
       const std::span<Vec3> part = bodies_.part(b, std::span(*x));

@@ -52,7 +52,7 @@ class Engine {
   /// identity. Empty: no obstacle moves in this way. With springs, if triangles would meet on the
   /// way to x_t1, corrects x_t1 by push_apart(), which may neither exempt cloth nor move pinned
   /// particles here. If this correction fails, x_t1 stays unchanged. `movable`: per vertex, a value
-  /// of Movable; empty: no correction. `is_repeated`: see PinchedPairs::renew(). Returns whether a
+  /// of Movable; empty: no correction. `is_repeated`: see PinchedPairs::update_exempted(). Returns whether a
   /// correction succeeded.
   bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {}, bool is_repeated = false);

@@ -1,4 +1,4 @@
-// Viscosity and dry friction of bending, shared by the forces of grids, triangles and cords.
+// Viscosity and dry friction of bending, shared by the forces of grids, triangles and ropes.
 #pragma once
 
 #include <cmath>
@@ -14,14 +14,14 @@ struct BendParameters {
 };
 
 /// Viscosity and friction act on each curvature vector κ separately: on the second derivatives
-/// s_uu, s_uv and s_vv of the surface s(u, v), or on s'' of a cord. Only the part of the rate κ̇
+/// s_uu, s_uv and s_vv of the surface s(u, v), or on s'' of a rope. Only the part of the rate κ̇
 /// along κ counts, so that damping hardly acts on a curved piece that turns rigidly (the error is
 /// of second order in the angle per step). Friction models Kawabata's bending hysteresis ("The
 /// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant magnitude against
 /// the change of curvature, smoothed below the rate kStickRate. Friction brings cloth to rest:
 /// without it, the hem of a draped sheet keeps moving at centimetres per second.
 ///
-/// Moment per width [N] (of a cord: moment [N·m]):
+/// Moment per width [N] (of a rope: moment [N·m]):
 ///
 ///     η (c·κ̇) c / (‖c‖² + κ_f²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + κ_r².
 ///

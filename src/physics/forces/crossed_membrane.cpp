@@ -76,19 +76,20 @@ void CrossedMembrane::attach(const solver::Assembly& assembly) {
   }
 }
 
-CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<const Vec3> of) {
-  Five vectors;
+CrossedMembrane::CellVectors CrossedMembrane::vectors_of(const Cell& cell, std::span<const Vec3> of) {
+  CellVectors vectors;
   for (std::size_t k = 0; k < 5; ++k) vectors[k] = of[cell.particles[k]];
   return vectors;
 }
 
-CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of) {
-  Five vectors;
+CrossedMembrane::CellVectors CrossedMembrane::vectors_of(const Cell& cell,
+                                                         std::span<const solver::PaddedVec3<double>> of) {
+  CellVectors vectors;
   for (std::size_t k = 0; k < 5; ++k) vectors[k] = solver::vec3_of(of[cell.particles[k]]);
   return vectors;
 }
 
-CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& positions) {
+CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const CellVectors& positions) {
   State state;
   state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
@@ -120,7 +121,7 @@ Vec3 CrossedMembrane::normal_change(const State& state, const Vec3& product) {
 //
 //     δm' = δm − n δw − w δn,   δw = n·δo + o·δn,   δq = 2 ‖n‖² t·δt + 2 ‖t‖² n·δn,
 //     δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
-void CrossedMembrane::pull_back(const State& state, Five& force, double along_height, double along_skew) {
+void CrossedMembrane::pull_back(const State& state, CellVectors& force, double along_height, double along_skew) {
   const auto& [d1, d2] = state.diagonals;
   const Vec3 &n = state.normal, &t = state.twist;
   const double along = along_height - force[4].dot(n);
@@ -137,7 +138,7 @@ void CrossedMembrane::pull_back(const State& state, Five& force, double along_he
 
 // The transpose of pull_back: converts the velocities of the particles in `flat` to the rates of
 // State::flat, of the height and of the skew.
-void CrossedMembrane::push_forward(const State& state, Five& flat, double& height, double& skew) {
+void CrossedMembrane::push_forward(const State& state, CellVectors& flat, double& height, double& skew) {
   const Vec3 middle_offset = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
   const Vec3 twist = (flat[0] - flat[1]) + (flat[2] - flat[3]);
   const auto& [d1, d2] = state.diagonals;
@@ -159,7 +160,7 @@ void CrossedMembrane::add(const Evaluation& at) const {
   ranges_.for_each(at.range, cells_.size(), [&](std::size_t c) {
     const Cell& cell = cells_[c];
     const State state = state_of(cell, vectors_of(cell, at.x));
-    Five rate, force;
+    CellVectors rate, force;
     double height_rate = 0, skew_rate = 0, along_height = 0, along_skew = 0;
     rate.fill(Vec3::Zero()), force.fill(Vec3::Zero());
     if (viscous) {
@@ -213,7 +214,8 @@ void CrossedMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3
   }
 }
 
-TriangleMembrane::Gradient CrossedMembrane::gradient_of(const Element& element, const Five& flat, std::size_t k) {
+TriangleMembrane::Gradient CrossedMembrane::gradient_of(const Element& element, const CellVectors& flat,
+                                                        std::size_t k) {
   const Vec3 &origin = flat[k], p = flat[(k + 1) % 4] - origin, q = flat[4] - origin;
   const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
   return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
@@ -251,7 +253,7 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
   sum.fill(packed_scalar(0));
   std::array<double, 25> across{}, along{};
   double of_height = 0, of_twist = 0;
-  const auto add_outer = [&](double size, Five slope, double along_height, double along_skew) {
+  const auto add_outer = [&](double size, CellVectors slope, double along_height, double along_skew) {
     pull_back(state, slope, along_height, along_skew);
     for (std::size_t a = 0; a < 5; ++a) {
       const Vec3 scaled = size * slope[a];
@@ -265,7 +267,7 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
     const Vec2 length = lengths_of(s, cell_weights, state);
     const double u = length.x(), v = length.y();
     const double lateral_u = lateral_of(u), lateral_v = lateral_of(v);
-    Five of_u, of_v, of_shear;
+    CellVectors of_u, of_v, of_shear;
     of_u.fill(Vec3::Zero()), of_v = of_shear = of_u;
     std::array<Vec2, 5> flat{}, normal_gradients{};
     flat.fill(Vec2::Zero()), normal_gradients.fill(Vec2::Zero());

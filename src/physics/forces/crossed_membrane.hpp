@@ -50,14 +50,14 @@ class CrossedMembrane final : public TriangleMembrane {
     Vec2 height_weight = Vec2::Zero();  // θ ⟨g_u²⟩, θ ⟨g_v²⟩ [1/m²]
     double min_size = 0;                // S₀ [m²]
   };
-  using Five = std::array<Vec3, 5>;
+  using CellVectors = std::array<Vec3, 5>;
   /// Factors of w² and of the skew in one triangle: θ ⟨g²⟩ and g² / 16, along weft and warp [1/m²].
   struct CellWeights {
     Vec2 of_height, of_skew;
   };
   /// Geometry of a cell.
   struct State {
-    Five flat;                   // corners and m'
+    CellVectors flat;            // corners and m'
     double height = 0;           // w
     Vec3 normal, middle_offset;  // n; the middle minus the mean of the corners
     Vec3 twist;                  // t
@@ -68,21 +68,21 @@ class CrossedMembrane final : public TriangleMembrane {
     double kept_change = 0;         // κ: e·δn = κ e·δ(D₁ × D₂) / S; 0 if the cell is not folded
   };
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
-  static State state_of(const Cell& cell, const Five& positions);
+  static State state_of(const Cell& cell, const CellVectors& positions);
   static Vec3 normal_change(const State& state, const Vec3& product);
-  static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
-  static Five vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
+  static CellVectors vectors_of(const Cell& cell, std::span<const Vec3> of);
+  static CellVectors vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
   /// Stiffness across a thread from its tension, relative to its stretch stiffness, as a function of its length / rest
   /// length.
   using Lateral = double (*)(double length);
   using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
-  static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
+  static Gradient gradient_of(const Element& element, const CellVectors& flat, std::size_t k);
   static CellWeights cell_weights_of(const Cell& cell, const Element& element);
   static Vec2 lengths_of(const Gradient& s, const CellWeights& cell_weights, const State& state);
   /// Length / rest length along weft and warp of triangle k of a cell, and its shear ⟨s_u, s_v⟩.
   Vec3 strains_of(std::size_t cell, std::size_t k, const State& state) const;
-  static void pull_back(const State& state, Five& force, double along_height, double along_skew);
-  static void push_forward(const State& state, Five& flat, double& height, double& skew);
+  static void pull_back(const State& state, CellVectors& force, double along_height, double along_skew);
+  static void push_forward(const State& state, CellVectors& flat, double& height, double& skew);
   Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;
 
   std::vector<Cell> cells_;

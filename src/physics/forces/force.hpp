@@ -51,12 +51,12 @@ struct Evaluation {
   /// dv/dx of the integration method [1/s]: v = rate (x − x̂), where x̂ is constant in a step; 0: v does not depend on
   /// x.
   double rate = 0;
-  /// Earlier positions whose weighted sum is x̂ (see Past). Empty: the rate of a strain q is ∂q/∂x v.
-  std::span<const Past> past = {};
+  /// Earlier positions whose weighted sum is x̂ (see EarlierPositions). Empty: the rate of a strain q is ∂q/∂x v.
+  std::span<const EarlierPositions> past = {};
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   /// Index of the range of Force::partition() to evaluate; kAll: all particles.
   std::size_t range = kAll;
-  /// Velocity of the air at each particle [m/s]. If empty, Air and Cord use their own uniform wind.
+  /// Velocity of the air at each particle [m/s]. If empty, Air and RopeForce use their own uniform wind.
   std::span<const solver::PaddedVec3<double>> air_velocity = {};
   /// Extensions of threads at which StretchLimit linearises its stress for the matrix; null: at x. In both cases,
   /// `force` receives the exact forces at x.
@@ -64,14 +64,14 @@ struct Evaluation {
 
   /// Rate of change dq/dt of a function q of the positions. `now` is q(x), at_positions(y) returns q at earlier
   /// positions y, and by_velocity() returns ∂q/∂x v. If `past` is empty, the rate is ∂q/∂x v;
-  /// otherwise it is the difference quotient of Past, because ∂q/∂x v adds energy: if an edge turns
+  /// otherwise it is the difference quotient of EarlierPositions, because ∂q/∂x v adds energy: if an edge turns
   /// by θ in a step of implicit Euler, ∂q/∂x v counts the turn as a lengthening by the fraction
   /// 1 − cos θ. Stiff viscosity would then shorten the edge by that fraction in every step.
   template <class Quantity, class AtPositions, class ByVelocity>
   Quantity rate_of(const Quantity& now, const AtPositions& at_positions, const ByVelocity& by_velocity) const {
     if (past.empty()) return by_velocity();
     Quantity change = now;
-    for (const Past& before : past) change = change - before.weight * at_positions(before.x);
+    for (const EarlierPositions& before : past) change = change - before.weight * at_positions(before.x);
     return rate * change;
   }
 };
@@ -100,13 +100,13 @@ class Force {
   /// Elastic energy at x [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. Only set_held() and Cord::set_length_ratio()
-  /// change this part. add() adds the forces of this part, but not its matrix.
+  /// Adds the part of −∂f/∂x that does not depend on x, if there is one. Only set_held() and
+  /// RopeForce::set_length_ratio() change this part. add() adds the forces of this part, but not its matrix.
   virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
 
   /// For vibrations and tests: adds the exact −(∂f/∂x + rate ∂f/∂v), with rates of strain as if `Evaluation::past` were
   /// empty. This matrix may be indefinite under compression and unsymmetric with viscosity.
-  /// Exceptions: CrossedMembrane omits parts of it, and Cord omits air drag; Air and Rigidity add
+  /// Exceptions: CrossedMembrane omits parts of it, and RopeForce omits air drag; Air and Rigidity add
   /// nothing. If `rate` is 0, the damping of bending is omitted.
   virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
                             solver::BlockMatrix& /*jacobian*/) const {}
@@ -117,10 +117,10 @@ class Force {
   virtual void set_held(std::span<const char> /*held*/) {}
 };
 
-/// A force against strain in the plane of a sheet or along a cord. It also measures this strain.
+/// A force against strain in the plane of a sheet or along a rope. It also measures this strain.
 class Membrane : public Force {
  public:
-  /// Largest relative change of length of a piece of weft, warp or cord, in absolute value.
+  /// Largest relative change of length of a piece of weft, warp or rope, in absolute value.
   virtual double max_strain(std::span<const Vec3> x) const = 0;
   /// Raises strains[particle − first] to the largest |strain| of the pieces or triangles at the
   /// particle, unless the entry is larger already.

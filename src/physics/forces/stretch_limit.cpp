@@ -105,18 +105,18 @@ Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights,
 }
 
 // Calls body(piece, corner_forces, block_of) for each crossing that is beyond its onset at x, and
-// for each piece of a thread whose stress at x is positive, exact or linearised at `lag`.
+// for each piece of a thread whose stress at x is positive, exact or linearised at its extension in `linearisation`.
 // block_of(a, b) returns the block of −∂f/∂x for corners a and b. The blocks of threads are
-// linearised at `lag`, or at x if `lag` is null; those of crossings are linearised at x. For
+// linearised at the extensions in `linearisation`, or at x if it is null; those of crossings are linearised at x. For
 // `exact` see lock().
 template <class Points, class Body>
-void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag,
+void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* linearisation,
                                  const Body& body) const {
   // Nearly all pieces are below the onset; comparing squared lengths saves their square roots.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
-    const double* at = lag != nullptr ? &lag->extensions[t] : nullptr;
+    const double* at = linearisation != nullptr ? &linearisation->extensions[t] : nullptr;
     if (s.squaredNorm() <= onset_sq && (at == nullptr || *at <= onset - 1)) return;
     lock(threads_[t], s, at,
          [&](const CornerForces& corner_forces, const auto& block_of) { body(threads_[t], corner_forces, block_of); });
@@ -163,17 +163,18 @@ void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /
   });
 }
 
-StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {
+StretchLimit::Tangent StretchLimit::tangent(double linearised_at, double e) const {
   const Lock lock(stretch_);
-  const double stiffness = lock.stiffness(lag), stress = lock.stress(lag) + stiffness * (e - lag);
+  const double stiffness = lock.stiffness(linearised_at),
+               stress = lock.stress(linearised_at) + stiffness * (e - linearised_at);
   return stress > 0 ? Tangent{stress, stiffness} : Tangent{0, 0};
 }
 
 // The block is positive semidefinite without clamping, as a lock acts only in tension.
 template <class Body>
-void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
+void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* linearised_at, const Body& body) const {
   const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
-  const Tangent linear = tangent(lag != nullptr ? *lag : e, e);
+  const Tangent linear = tangent(linearised_at != nullptr ? *linearised_at : e, e);
   if (stress == 0 && linear.stress == 0) return;  // includes pieces of length 0
   const Vec3 n = s / length;
   CornerForces corner_forces{};
@@ -184,40 +185,41 @@ void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, c
   });
 }
 
-void StretchLimit::begin(std::span<const Vec3> x, LockLinearisation& lag) const {
-  lag.extensions.resize(threads_.size());
+void StretchLimit::begin(std::span<const Vec3> x, LockLinearisation& linearisation) const {
+  linearisation.extensions.resize(threads_.size());
   parallel_for(threads_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      lag.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
+      linearisation.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
   });
 }
 
-void StretchLimit::update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const {
+void StretchLimit::update(std::span<const Vec3> x, bool first, LockLinearisation& linearisation) const {
   const Lock lock(stretch_);
   const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
-  lag.beyond_onset.clear();
-  parallel_append(threads_.size(), kGrainSize, lag.beyond_onset, [&](std::size_t begin, std::size_t end, auto& pieces) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
-      double& at = lag.extensions[t];
-      if (length_sq <= onset_sq && at <= onset) continue;
-      pieces.push_back(static_cast<std::uint32_t>(t));
-      if (first) continue;
-      const double e = std::sqrt(length_sq) - 1;
-      const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
-      at = find_extension(lock, threads_[t].stiffness, tension, std::max(e, at));
-    }
-  });
+  linearisation.beyond_onset.clear();
+  parallel_append(threads_.size(), kGrainSize, linearisation.beyond_onset,
+                  [&](std::size_t begin, std::size_t end, auto& pieces) {
+                    for (std::size_t t = begin; t < end; ++t) {
+                      const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
+                      double& at = linearisation.extensions[t];
+                      if (length_sq <= onset_sq && at <= onset) continue;
+                      pieces.push_back(static_cast<std::uint32_t>(t));
+                      if (first) continue;
+                      const double e = std::sqrt(length_sq) - 1;
+                      const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
+                      at = find_extension(lock, threads_[t].stiffness, tension, std::max(e, at));
+                    }
+                  });
 }
 
-void StretchLimit::add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& lag,
+void StretchLimit::add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& linearisation,
                                                 std::span<Vec3> force) const {
   const Lock lock(stretch_);
-  for (const std::uint32_t t : lag.beyond_onset) {
+  for (const std::uint32_t t : linearisation.beyond_onset) {
     const Thread& thread = threads_[t];
     const Vec3 s = derivative(thread, thread.along, x);
     const double length = s.norm(), e = length - 1;
-    const double difference = thread.area * (tangent(lag.extensions[t], e).stress - lock.stress(e));
+    const double difference = thread.area * (tangent(linearisation.extensions[t], e).stress - lock.stress(e));
     if (difference == 0) continue;
     for (std::size_t k = 0; k < thread.corners; ++k)
       force[thread.particles[k]] -= difference / length * thread.along[k] * s;

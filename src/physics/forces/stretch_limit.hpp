@@ -85,16 +85,17 @@ class StretchLimit final : public Force {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Before the first solve of a step: sets the extensions of `lag` to those at x.
-  void begin(std::span<const Vec3> x, LockLinearisation& lag) const;
-  /// Before each linearisation at x: updates `lag`. Writes the pieces that are beyond the onset, at
+  /// Before the first solve of a step: sets the extensions of `linearisation` to those at x.
+  void begin(std::span<const Vec3> x, LockLinearisation& linearisation) const;
+  /// Before each linearisation at x: updates `linearisation`. Writes the pieces that are beyond the onset, at
   /// x or in the old extensions, into `beyond_onset`, and updates their extensions. `first`:
   /// whether this is the first iteration of a solve; then update() keeps the extensions, because
   /// this solve has not predicted any tension yet.
-  void update(std::span<const Vec3> x, bool first, LockLinearisation& lag) const;
-  /// Replaces exact forces by linearised ones: for the pieces in `lag.beyond_onset`, adds the force at x that is
-  /// linearised at `lag`, minus the exact force at x.
-  void add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& lag, std::span<Vec3> force) const;
+  void update(std::span<const Vec3> x, bool first, LockLinearisation& linearisation) const;
+  /// Replaces exact forces by linearised ones: for the pieces in `linearisation.beyond_onset`, adds the force at x that
+  /// follows from `linearisation`, minus the exact force at x.
+  void add_linearisation_difference(std::span<const Vec3> x, const LockLinearisation& linearisation,
+                                    std::span<Vec3> force) const;
 
   /// Copies the current rest shape of `membrane`, which must be the membrane that the constructor received.
   void copy_rest_shape(const TriangleMembrane& membrane);
@@ -131,8 +132,8 @@ class StretchLimit final : public Force {
   /// Derivatives of a piece's energy with respect to its corners: minus the forces on them [N].
   using CornerForces = std::array<Vec3, kMaxCorners>;
 
-  /// The tangent to the Lock's stress at the extension `lag`: its value at e, and its slope [N/m]. Both are 0 if the
-  /// value is not positive.
+  /// The tangent to the Lock's stress at the extension `linearised_at`: its value at e, and its slope [N/m]. Both are 0
+  /// if the value is not positive.
   struct Tangent {
     double stress, stiffness;
   };
@@ -142,10 +143,11 @@ class StretchLimit final : public Force {
   template <class Piece, class OfCorners>
   static Vec3 derivative(const Piece& piece, const OfCorners& weights, std::span<const solver::PaddedVec3<double>> x);
   template <class Points, class Body>
-  void for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* lag, const Body& body) const;
+  void for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* linearisation,
+                     const Body& body) const;
   template <class Body>
-  void lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const;
-  Tangent tangent(double lag, double e) const;
+  void lock(const Thread& piece, const Vec3& s, const double* linearised_at, const Body& body) const;
+  Tangent tangent(double linearised_at, double e) const;
   template <class Body>
   void lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const;
 

@@ -42,11 +42,11 @@ bool Ties::are_constant_between(double t0, double t1) const {
 void Ties::accept(std::span<const Vec3> x) {
   for (Piece& piece : pieces_) {
     if (piece.tie.tearing < 0) continue;
-    if (piece.strength == 0 && piece.state == State::holds) piece.state = State::open;
+    if (piece.strength == 0 && piece.state == State::can_tear) piece.state = State::open;
     if (piece.strength < piece.tie.strength) continue;
     const bool is_full_pull = (x[piece.tie.b] - x[piece.tie.a]).norm() >= 2 * kRest;
-    if (piece.state == State::open && !is_full_pull) piece.state = State::holds;
-    if (piece.state == State::holds && is_full_pull) piece.state = State::torn, piece.strength = 0;
+    if (piece.state == State::open && !is_full_pull) piece.state = State::can_tear;
+    if (piece.state == State::can_tear && is_full_pull) piece.state = State::torn, piece.strength = 0;
   }
 }
 
@@ -56,7 +56,7 @@ std::vector<Ties::SeamLoad> Ties::measure_seams(std::span<const Vec3> x) const {
     if (piece.tie.tearing < 0) continue;
     SeamLoad& seam = loads[static_cast<std::size_t>(piece.tie.tearing)];
     seam.load += pull(piece, (x[piece.tie.b] - x[piece.tie.a]).norm()).force;
-    seam.holds |= piece.strength > 0;
+    seam.is_closed |= piece.strength > 0;
   }
   return loads;
 }
@@ -111,9 +111,9 @@ void Ties::add(const Evaluation& at) const {
     const Pull now = pull(piece, length);
     if (now.force == 0) continue;
     const Vec3 force = now.force / length * along;
-    const auto quad = solver::padded<double>(force);
-    at.force.add(piece.tie.a, quad);
-    at.force.subtract(piece.tie.b, quad);
+    const auto padded_force = solver::padded<double>(force);
+    at.force.add(piece.tie.a, padded_force);
+    at.force.subtract(piece.tie.b, padded_force);
     if (at.assembly) at.assembly.add(piece.block, Mat3(-stiffness(piece, along)));
   }
 }

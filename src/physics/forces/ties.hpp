@@ -12,7 +12,7 @@ namespace weft::forces {
 /// the force F min(l/r − 1, 1). At smaller distances only contact acts. F is the strength of the
 /// tie [N]. F grows from zero during sewing, and for the time kClosing after the tie closes. If, at
 /// the end of an accepted step, F has its full value and the pull is less than F, a tie of a
-/// tearable seam holds (State::holds). If the pull of a tie that holds reaches F, the tie tears and
+/// tearable seam holds (State::can_tear). If the pull of a tie that holds reaches F, the tie tears and
 /// stays torn. If F becomes zero, the tie no longer holds.
 class Ties final : public Force {
  public:
@@ -38,7 +38,7 @@ class Ties final : public Force {
   /// strength now (is closed and not torn).
   struct SeamLoad {
     double load = 0;
-    bool holds = false;
+    bool is_closed = false;
   };
   /// Loads with the particles at x [m], in the order of Sheet::tearing_seams.
   std::vector<SeamLoad> measure_seams(std::span<const Vec3> x) const;
@@ -56,7 +56,7 @@ class Ties final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
  private:
-  enum class State : std::uint8_t { open, holds, torn };  // of a tearable tie; `open`: cannot tear now
+  enum class State : std::uint8_t { open, can_tear, torn };  // of a tearable tie; `open`: cannot tear now
   struct Piece {
     mesh::Tie tie;        // particles in the global numbering
     double strength = 0;  // current [N]

@@ -41,7 +41,7 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
       s.u += element.gradients[k].x() * x;
       s.v += element.gradients[k].y() * x;
     }
-    starts_.push_back({inverse, stretch_of(s) - Eigen::Matrix2d::Identity()});
+    sewn_triangles_.push_back({inverse, stretch_of(s) - Eigen::Matrix2d::Identity()});
   }
   pack();
 }
@@ -78,51 +78,52 @@ void TriangleMembrane::set_rest_shape(const Eigen::Matrix2d& inverse, Element& e
   element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
 }
 
-double TriangleMembrane::progress_of(const Start& start, double progress) const {
+double TriangleMembrane::progress_of(const SewnTriangle& triangle, double progress) const {
   const double since = progress - accepted_progress_;
-  return progress - std::max(0.0, start.is_stopped ? start.lag + since : start.lag - since);
+  return progress - std::max(0.0, triangle.is_stopped ? triangle.lag + since : triangle.lag - since);
 }
 
 void TriangleMembrane::interpolate_rest_shape(double progress) {
   progress_ = progress;
-  for (std::size_t e = 0; e < starts_.size(); ++e) {
-    const double own = progress_of(starts_[e], progress);
-    const Eigen::Matrix2d &inverse = starts_[e].inverse,
-                          stretch = Eigen::Matrix2d::Identity() + (1 - own) * starts_[e].excess;
+  for (std::size_t e = 0; e < sewn_triangles_.size(); ++e) {
+    const double own = progress_of(sewn_triangles_[e], progress);
+    const Eigen::Matrix2d &inverse = sewn_triangles_[e].inverse,
+                          stretch = Eigen::Matrix2d::Identity() + (1 - own) * sewn_triangles_[e].excess;
     set_rest_shape(own == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
   }
-  if (!starts_.empty()) pack();
+  if (!sewn_triangles_.empty()) pack();
 }
 
 bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_extension, double elapsed) {
   const bool was_sewn = accepted_progress_ == 1;
-  for (std::size_t e = 0; e < starts_.size(); ++e) {
-    Start& start = starts_[e];
-    if (was_sewn && start.lag == 0) continue;
+  for (std::size_t e = 0; e < sewn_triangles_.size(); ++e) {
+    SewnTriangle& triangle = sewn_triangles_[e];
+    if (was_sewn && triangle.lag == 0) continue;
     if (!was_sewn)
-      start.lag = progress_ - progress_of(start, progress_);
-    else if (!start.is_stopped)
-      start.lag = std::max(0.0, start.lag - elapsed);
+      triangle.lag = progress_ - progress_of(triangle, progress_);
+    else if (!triangle.is_stopped)
+      triangle.lag = std::max(0.0, triangle.lag - elapsed);
     // Sewing shortens only threads that are longer at the start than in the pattern. It releases the others.
     const Gradient s = gradient(elements_[e], x);
     const double longest = 1 + max_extension;
-    start.is_stopped =
-        (s.u.norm() > longest && start.excess(0, 0) > 0) || (s.v.norm() > longest && start.excess(1, 1) > 0);
+    triangle.is_stopped =
+        (s.u.norm() > longest && triangle.excess(0, 0) > 0) || (s.v.norm() > longest && triangle.excess(1, 1) > 0);
   }
   accepted_progress_ = progress_;
   return !was_sewn && progress_ == 1;
 }
 
 bool TriangleMembrane::is_catching_up() const {
-  return accepted_progress_ == 1 &&
-         std::ranges::any_of(starts_, [](const Start& start) { return start.lag > 0 && !start.is_stopped; });
+  return accepted_progress_ == 1 && std::ranges::any_of(sewn_triangles_, [](const SewnTriangle& start) {
+           return start.lag > 0 && !start.is_stopped;
+         });
 }
 
 TriangleMembrane::Widening TriangleMembrane::widening() const {
   Widening widest;
-  for (std::size_t e = 0; e < starts_.size(); ++e) {
-    if (starts_[e].lag == 0) continue;
-    const Eigen::Matrix2d excess = (1 - accepted_progress_ + starts_[e].lag) * starts_[e].excess;
+  for (std::size_t e = 0; e < sewn_triangles_.size(); ++e) {
+    if (sewn_triangles_[e].lag == 0) continue;
+    const Eigen::Matrix2d excess = (1 - accepted_progress_ + sewn_triangles_[e].lag) * sewn_triangles_[e].excess;
     const double fraction = std::max(excess(0, 0), excess(1, 1));
     if (fraction > widest.fraction) widest = {fraction, elements_[e].particles};
   }
@@ -131,10 +132,10 @@ TriangleMembrane::Widening TriangleMembrane::widening() const {
 
 template <class Archive>
 void TriangleMembrane::serialize_rest_shape(Archive& archive, double progress) {
-  for (Start& start : starts_) {
-    archive.value(start.lag);
-    archive.value(start.is_stopped);
-    require(start.lag >= 0 && start.lag <= 1, "a progress of sewing");
+  for (SewnTriangle& triangle : sewn_triangles_) {
+    archive.value(triangle.lag);
+    archive.value(triangle.is_stopped);
+    require(triangle.lag >= 0 && triangle.lag <= 1, "a progress of sewing");
   }
   accepted_progress_ = progress;
 }
@@ -143,9 +144,9 @@ template void TriangleMembrane::serialize_rest_shape(ByteWriter&, double);
 template void TriangleMembrane::serialize_rest_shape(ByteReader&, double);
 
 void TriangleMembrane::copy_rest_state(const TriangleMembrane& other) {
-  for (std::size_t e = 0; e < starts_.size(); ++e) {
-    starts_[e].lag = other.starts_[e].lag;
-    starts_[e].is_stopped = other.starts_[e].is_stopped;
+  for (std::size_t e = 0; e < sewn_triangles_.size(); ++e) {
+    sewn_triangles_[e].lag = other.sewn_triangles_[e].lag;
+    sewn_triangles_[e].is_stopped = other.sewn_triangles_[e].is_stopped;
   }
   accepted_progress_ = other.accepted_progress_;
 }

@@ -107,13 +107,13 @@ class TriangleMembrane : public Membrane {
   std::vector<Element> elements_;
   /// For sewn sheets: the inverse of the matrix of a triangle's sides in the pattern, and U − I (see
   /// interpolate_rest_shape).
-  struct Start {
+  struct SewnTriangle {
     Eigen::Matrix2d inverse, excess;
     double lag = 0;           // progress at the last accepted step, minus that of this triangle
     bool is_stopped = false;  // whether the triangle keeps its rest shape until the next accepted step
   };
-  double progress_of(const Start& start, double progress) const;
-  std::vector<Start> starts_;
+  double progress_of(const SewnTriangle& triangle, double progress) const;
+  std::vector<SewnTriangle> sewn_triangles_;
   double progress_ = 0, accepted_progress_ = 0;  // of the last interpolate_rest_shape(), of the last accepted step
   std::vector<Triangles> packs_;
   Ranges ranges_;  // of packs

@@ -26,8 +26,8 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
     cg_.prepare(system.linear_system(), solver::AggregateSums::reuse);
   }
   goals_.clear();
-  for (const BlockState& part : blocks_)
-    goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
+  for (const BlockState& block : blocks_)
+    goals_.push_back(numerics.newton.linear_fraction * block.allowed * std::sqrt(block.mass) / stage.beta);
   impact_changes_.resize(x_.size());
   const Stopwatch watch(times_.linear);
   const solver::LinearReport solved = cg_.solve(right_side, {parameters_.linear_tolerance, goals_},
@@ -37,7 +37,7 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   if (solved.converged) return;
   for (std::size_t p = 0; p < blocks_.size(); ++p) {
     const double error = std::abs(stage.beta - h) * solved.errors[p] / std::sqrt(blocks_[p].mass);  // [m/s]
-    report.solver_error = std::max(report.solver_error, error * numerics.newton.lasting_time);
+    report.solver_error = std::max(report.solver_error, error * numerics.newton.error_duration);
   }
 }
 

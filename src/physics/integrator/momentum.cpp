@@ -15,13 +15,13 @@ class BlockGroups {
       : blocks_(blocks), lowest_(blocks.size()), is_free_(blocks.size(), 1) {
     std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
   }
-  std::size_t of_part(std::size_t part) const {
-    while (lowest_[part] != part) part = lowest_[part];
-    return part;
+  std::size_t of_block(std::size_t block) const {
+    while (lowest_[block] != block) block = lowest_[block];
+    return block;
   }
   std::size_t of_particle(Index particle) const {
     const auto after = std::ranges::upper_bound(blocks_, particle, {}, &solver::DiagonalBlock::begin);
-    return of_part(static_cast<std::size_t>(after - blocks_.begin()) - 1);
+    return of_block(static_cast<std::size_t>(after - blocks_.begin()) - 1);
   }
   std::size_t join(std::size_t a, std::size_t b) {
     const auto [low, high] = std::minmax(a, b);
@@ -29,7 +29,7 @@ class BlockGroups {
     is_free_[low] = is_free_[low] && is_free_[high];
     return low;
   }
-  void hold(std::size_t group) { is_free_[group] = 0; }
+  void mark_as_held(std::size_t group) { is_free_[group] = 0; }
   bool is_free(std::size_t group) const { return is_free_[group] != 0; }
 
  private:
@@ -52,7 +52,7 @@ void join_by_term(const Term& term, BlockGroups& groups) {
     else
       groups.join(groups.of_particle(term.particles[first]), groups.of_particle(term.particles[k]));
   }
-  if (first >= 0 && std::abs(sum) > kRoundoff) groups.hold(groups.of_particle(term.particles[first]));
+  if (first >= 0 && std::abs(sum) > kRoundoff) groups.mark_as_held(groups.of_particle(term.particles[first]));
 }
 
 }  // namespace
@@ -61,14 +61,14 @@ std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std:
                                         std::span<const Vec3> residual) {
   const std::vector<solver::DiagonalBlock> blocks = solver::blocks_of(linear);
   BlockGroups groups(blocks);
-  for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
-  for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));
+  for (const auto& constraint : linear.constraints) groups.mark_as_held(groups.of_particle(constraint.particle));
+  for (const auto& term : linear.diagonal_terms) groups.mark_as_held(groups.of_particle(term.particle));
   solver::for_each_term(linear, [&](const auto& term) { join_by_term(term, groups); });
 
   std::vector<Vec3> force(blocks.size(), Vec3::Zero());
   std::vector<double> mass(blocks.size(), 0);
   for (std::size_t p = 0; p < blocks.size(); ++p) {
-    const std::size_t group = groups.of_part(p);
+    const std::size_t group = groups.of_block(p);
     for (auto i = static_cast<std::size_t>(blocks[p].begin); i < static_cast<std::size_t>(blocks[p].end); ++i) {
       force[group] += residual[i];
       mass[group] += masses[i];
@@ -76,7 +76,7 @@ std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std:
   }
   std::vector<Vec3> result(blocks.size(), Vec3::Zero());
   for (std::size_t p = 0; p < blocks.size(); ++p)
-    if (const std::size_t group = groups.of_part(p); groups.is_free(group)) result[p] = force[group] / mass[group];
+    if (const std::size_t group = groups.of_block(p); groups.is_free(group)) result[p] = force[group] / mass[group];
   return result;
 }
 

@@ -23,7 +23,7 @@ class StepControl {
   /// `Numerics::Steps::min_step`, any finite error is accepted.
   bool accepts(double h, double error) const;
   /// Whether this error [m] is within the tolerance.
-  bool meets(double error) const { return error <= tolerance_; }
+  bool meets_tolerance(double error) const { return error <= tolerance_; }
 
   /// Length of the next step [s]. The three functions below update it after a step over h [s] that
   /// was accepted, rejected for its error [m], or not solved.
@@ -43,10 +43,10 @@ class StepControl {
   }
 
  private:
-  double aim_to_error_ratio(double error) const;
+  double target_to_error_ratio(double error) const;
 
   double order_plus_one_, tolerance_, wanted_;
-  double last_ratio_ = 1;       // aimed error / error, of the last accepted step
+  double last_ratio_ = 1;       // target error / error, of the last accepted step
   bool after_failure_ = false;  // the last step was rejected or not solved: steps must not grow yet
 };
 

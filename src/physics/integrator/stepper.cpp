@@ -18,10 +18,11 @@ constexpr double kMinRoundings = 32;
 
 // The largest coordinate of a block, as absolute value [m].
 double largest_coordinate(const solver::DiagonalBlock& rows, std::span<const Vec3> x) {
-  const auto part = x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
-  return parallel_max(part.size(), kGrainSize, 0.0, [&](std::size_t begin, std::size_t end) {
+  const auto of_block =
+      x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
+  return parallel_max(of_block.size(), kGrainSize, 0.0, [&](std::size_t begin, std::size_t end) {
     double largest = 0;
-    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, part[i].cwiseAbs().maxCoeff());
+    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, of_block[i].cwiseAbs().maxCoeff());
     return largest;
   });
 }
@@ -104,34 +105,34 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
 }
 
 // Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass.
-// During the time `lasting_time`, this error displaces the block by `tolerance` · max(local error of positions,
-// visibility threshold). If the bound used h in place of `lasting_time`, the solver could add this
+// During the time `error_duration`, this error displaces the block by `tolerance` · max(local error of positions,
+// visibility threshold). If the bound used h in place of `error_duration`, the solver could add this
 // displacement in every step, and with adaptive step sizes the method would lose one order. From
 // `slow_after` iterations on, the local velocity error of implicit Euler may raise the bound. The
 // bound never falls below rounding.
 void Stepper::update_tolerances(double h, int iterations) {
-  const double time = numerics.newton.lasting_time;
-  double unseen = numerics.newton.unseen_acceleration * h * time;
+  const double time = numerics.newton.error_duration;
+  double unseen = numerics.newton.min_visible_acceleration * h * time;
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
-  for (BlockState& part : blocks_) {
-    double error = std::max(part.local_error, unseen) / time;
+  for (BlockState& block : blocks_) {
+    double error = std::max(block.local_error, unseen) / time;
     if (iterations >= numerics.newton.slow_after)
-      error = std::max(error, numerics.newton.velocity_ratio * part.velocity_error);
-    part.allowed = std::max(parameters_.tolerance * error, part.rounding);
+      error = std::max(error, numerics.newton.velocity_ratio * block.velocity_error);
+    block.allowed = std::max(parameters_.tolerance * error, block.rounding);
   }
 }
 
 // Root mean square of the vectors `of` over the mass of a block.
-double Stepper::root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of) {
-  const double sum = sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * of[i].squaredNorm(); });
-  return std::sqrt(sum / part.mass);
+double Stepper::root_mean_square(const BlockState& block, std::span<const double> masses, std::span<const Vec3> of) {
+  const double sum = sum_over_particles(block.rows, [&](std::size_t i) { return masses[i] * of[i].squaredNorm(); });
+  return std::sqrt(sum / block.mass);
 }
 
 // Root mean square over mass of displacement / β of each block [m/s].
 void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                                  std::vector<double>& speeds) const {
   speeds.clear();
-  for (const BlockState& part : blocks_) speeds.push_back(root_mean_square(part, masses, displacements) / beta_);
+  for (const BlockState& block : blocks_) speeds.push_back(root_mean_square(block, masses, displacements) / beta_);
 }
 
 // Estimates the velocity error of each block after a linear solve and a line search. The linear
@@ -149,11 +150,12 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
   compute_rms_speeds(delta_, masses, solved_speeds_);
   compute_rms_speeds(precondition(scratch_), masses, speeds_);
   for (std::size_t p = 0; p < blocks_.size(); ++p)
-    blocks_[p].left =
+    blocks_[p].remaining_error =
         speeds_[p] * (predicted_speeds_[p] > 0 ? std::max(1.0, solved_speeds_[p] / predicted_speeds_[p]) : 1);
   if (is_full_step)
     for (std::size_t p : unsolved_)
-      blocks_[p].left = std::hypot(blocks_[p].left, solved.errors[p] / std::sqrt(blocks_[p].mass));
+      blocks_[p].remaining_error =
+          std::hypot(blocks_[p].remaining_error, solved.errors[p] / std::sqrt(blocks_[p].mass));
 }
 
 // Estimates the velocity error of whole blocks from wrong friction, for blocks that otherwise count
@@ -162,16 +164,18 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
 // forces alone, however large the force of a stiff contact is.
 void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
   const auto masses = system.masses();
-  const auto needs_check = [](const BlockState& part) { return !part.holds_sliding && part.left <= part.allowed; };
+  const auto needs_check = [](const BlockState& block) {
+    return !block.holds_sliding && block.remaining_error <= block.allowed;
+  };
   const bool any = std::ranges::any_of(blocks_, needs_check) &&
                    sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
-  for (BlockState& part : blocks_) {
-    part.sliding_error =
-        any && needs_check(part) ? sliding_.friction_error(part.rows, residual_) * stage.beta / part.mass : 0;
-    if (part.sliding_error == 0) continue;
-    for_each_particle(part.rows,
+  for (BlockState& block : blocks_) {
+    block.sliding_error =
+        any && needs_check(block) ? sliding_.friction_error(block.rows, residual_) * stage.beta / block.mass : 0;
+    if (block.sliding_error == 0) continue;
+    for_each_particle(block.rows,
                       [&](std::size_t i) { scratch_[i] = v_hat_[i] + stage.beta / masses[i] * constant_force_[i]; });
-    part.sliding_error = std::min(part.sliding_error, root_mean_square(part, masses, scratch_));
+    block.sliding_error = std::min(block.sliding_error, root_mean_square(block, masses, scratch_));
   }
 }
 
@@ -180,24 +184,24 @@ void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) 
 // residual does as much work as the cloth has energy). If the work exceeds the bound, the allowed
 // error is reduced by the same ratio.
 void Stepper::bound_work(std::span<const double> masses, const State& now) {
-  for (BlockState& part : blocks_) {
+  for (BlockState& block : blocks_) {
     const double work =
-        std::abs(sum_over_particles(part.rows, [&](std::size_t i) { return residual_[i].dot(x_end_[i] - now.x[i]); }));
+        std::abs(sum_over_particles(block.rows, [&](std::size_t i) { return residual_[i].dot(x_end_[i] - now.x[i]); }));
     const double kinetic =
-        0.5 * sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * v_[i].squaredNorm(); });
-    const double most = numerics.energy.doubtful_gain * kinetic + numerics.energy.negligible * part.mass;
-    part.work_error = work > most ? part.allowed : 0;
-    if (work > most) part.allowed = std::max(part.allowed * most / work, part.rounding);
+        0.5 * sum_over_particles(block.rows, [&](std::size_t i) { return masses[i] * v_[i].squaredNorm(); });
+    const double most = numerics.energy.doubtful_gain * kinetic + numerics.energy.negligible * block.mass;
+    block.work_error = work > most ? block.allowed : 0;
+    if (work > most) block.allowed = std::max(block.allowed * most / work, block.rounding);
   }
 }
 
 bool Stepper::is_solved(int iterations) const {
-  double unseen_speed = iterations < numerics.newton.slow_after ? 0 : numerics.newton.unseen_velocity();
+  double unseen_speed = iterations < numerics.newton.slow_after ? 0 : numerics.newton.min_visible_velocity();
   if (parameters_.position_tolerance > 0)
-    unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.lasting_time);
+    unseen_speed = std::min(unseen_speed, parameters_.position_tolerance / numerics.newton.error_duration);
   unseen_speed *= parameters_.tolerance;
   return std::ranges::all_of(
-      blocks_, [&](const BlockState& part) { return part.error() <= std::max(part.allowed, unseen_speed); });
+      blocks_, [&](const BlockState& block) { return block.error() <= std::max(block.allowed, unseen_speed); });
 }
 
 // Selects the blocks that the next linear solve includes.
@@ -356,11 +360,11 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
   blocks_.clear();
   unsolved_.clear();
   for (const solver::DiagonalBlock& rows : solver::blocks_of(linear)) {
-    BlockState& part = blocks_.emplace_back();
-    part.rows = rows;
-    for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
-    part.rounding = kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / beta_;
-    part.holds_sliding = is_held(rows, linear.constraints);
+    BlockState& block = blocks_.emplace_back();
+    block.rows = rows;
+    for (auto i = rows.begin; i < rows.end; ++i) block.mass += masses[i];
+    block.rounding = kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / beta_;
+    block.holds_sliding = is_held(rows, linear.constraints);
     // The first iteration solves all blocks. Otherwise, cloth that creeps slower than the tolerance would never come to
     // rest.
     unsolved_.push_back(unsolved_.size());
@@ -387,7 +391,7 @@ solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::spa
   goals_.clear();
   const double tightening = method_ == Method::implicit_midpoint ? numerics.newton.midpoint_tightening : 1;
   const double fraction = tightening * numerics.newton.linear_fraction;
-  for (const BlockState& part : blocks_) goals_.push_back(fraction * part.allowed * std::sqrt(part.mass));
+  for (const BlockState& block : blocks_) goals_.push_back(fraction * block.allowed * std::sqrt(block.mass));
   motion_.resize(x_.size());
   for_each_particle(x_.size(), [&](std::size_t i) { motion_[i] = x_[i] - x_hat_[i]; });
   drift_.resize(past_.size() > 1 ? x_.size() : 0);
@@ -398,16 +402,16 @@ solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::spa
 }
 
 void Stepper::report_worst(StepReport& report) const {
-  const double time = numerics.newton.lasting_time;
+  const double time = numerics.newton.error_duration;
   report.local_error = report.solver_error = 0;
   double worst = -1;
-  for (const BlockState& part : blocks_) {
-    report.local_error = std::max(report.local_error, part.local_error);
-    report.solver_error = std::max(report.solver_error, part.error() * time);
-    if (part.error() / part.allowed <= worst) continue;
-    worst = part.error() / part.allowed;
-    report.left = part.error();
-    report.allowed = part.allowed;
+  for (const BlockState& block : blocks_) {
+    report.local_error = std::max(report.local_error, block.local_error);
+    report.solver_error = std::max(report.solver_error, block.error() * time);
+    if (block.error() / block.allowed <= worst) continue;
+    worst = block.error() / block.allowed;
+    report.remaining_error = block.error();
+    report.allowed = block.allowed;
   }
 }
 
@@ -445,13 +449,13 @@ void Stepper::estimate_local_errors(std::span<const double> masses, const State&
       scratch_[i] = change_factor * (gain / h - (now.v[i] - history_.before.v[i]) / history_.h);
   });
   cg_.filter(scratch_);
-  for (BlockState& part : blocks_) part.local_error = root_mean_square(part, masses, scratch_);
+  for (BlockState& block : blocks_) block.local_error = root_mean_square(block, masses, scratch_);
   if (method_ != Method::implicit_euler || history_.h == 0) return;
   for_each_particle(masses.size(), [&](std::size_t i) {
     scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / history_.h * (now.v[i] - history_.before.v[i]));
   });
   cg_.filter(scratch_);
-  for (BlockState& part : blocks_) part.velocity_error = root_mean_square(part, masses, scratch_);
+  for (BlockState& block : blocks_) block.velocity_error = root_mean_square(block, masses, scratch_);
 }
 
 Vec3 Stepper::constraint_force(Index particle, double mass) const {

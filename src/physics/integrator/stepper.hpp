@@ -20,7 +20,7 @@
 namespace weft::integrator {
 
 struct NewtonParameters {
-  /// Bound of the remaining velocity error: during the time `Numerics::Newton::lasting_time`, this
+  /// Bound of the remaining velocity error: during the time `Numerics::Newton::error_duration`, this
   /// error displaces a diagonal block by at most this fraction of the local error of the step, or
   /// of a visibility threshold if that is larger. Exceptions: see update_tolerances() in
   /// stepper.cpp.
@@ -49,12 +49,12 @@ struct StepReport {
   int linear_iterations = 0;  ///< of Newton's method and, with BDF2, of impacts
   double local_error = 0;     ///< estimate of the error of positions that the method adds in this step [m]
   /// Estimate of the error of positions that Newton's method adds: the largest remaining velocity
-  /// error of a diagonal block times `Numerics::Newton::lasting_time` [m]. Includes the error of the
+  /// error of a diagonal block times `Numerics::Newton::error_duration` [m]. Includes the error of the
   /// linear solve of impacts if its iterations have run out.
   double solver_error = 0;
   /// Remaining velocity error and its bound, in the diagonal block with the largest ratio
-  /// left / allowed [m/s].
-  double left = 0, allowed = 0;
+  /// remaining_error / allowed [m/s].
+  double remaining_error = 0, allowed = 0;
   StageTimes times;
 };
 
@@ -171,14 +171,14 @@ class Stepper {
     double local_error = 0;      // of the method, at the current iterate [m]
     double velocity_error = 0;   // local error of implicit Euler [m/s]; 0: no history, or a different method
     double allowed = 0;          // bound of the remaining velocity error [m/s]
-    double left = 0;             // remaining velocity error [m/s]
+    double remaining_error = 0;  // remaining velocity error [m/s]
     double rounding = 0;         // lower bound of `allowed`, from rounding of positions [m/s]
     bool holds_sliding = false;  // a constraint holds it against sliding
     double sliding_error = 0;    // of the whole block, from wrong friction [m/s]; 0: none
 
     double work_error = 0;  // `allowed` before bound_work() reduced it [m/s]; 0: not reduced
 
-    double error() const { return std::max({left, sliding_error, work_error}); }  // [m/s]
+    double error() const { return std::max({remaining_error, sliding_error, work_error}); }  // [m/s]
   };
 
   bool is_first_order(double h) const;
@@ -198,7 +198,7 @@ class Stepper {
   void gather_residual(std::span<const double> masses, const Stage& stage);
   void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
   void update_tolerances(double h, int iterations);
-  static double root_mean_square(const BlockState& part, std::span<const double> masses, std::span<const Vec3> of);
+  static double root_mean_square(const BlockState& block, std::span<const double> masses, std::span<const Vec3> of);
   void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
@@ -229,7 +229,7 @@ class Stepper {
   std::vector<std::size_t> unsolved_;
   // Per block: allowed linear errors in the mass-weighted norm [√kg m/s], and root mean square velocities [m/s].
   std::vector<double> goals_, predicted_speeds_, solved_speeds_, speeds_;
-  std::vector<Past> past_;
+  std::vector<EarlierPositions> past_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, motion_,
       drift_, scratch_;
   // BDF2 only: changes of velocities by impacts, and end velocities as step() returned them [m/s].

@@ -23,9 +23,10 @@ struct StagePoint {
   std::span<const Vec3> x_end;  ///< positions at the end of the step, which follow from x; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
-  /// Earlier positions of which x̂ is the weighted sum; the rate of a quantity q(x) follows from them (see Past). Empty
-  /// for the midpoint rule: there the rate is ∂q/∂x v, which for quadratic q is exactly the mean rate over the step.
-  std::span<const Past> past = {};
+  /// Earlier positions of which x̂ is the weighted sum; the rate of a quantity q(x) follows from them (see
+  /// EarlierPositions). Empty for the midpoint rule: there the rate is ∂q/∂x v, which for quadratic q is exactly the
+  /// mean rate over the step.
+  std::span<const EarlierPositions> past = {};
 };
 
 /// The physical system of a Stepper. Spans have one entry per particle.

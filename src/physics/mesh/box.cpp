@@ -58,12 +58,12 @@ class RoundedBox {
   }
 
   /// Whether the corner has an odd number of negative signs: faces given for the corner (+, +, +) then run clockwise.
-  static bool mirrored(int corner) { return ((corner & 1) + (corner >> 1 & 1) + (corner >> 2)) % 2 == 0; }
+  static bool is_mirrored(int corner) { return ((corner & 1) + (corner >> 1 & 1) + (corner >> 2)) % 2 == 0; }
 
   void add_octant(int corner) {
     const auto add_triangle = [&](const Lattice& a, const Lattice& b, const Lattice& c) {
       Triangle t{vertex(corner, a), vertex(corner, b), vertex(corner, c)};
-      if (mirrored(corner)) std::swap(t[1], t[2]);
+      if (is_mirrored(corner)) std::swap(t[1], t[2]);
       mesh_.topology.triangles.push_back(t);
     };
     for (int i = 0; i < steps_; ++i) {
@@ -90,7 +90,7 @@ class RoundedBox {
       const int other = corner | 1 << axis;
       for (int s = 0; s < steps_; ++s) {
         const Lattice a = rim(axis, s), b = rim(axis, s + 1);
-        add({vertex(corner, a), vertex(other, a), vertex(other, b), vertex(corner, b)}, !mirrored(corner));
+        add({vertex(corner, a), vertex(other, a), vertex(other, b), vertex(corner, b)}, !is_mirrored(corner));
       }
     }
   }

@@ -14,10 +14,6 @@ namespace {
 // the minimum (Botsch & Kobbelt 2004).
 constexpr double kMaxEdgeRatio = 4.0 / 3, kMinEdgeRatio = 4.0 / 5;
 
-std::size_t z(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// Projects a point to the zero set by two Newton steps along the gradient (forward differences). If `in_plane`, keeps
 /// the x coordinate.
 Vec3 project_to_surface(const Field& field, Vec3 p, bool in_plane) {
@@ -59,15 +55,15 @@ class Remesher {
     std::vector<Index> middle(edges.edges.size(), -1);
     for (std::size_t e = 0; e < middle.size(); ++e) {
       const auto [a, b] = edges.edges[e].vertices;
-      const Vec3 m = 0.5 * (x_[z(a)] + x_[z(b)]);
-      if ((x_[z(b)] - x_[z(a)]).norm() <= kMaxEdgeRatio * edge_length_(m)) continue;
+      const Vec3 m = 0.5 * (x_[a] + x_[b]);
+      if ((x_[b] - x_[a]).norm() <= kMaxEdgeRatio * edge_length_(m)) continue;
       middle[e] = static_cast<Index>(x_.size());
       x_.push_back(project_to_surface(field_, m, edges.edges[e].triangles[1] < 0));
     }
     std::vector<Triangle> cut;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       const auto& of = edges.of_triangle[t];
-      cut_triangle(triangles_[t], {middle[z(of[0])], middle[z(of[1])], middle[z(of[2])]}, cut);
+      cut_triangle(triangles_[t], {middle[of[0]], middle[of[1]], middle[of[2]]}, cut);
     }
     triangles_ = std::move(cut);
   }
@@ -96,20 +92,20 @@ class Remesher {
   void update_connectivity() {
     around_.assign(x_.size(), {});
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      for (const Index v : triangles_[t]) around_[z(v)].push_back(static_cast<Index>(t));
+      for (const Index v : triangles_[t]) around_[v].push_back(static_cast<Index>(t));
     }
     edges_ = collect_edges(triangles_).edges;
     border_.assign(x_.size(), false);
     for (const Edge& edge : edges_) {
-      if (edge.triangles[1] < 0) border_[z(edge.vertices[0])] = border_[z(edge.vertices[1])] = true;
+      if (edge.triangles[1] < 0) border_[edge.vertices[0]] = border_[edge.vertices[1]] = true;
     }
   }
 
   /// Vertices that share a triangle with v, ascending, without duplicates.
   std::vector<Index> neighbours(Index v) const {
     std::vector<Index> list;
-    for (const Index t : around_[z(v)]) {
-      for (const Index w : triangles_[z(t)]) {
+    for (const Index t : around_[v]) {
+      for (const Index w : triangles_[t]) {
         if (w != v) list.push_back(w);
       }
     }
@@ -122,21 +118,21 @@ class Remesher {
     std::vector<std::pair<double, std::size_t>> queue;
     for (std::size_t e = 0; e < edges_.size(); ++e) {
       const auto [a, b] = edges_[e].vertices;
-      const double wanted = edge_length_(0.5 * (x_[z(a)] + x_[z(b)]));
-      const double length = (x_[z(b)] - x_[z(a)]).norm();
+      const double wanted = edge_length_(0.5 * (x_[a] + x_[b]));
+      const double length = (x_[b] - x_[a]).norm();
       if (length < kMinEdgeRatio * wanted) queue.emplace_back(length / wanted, e);
     }
     std::sort(queue.begin(), queue.end());
     for (const auto& [ratio, e] : queue) {
       auto [keep, gone] = edges_[e].vertices;
-      if (border_[z(gone)] && !border_[z(keep)]) std::swap(keep, gone);
+      if (border_[gone] && !border_[keep]) std::swap(keep, gone);
       collapse(keep, gone, edges_[e].triangles[1] < 0);
     }
   }
 
   /// Whether `gone` may be merged into `keep` without a change of topology (link condition).
   bool link_allows(Index keep, Index gone, bool on_border) const {
-    if (border_[z(gone)] && !on_border) return false;
+    if (border_[gone] && !on_border) return false;
     const std::vector<Index> a = neighbours(keep), b = neighbours(gone);
     if (!std::binary_search(a.begin(), a.end(), gone)) return false;
     std::vector<Index> common;
@@ -144,19 +140,19 @@ class Remesher {
     if (common.size() != (on_border ? 1U : 2U)) return false;
     // No inner edge may join two border vertices. The mirror image of such an edge has the same two vertices, so four
     // triangles would share this edge after join_mirror_image().
-    return on_border || !border_[z(keep)] ||
-           std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[z(w)]; });
+    return on_border || !border_[keep] ||
+           std::none_of(b.begin(), b.end(), [&](Index w) { return w != keep && border_[w]; });
   }
 
   /// Whether `v` may move to p: the normals of the triangles at `v` that do not contain `other`
   /// turn by at most 60°, and no edge at `v` of these triangles becomes too long (kMaxEdgeRatio).
   bool shape_allows(Index v, Index other, const Vec3& p) const {
-    for (const Index t : around_[z(v)]) {
-      Triangle corner = triangles_[z(t)];
+    for (const Index t : around_[v]) {
+      Triangle corner = triangles_[t];
       if (std::find(corner.begin(), corner.end(), other) != corner.end()) continue;
       while (corner[0] != v) std::rotate(corner.begin(), corner.begin() + 1, corner.end());
-      const Vec3 &q = x_[z(corner[1])], &r = x_[z(corner[2])];
-      const Vec3 before = (q - x_[z(v)]).cross(r - x_[z(v)]), after = (q - p).cross(r - p);
+      const Vec3 &q = x_[corner[1]], &r = x_[corner[2]];
+      const Vec3 before = (q - x_[v]).cross(r - x_[v]), after = (q - p).cross(r - p);
       if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
       if ((q - p).norm() > kMaxEdgeRatio * edge_length_(0.5 * (p + q))) return false;
     }
@@ -165,23 +161,23 @@ class Remesher {
 
   void collapse(Index keep, Index gone, bool on_border) {
     if (!link_allows(keep, gone, on_border)) return;
-    const bool to_keep = border_[z(keep)] && !on_border;
-    const Vec3 p = to_keep ? x_[z(keep)] : project_to_surface(field_, 0.5 * (x_[z(keep)] + x_[z(gone)]), on_border);
+    const bool to_keep = border_[keep] && !on_border;
+    const Vec3 p = to_keep ? x_[keep] : project_to_surface(field_, 0.5 * (x_[keep] + x_[gone]), on_border);
     if (!shape_allows(keep, gone, p) || !shape_allows(gone, keep, p)) return;
-    x_[z(keep)] = p;
-    for (const Index t : around_[z(gone)]) {
-      Triangle& corner = triangles_[z(t)];
+    x_[keep] = p;
+    for (const Index t : around_[gone]) {
+      Triangle& corner = triangles_[t];
       if (std::find(corner.begin(), corner.end(), keep) == corner.end()) {
         std::replace(corner.begin(), corner.end(), gone, keep);
-        around_[z(keep)].push_back(t);
+        around_[keep].push_back(t);
         continue;
       }
       for (const Index v : corner) {
-        if (v != gone) std::erase(around_[z(v)], t);
+        if (v != gone) std::erase(around_[v], t);
       }
       corner = {-1, -1, -1};
     }
-    around_[z(gone)].clear();
+    around_[gone].clear();
   }
 
   void drop_unused() {
@@ -195,7 +191,7 @@ class Remesher {
     }
     x_.resize(count);
     for (Triangle& t : triangles_) {
-      for (Index& v : t) v = place[z(v)];
+      for (Index& v : t) v = place[v];
     }
   }
 
@@ -207,8 +203,8 @@ class Remesher {
       const auto [a, b] = edge.vertices;
       // Earlier flips may have changed the triangles at this edge, so collect them anew.
       std::vector<Index> sides;
-      for (const Index t : around_[z(a)]) {
-        const Triangle& corner = triangles_[z(t)];
+      for (const Index t : around_[a]) {
+        const Triangle& corner = triangles_[t];
         if (std::find(corner.begin(), corner.end(), b) != corner.end()) sides.push_back(t);
       }
       if (sides.size() == 2) flip(a, b, sides[0], sides[1]);
@@ -217,19 +213,19 @@ class Remesher {
 
   void flip(Index a, Index b, Index left, Index right) {
     const auto opposite = [&](Index t) {
-      const Triangle& corner = triangles_[z(t)];
+      const Triangle& corner = triangles_[t];
       return *std::find_if(corner.begin(), corner.end(), [&](Index v) { return v != a && v != b; });
     };
     // Let `left` be the triangle that traverses the edge from a to b.
     const auto follows = [&](Index t) {
-      const Triangle& corner = triangles_[z(t)];
+      const Triangle& corner = triangles_[t];
       const auto at = std::find(corner.begin(), corner.end(), a) - corner.begin();
       return corner[static_cast<std::size_t>(at + 1) % 3] == b;
     };
     if (!follows(left)) std::swap(left, right);
     const Index c = opposite(left), d = opposite(right);
-    if (c == d || (border_[z(c)] && border_[z(d)])) return;
-    const Vec3 &pa = x_[z(a)], &pb = x_[z(b)], &pc = x_[z(c)], &pd = x_[z(d)];
+    if (c == d || (border_[c] && border_[d])) return;
+    const Vec3 &pa = x_[a], &pb = x_[b], &pc = x_[c], &pd = x_[d];
     if (angle_at(pc, pa, pb) + angle_at(pd, pa, pb) < std::numbers::pi + 1e-6) return;
     const std::vector<Index> of_c = neighbours(c);
     if (std::binary_search(of_c.begin(), of_c.end(), d)) return;
@@ -241,12 +237,12 @@ class Remesher {
         second.dot(normal) < 0.7 * second.norm() * normal.norm()) {
       return;
     }
-    triangles_[z(left)] = {a, d, c};
-    triangles_[z(right)] = {d, b, c};
-    std::erase(around_[z(a)], right);
-    std::erase(around_[z(b)], left);
-    around_[z(c)].push_back(right);
-    around_[z(d)].push_back(left);
+    triangles_[left] = {a, d, c};
+    triangles_[right] = {d, b, c};
+    std::erase(around_[a], right);
+    std::erase(around_[b], left);
+    around_[c].push_back(right);
+    around_[d].push_back(left);
   }
 
   /// Moves each vertex along the surface toward the weighted mean of its neighbours. For a vertex on the border, only
@@ -259,10 +255,10 @@ class Remesher {
       Vec3 sum = Vec3::Zero();
       double count = 0;
       for (const Index w : neighbours(static_cast<Index>(v))) {
-        if (border_[v] && !border_[z(w)]) continue;
+        if (border_[v] && !border_[w]) continue;
         // The weight is larger where wanted edges are shorter, so that the size of triangles changes gradually.
-        const double weight = 1 / edge_length_(0.5 * (x_[v] + x_[z(w)]));
-        sum += weight * x_[z(w)];
+        const double weight = 1 / edge_length_(0.5 * (x_[v] + x_[w]));
+        sum += weight * x_[w];
         count += weight;
       }
       Vec3 move = 0.8 * (sum / count - x_[v]);

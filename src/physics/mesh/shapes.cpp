@@ -116,8 +116,8 @@ Mesh make_sphere(double radius, int segments) {
       for (std::size_t k = 0; k < 3; ++k)
         key[k] = weights[k] > 0 ? std::array{side[k] + 1, weights[k]} : std::array{0, 0};
       std::sort(key.begin(), key.end());
-      const auto [entry, fresh] = known.try_emplace(key, static_cast<Index>(mesh.positions.size()));
-      if (fresh) {
+      const auto [entry, is_new] = known.try_emplace(key, static_cast<Index>(mesh.positions.size()));
+      if (is_new) {
         Vec3 x = Vec3::Zero();
         for (const auto& [corner, weight] : key)
           if (weight > 0) x += weight * coarse.positions[corner - 1];

@@ -83,7 +83,7 @@ FlatTriangles find_flat_triangles(const Sheet& sheet) {
   found.least_height = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
     const double h = height(sheet, t);
-    found.count += h < found.longest_edge / kMaxUnevenness;
+    found.count += h < found.longest_edge / kMaxEdgeToHeightRatio;
     if (h < found.least_height) found.least_height = h, found.flattest = t;
   }
   return found;

@@ -59,10 +59,10 @@ double rest_area(const Sheet& sheet, std::size_t triangle);
 /// which the cloth may touch obstacles. Measured with sheets that fall on a ball, at default settings. If one row of
 /// triangles was thin, eight of nine runs succeeded at a ratio of 71, none at 141. With graded rectangles, all runs
 /// succeeded at a grading of 50, none at 100.
-inline constexpr double kMaxUnevenness = 80;
+inline constexpr double kMaxEdgeToHeightRatio = 80;
 
 /// Triangles of a sheet whose smallest height at rest is below (longest edge of the sheet) /
-/// kMaxUnevenness.
+/// kMaxEdgeToHeightRatio.
 struct FlatTriangles {
   std::size_t count = 0, flattest = 0;  ///< their number; triangle with the smallest height of all
   double least_height = 0;              ///< height of `flattest` [m]; infinite without triangles

@@ -24,7 +24,7 @@ struct Search {
   bool normal_cones = false;      ///< skip regions that cannot touch themselves, because all their normals are similar
   bool coherence = false;         ///< keep closest points of surfaces with little relative motion
   bool reuse = true;              ///< keep candidate pairs for several steps, until a vertex has
-                                  ///< moved too far (Numerics::Contact::margin)
+                                  ///< moved too far (Numerics::Contact::verlet_margin)
 };
 
 /// Coulomb friction between two objects, at least one of them a cloth. It replaces the geometric

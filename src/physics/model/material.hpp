@@ -28,9 +28,9 @@ struct Material {
 
   /// Whether a sheet of this material resists bending. If not, bending viscosity and bending
   /// friction have no effect either. (Ropes bend by model::Rope::bend.)
-  bool bends() const { return bend > 0; }
+  bool resists_bending() const { return bend > 0; }
   /// Whether this material has a limit of stretch or shear, at which its threads lock.
-  bool locks() const { return max_stretch > 0 || max_shear > 0; }
+  bool has_strain_limit() const { return max_stretch > 0 || max_shear > 0; }
 };
 
 }  // namespace weft::model

@@ -59,7 +59,7 @@ Model Model::with_cloths(std::span<const std::size_t> numbers) const {
 
 void Model::place(std::size_t body, double t, std::span<Vec3> positions) const {
   const Body& placed = bodies[body];
-  if (!placed.moving) t = 0;
+  if (!placed.may_move) t = 0;
   if (const auto* keys = std::get_if<motion::KeyFrames>(placed.mover.get())) return keys->at(t, positions);
   const motion::PoseSample now = pose(body, t);
   const Mat3 rotation = now.rotation.toRotationMatrix();

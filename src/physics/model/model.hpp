@@ -128,9 +128,9 @@ struct Body {
   std::string name;
   mesh::Mesh mesh;  ///< rigid: in its own coordinates; deforming: in the world at time 0
   std::shared_ptr<const Mover> mover;
-  Parent parent = {};   ///< rigid bodies only: the parent's motion since the start of the run is
-                        ///< applied in addition to that of `mover`
-  bool moving = false;  ///< whether `mover`, `parent` or Model::set_motion() may move the body
+  Parent parent = {};     ///< rigid bodies only: the parent's motion since the start of the run is
+                          ///< applied in addition to that of `mover`
+  bool may_move = false;  ///< whether `mover`, `parent` or Model::set_motion() may move the body
   bool collide = true;
   bool infinite_floor = false;
   double friction = 0.3;
@@ -198,7 +198,7 @@ struct Model {
   Model with_cloths(std::span<const std::size_t> numbers) const;
 
   /// Writes the positions of all vertices of a body at time t [s]; `positions` has the size of its
-  /// mesh. For a body without Body::moving, writes the positions of time 0. For a body that forces
+  /// mesh. For a body without Body::may_move, writes the positions of time 0. For a body that forces
   /// move, writes where `mover` places it. Takes time linear in the number of vertices, in
   /// parallel; allocates nothing.
   void place(std::size_t body, double t, std::span<Vec3> positions) const;
@@ -213,7 +213,7 @@ struct Model {
     return std::get<motion::KeyFrames>(*bodies[body].mover).at(t, vertex);
   }
 
-  /// Replaces the motion of a rigid body; the body then follows no parent. Body::moving must be
+  /// Replaces the motion of a rigid body; the body then follows no parent. Body::may_move must be
   /// true, and the new motion must not change the current pose of the body.
   void set_motion(std::size_t body, const motion::PoseTrack& motion);
 };

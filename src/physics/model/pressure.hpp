@@ -29,7 +29,7 @@ struct Pressure {
   std::vector<PressureKey> keys;                                       ///< empty: constant `value`
 
   /// Whether the enclosed air acts on the cloth. False only for a constant gauge pressure of 0.
-  bool acts() const { return control != PressureControl::gauge || value != 0 || !keys.empty(); }
+  bool has_effect() const { return control != PressureControl::gauge || value != 0 || !keys.empty(); }
 };
 
 }  // namespace weft::model

@@ -18,7 +18,7 @@ constexpr std::size_t kVerticesPerTask = 4096;
 KeyFrames::KeyFrames(Interpolation interpolation, double first_time, double interval,
                      std::vector<std::vector<Vec3>> keys, bool from_rest)
     : first_time_(first_time), interval_(interval), keys_(std::move(keys)) {
-  if (interpolation == Interpolation::cubic && moving()) compute_second_derivatives(from_rest);
+  if (interpolation == Interpolation::cubic && is_moving()) compute_second_derivatives(from_rest);
 }
 
 /// Computes the second derivatives m at the keys. x: positions at the keys; h = interval_. Solves the system of

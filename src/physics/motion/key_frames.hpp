@@ -31,7 +31,7 @@ class KeyFrames {
   /// Motion of one vertex, with exact derivatives; at a key of a linear motion, those of the later segment.
   VertexMotion at(double t, std::size_t vertex) const { return at(find_piece(t), vertex); }
 
-  bool moving() const { return keys_.size() > 1; }
+  bool is_moving() const { return keys_.size() > 1; }
   std::vector<double> times() const;  ///< of the keys [s]
   std::size_t bytes() const;          ///< memory of the keys [bytes]
 

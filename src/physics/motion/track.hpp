@@ -81,7 +81,7 @@ class Track {
   PoseSample at(double t) const;
 
   /// Whether the track has more than one key.
-  bool moving() const { return moving_; }
+  bool is_moving() const { return moving_; }
 
  private:
   std::vector<double> times_;  // of the keys [s]

@@ -11,9 +11,9 @@
 #include "core/parallel.hpp"
 #include "physics/forces/air.hpp"
 #include "physics/forces/bend.hpp"
-#include "physics/forces/cord.hpp"
 #include "physics/forces/crossed_membrane.hpp"
 #include "physics/forces/rigidity.hpp"
+#include "physics/forces/rope_force.hpp"
 #include "physics/forces/shear.hpp"
 #include "physics/forces/stretch.hpp"
 #include "physics/forces/stretch_limit.hpp"
@@ -95,12 +95,12 @@ ClothSystem::ClothSystem(const model::Model& model) : gravity_(model.physics.gra
   build_aggregates(model);
 
   const solver::Assembly assembly(lay_out_matrix());
-  for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->attach(assembly);
+  for (const auto& of_part : forces_)
+    for (const auto& force : of_part) force->attach(assembly);
   divide_into_ranges();
-  for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->set_held(held_);
-  sew(0);
+  for (const auto& of_part : forces_)
+    for (const auto& force : of_part) force->set_held(held_);
+  update_rest_shapes(0);
 }
 
 void ClothSystem::add_frames(const model::Model& model) {
@@ -124,8 +124,8 @@ std::vector<Index> ClothSystem::first_of_frames(const model::Model& model) const
 
 solver::BlockMatrix ClothSystem::lay_out_matrix() const {
   solver::BlockMatrix::Couplings couplings, isotropic;
-  for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->append_couplings(force->isotropic() ? isotropic : couplings);
+  for (const auto& of_part : forces_)
+    for (const auto& force : of_part) force->append_couplings(force->isotropic() ? isotropic : couplings);
   return {first_.back(), std::move(couplings), std::move(isotropic)};
 }
 
@@ -147,24 +147,26 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const model::Cloth& of, con
   forces_[cloth].push_back(std::move(stretch));
   if (material.shear > 0 || material.shear_viscosity > 0)
     forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
-  if (material.locks())
+  if (material.has_strain_limit())
     add_limit(cloth, std::make_unique<forces::StretchLimit>(grid, first, stretch_of(material), max_extension(material),
                                                             max_shear_sine(material)));
-  if (material.bends()) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
+  if (material.resists_bending())
+    forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
   if (has_drag(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
 }
 
 void ClothSystem::add_rope_forces(std::size_t cloth, const model::Rope& rope, const model::Physics& physics) {
-  auto cord = std::make_unique<forces::Cord>(rope.lengths, rope.closed, first_[cloth],
-                                             forces::CordParameters{.stretch = rope.stretch,
-                                                                    .stretch_viscosity = rope.damping * rope.stretch,
-                                                                    .bend = rope.bend,
-                                                                    .bend_viscosity = rope.damping * rope.bend,
-                                                                    .air_density = physics.air_density,
-                                                                    .wind = physics.wind,
-                                                                    .drag = rope.drag,
-                                                                    .diameter = rope.diameter});
+  auto force =
+      std::make_unique<forces::RopeForce>(rope.lengths, rope.closed, first_[cloth],
+                                          forces::RopeForceParameters{.stretch = rope.stretch,
+                                                                      .stretch_viscosity = rope.damping * rope.stretch,
+                                                                      .bend = rope.bend,
+                                                                      .bend_viscosity = rope.damping * rope.bend,
+                                                                      .air_density = physics.air_density,
+                                                                      .wind = physics.wind,
+                                                                      .drag = rope.drag,
+                                                                      .diameter = rope.diameter});
   if (!rope.keys.empty()) {
     std::vector<double> times;
     std::vector<motion::Spline<1>::Value> values;
@@ -172,12 +174,12 @@ void ClothSystem::add_rope_forces(std::size_t cloth, const model::Rope& rope, co
       times.push_back(key.time);
       values.emplace_back(key.length);
     }
-    keyed_ropes_.push_back({cord.get(),
+    keyed_ropes_.push_back({force.get(),
                             std::accumulate(rope.lengths.begin(), rope.lengths.end(), 0.0),
                             {rope.interpolation, std::move(times), std::move(values)}});
   }
-  membranes_.push_back(cord.get());
-  forces_[cloth].push_back(std::move(cord));
+  membranes_.push_back(force.get());
+  forces_[cloth].push_back(std::move(force));
 }
 
 void ClothSystem::add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit) {
@@ -190,13 +192,13 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
   const model::Material& material = of.material;
   const Index first = first_[cloth];
   std::unique_ptr<forces::TriangleMembrane> membrane;
-  if (of.crossed && material.bends())  // membrane locking matters only with bending stiffness
+  if (of.crossed && material.resists_bending())  // membrane locking matters only with bending stiffness
     membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
   else
     membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
   if (sheet.sewn) sewing_.push_back({cloth, of.put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
-  if (material.locks()) {
+  if (material.has_strain_limit()) {
     auto limit = std::make_unique<forces::StretchLimit>(*membrane, stretch_of(material), max_extension(material),
                                                         max_shear_sine(material));
     if (sheet.sewn) sewing_.back().limit = limit.get();
@@ -214,7 +216,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
     for (const std::string& seam : sheet.tearing_seams) sewing_.back().tearing_seams.push_back(of.name + ": " + seam);
     forces_[cloth].push_back(std::move(ties));
   }
-  if (material.bends())
+  if (material.resists_bending())
     forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
   if (has_drag(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
@@ -272,20 +274,20 @@ bool ClothSystem::is_constant_between(double t0, double t1) const {
          });
 }
 
-bool ClothSystem::sew(double t) {
-  update_rest_state(t);
+bool ClothSystem::update_rest_shapes(double t) {
+  set_rest_time(t);
   return std::exchange(constant_changed_, false);
 }
 
 void ClothSystem::finish_step(double t) {
-  update_rest_state(t);
+  set_rest_time(t);
   inflation_.set_time(begin_ + t);
 }
 
 // Updates rope lengths, rest shapes and ties to time t [s since the start of the run].
-void ClothSystem::update_rest_state(double t) {
+void ClothSystem::set_rest_time(double t) {
   for (const KeyedRope& rope : keyed_ropes_)
-    constant_changed_ |= rope.cord->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
+    constant_changed_ |= rope.force->set_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
     const double progress = sewing.progress_at(t);
     if (sewing.ties != nullptr) {
@@ -296,7 +298,7 @@ void ClothSystem::update_rest_state(double t) {
   }
 }
 
-void ClothSystem::inflate(double t, std::span<const Vec3> x) {
+void ClothSystem::update_enclosed_air(double t, std::span<const Vec3> x) {
   if (inflation_.empty()) return;
   inflation_.begin_step(begin_ + t, x, [&](std::size_t cloth) {
     return std::ranges::none_of(sewing_,
@@ -304,13 +306,13 @@ void ClothSystem::inflate(double t, std::span<const Vec3> x) {
   });
 }
 
-bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
+bool ClothSystem::set_held_particles(std::span<const integrator::HeldParticle> pinned) {
   std::vector<char> held(held_.size());
   for (const integrator::HeldParticle& particle : pinned) held[particle.constraint.particle] = 1;
   if (held == held_) return false;
   held_ = std::move(held);
-  for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->set_held(held_);
+  for (const auto& of_part : forces_)
+    for (const auto& force : of_part) force->set_held(held_);
   return true;
 }
 
@@ -337,7 +339,7 @@ std::vector<AttachmentLoad> ClothSystem::measure_seams(std::span<const Vec3> x) 
     if (sewing.tearing_seams.empty()) continue;
     const auto seams = sewing.ties->measure_seams(x);
     for (std::size_t s = 0; s < seams.size(); ++s)
-      loads.push_back({sewing.tearing_seams[s], seams[s].load, seams[s].holds});
+      loads.push_back({sewing.tearing_seams[s], seams[s].load, seams[s].is_closed});
   }
   return loads;
 }
@@ -354,11 +356,11 @@ void ClothSystem::copy_sewing_from(const ClothSystem& there, std::span<const std
 template <class Archive>
 void ClothSystem::serialize(Archive& archive) {
   for (const KeyedRope& rope : keyed_ropes_) {
-    double ratio = rope.cord->length_ratio();
+    double ratio = rope.force->length_ratio();
     archive.value(ratio);
     if constexpr (!Archive::kReads) continue;
     require(std::isfinite(ratio) && ratio > 0, "a length of a rope");
-    constant_changed_ |= rope.cord->set_length_ratio(ratio);
+    constant_changed_ |= rope.force->set_length_ratio(ratio);
   }
   for (Sewing& sewing : sewing_) {
     archive.value(sewing.progress);
@@ -384,36 +386,37 @@ void ClothSystem::cancel_weight_of_sewn_cloth(std::span<Vec3> force) const {
   }
 }
 
-void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) const {
-  for (const auto& force : forces_[cloth]) force->add(at);
+void ClothSystem::add_forces(std::size_t part, const forces::Evaluation& at) const {
+  for (const auto& force : forces_[part]) force->add(at);
 }
 
-void ClothSystem::begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const {
-  lags.resize(cloths());
-  for (const auto& [cloth, limit] : limits_) limit->begin(x, lags[cloth]);
+void ClothSystem::begin_locks(std::span<const Vec3> x, LockLinearisations& linearisations) const {
+  linearisations.resize(cloths());
+  for (const auto& [cloth, limit] : limits_) limit->begin(x, linearisations[cloth]);
 }
 
-void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const {
-  for (const auto& [cloth, limit] : limits_) limit->update(x, first, lags[cloth]);
+void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLinearisations& linearisations) const {
+  for (const auto& [cloth, limit] : limits_) limit->update(x, first, linearisations[cloth]);
 }
 
-void ClothSystem::add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const {
-  for (const auto& [cloth, limit] : limits_) limit->add_linearisation_difference(x, lags[cloth], force);
+void ClothSystem::add_lock_differences(std::span<const Vec3> x, const LockLinearisations& linearisations,
+                                       std::span<Vec3> force) const {
+  for (const auto& [cloth, limit] : limits_) limit->add_linearisation_difference(x, linearisations[cloth], force);
 }
 
 void ClothSystem::fill_constant(double rate, solver::Assembly& assembly) const {
   assembly.clear();
   for (std::size_t i = 0; i < masses_.size(); ++i)
     assembly.add_constant_to_own(static_cast<Index>(i), rate * rate * masses_[i]);
-  for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->add_constant_stiffness(assembly);
+  for (const auto& of_part : forces_)
+    for (const auto& force : of_part) force->add_constant_stiffness(assembly);
   assembly.keep_constant();
 }
 
 double ClothSystem::elastic_energy(std::span<const Vec3> x) const {
   double sum = 0;
-  for (const auto& of_cloth : forces_)
-    sum += parallel_sum(of_cloth.size(), 1, [&](std::size_t f, std::size_t) { return of_cloth[f]->energy(x); });
+  for (const auto& of_part : forces_)
+    sum += parallel_sum(of_part.size(), 1, [&](std::size_t f, std::size_t) { return of_part[f]->energy(x); });
   return sum;
 }
 

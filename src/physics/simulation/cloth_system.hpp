@@ -19,7 +19,7 @@
 #include "physics/solver/linear_system.hpp"
 
 namespace weft::forces {
-class Cord;
+class RopeForce;
 class StretchLimit;
 struct LockLinearisation;
 }  // namespace weft::forces
@@ -28,8 +28,9 @@ namespace weft::simulation {
 
 /// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
 /// each body that forces move: its frame (mesh::RigidFrame). A part is a cloth or such a frame. Besides their
-/// arguments, forces depend on state that sew(), inflate(), hold() and accept() update: rest shapes
-/// of cloth that is being sewn, rope lengths, ties, enclosed air, and the set of held particles.
+/// arguments, forces depend on state that update_rest_shapes(), update_enclosed_air(), set_held_particles() and
+/// accept() update: rest shapes of cloth that is being sewn, rope lengths, ties, enclosed air, and the set of held
+/// particles.
 class ClothSystem {
  public:
   explicit ClothSystem(const model::Model& model);
@@ -53,7 +54,7 @@ class ClothSystem {
   /// A range of particles of one part. Forces on the particles of different ranges can be evaluated
   /// in parallel.
   struct Range {
-    std::size_t cloth;  ///< number of the part, a cloth or a frame
+    std::size_t part;  ///< number of the part, a cloth or a frame
     Index begin, end;
     std::size_t number;  ///< as in forces::Evaluation::range
   };
@@ -62,21 +63,22 @@ class ClothSystem {
   /// Number of ranges that ranges() would have with an unlimited number of threads.
   std::size_t largest_range_count() const;
 
-  /// Adds the forces on the part with number `cloth` (or on its range `at.range`), without their
+  /// Adds the forces on the part with number `part` (or on its range `at.range`), without their
   /// weight. `at` has positions and velocities of all particles.
-  void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
+  void add_forces(std::size_t part, const forces::Evaluation& at) const;
 
   /// Per cloth, the linearisation of the forces that limit its extension (thread locks, forces::StretchLimit); empty
   /// for cloths without such a limit.
   using LockLinearisations = std::vector<forces::LockLinearisation>;
   /// These three functions call StretchLimit::begin(), update() and add_linearisation_difference(),
   /// respectively, for all cloths with a limit.
-  void begin_locks(std::span<const Vec3> x, LockLinearisations& lags) const;
-  void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& lags) const;
-  void add_lock_lags(std::span<const Vec3> x, const LockLinearisations& lags, std::span<Vec3> force) const;
+  void begin_locks(std::span<const Vec3> x, LockLinearisations& linearisations) const;
+  void update_locks(std::span<const Vec3> x, bool first, LockLinearisations& linearisations) const;
+  void add_lock_differences(std::span<const Vec3> x, const LockLinearisations& linearisations,
+                            std::span<Vec3> force) const;
 
-  /// Fills `assembly` with rate² M and the stiffness that does not depend on positions. Only hold() and sew() change
-  /// this stiffness.
+  /// Fills `assembly` with rate² M and the stiffness that does not depend on positions. Only set_held_particles() and
+  /// update_rest_shapes() change this stiffness.
   void fill_constant(double rate, solver::Assembly& assembly) const;
 
   /// An empty system with the sparsity pattern of these forces.
@@ -85,24 +87,25 @@ class ClothSystem {
   /// Before a step: updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t of its stage
   /// (integrator::Stepper) [s since the start of the run]. Returns whether the constant part of the stiffness has
   /// changed since the last call.
-  bool sew(double t);
-  /// After a step that ends at time t [s since the start of the run]: as sew(t); also updates given pressures and
-  /// amounts of air. With the midpoint rule, the stage is earlier than t.
+  bool update_rest_shapes(double t);
+  /// After a step that ends at time t [s since the start of the run]: as update_rest_shapes(t); also updates given
+  /// pressures and amounts of air. With the midpoint rule, the stage is earlier than t.
   void finish_step(double t);
 
   /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1, and no
-  /// triangle catches up after the sewing. Both are scene times [s]; sew() takes the time since the start of the run.
+  /// triangle catches up after the sewing. Both are scene times [s]; update_rest_shapes() takes the time since the
+  /// start of the run.
   bool is_constant_between(double t0, double t1) const;
 
   /// Updates the enclosed air for the step with its stage at time t [s since the start of the run]; call it after
-  /// sew(t). `x`: particles at the start of the step [m].
-  void inflate(double t, std::span<const Vec3> x);
+  /// update_rest_shapes(t). `x`: particles at the start of the step [m].
+  void update_enclosed_air(double t, std::span<const Vec3> x);
   const Inflation& inflation() const { return inflation_; }
   Inflation& inflation() { return inflation_; }
 
   /// Sets which particles pins hold. Returns whether this set, and with it the bending stiffness beside pins, has
   /// changed.
-  bool hold(std::span<const integrator::HeldParticle> pinned);
+  bool set_held_particles(std::span<const integrator::HeldParticle> pinned);
 
   /// Cloth that was sewn wider than its pattern, because its threads would have locked.
   struct Widening {
@@ -155,7 +158,7 @@ class ClothSystem {
   solver::BlockMatrix lay_out_matrix() const;
   void build_aggregates(const model::Model& model);
   void divide_into_ranges();
-  void update_rest_state(double t);
+  void set_rest_time(double t);
 
   std::vector<Index> first_;  // of each part, then the number of all particles
   std::vector<double> masses_;
@@ -182,12 +185,13 @@ class ClothSystem {
   std::vector<Sewing> sewing_;
   /// A rope with key-framed length.
   struct KeyedRope {
-    forces::Cord* cord;
+    forces::RopeForce* force;
     double length;              // rest length at construction [m]
     motion::Spline<1> lengths;  // over time
   };
   std::vector<KeyedRope> keyed_ropes_;
-  bool constant_changed_ = false;  // whether the constant part of the stiffness has changed since the last sew()
+  // Whether the constant part of the stiffness has changed since the last update_rest_shapes().
+  bool constant_changed_ = false;
   Inflation inflation_;
   std::vector<char> held_;  // per particle: whether a pin holds it
   Vec3 gravity_;

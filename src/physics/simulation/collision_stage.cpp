@@ -118,7 +118,7 @@ collision::Bodies make_bodies(const model::Model& model, const ClothSystem& clot
     std::vector<collision::Patch> patches;
     for (const model::Patch& patch : body.patches) patches.push_back({patch.vertices, patch.thickness, patch.friction});
     bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
-               {.friction = body.friction, .moving = body.moving, .rigid = !body.deforms()}, patches, body.limbs);
+               {.friction = body.friction, .may_move = body.may_move, .rigid = !body.deforms()}, patches, body.limbs);
   }
   return bodies;
 }
@@ -126,7 +126,7 @@ collision::Bodies make_bodies(const model::Model& model, const ClothSystem& clot
 // Largest distance of a vertex from the origin of a body that moves without deforming [m]; 0 for other bodies.
 double radius_of(const model::Body& body) {
   double radius_sq = 0;
-  if (body.moving && !body.deforms())
+  if (body.may_move && !body.deforms())
     for (const Vec3& x : body.mesh.positions) radius_sq = std::max(radius_sq, x.squaredNorm());
   return std::sqrt(radius_sq);
 }
@@ -138,7 +138,7 @@ double sagitta(double radius, double angle) {
 
 }  // namespace
 
-bool CollisionStage::needed(const model::Model& model) {
+bool CollisionStage::is_needed(const model::Model& model) {
   const auto meets = [](const model::Body& body) { return moves_by_forces(body) && body.collide; };
   return (!model.cloths.empty() && (model.contact.self || bodies_collide(model))) ||
          (model.contact.obstacles && std::ranges::any_of(model.bodies, meets));
@@ -191,22 +191,22 @@ std::vector<IntersectionPlace> CollisionStage::find_intersections(const SystemSt
 }
 
 // Bodies that do not move stay where append_bodies() has put them.
-void CollisionStage::place_bodies(double t, SystemState& moment) const {
-  rigid_.place(moment.x);
-  if (moment.bodies_time == t) return;
-  moment.bodies_time = t;
+void CollisionStage::place_bodies(double t, SystemState& state) const {
+  rigid_.place(state.x);
+  if (state.bodies_time == t) return;
+  state.bodies_time = t;
   auto first = static_cast<std::size_t>(rigid_.end());
   for (std::size_t b : bodies_) {
     if (model_.bodies[b].dynamics) continue;
     const std::size_t count = model_.bodies[b].mesh.positions.size();
-    if (model_.bodies[b].moving) model_.place(b, t, std::span(moment.x).subspan(first, count));
+    if (model_.bodies[b].may_move) model_.place(b, t, std::span(state.x).subspan(first, count));
     first += count;
   }
 }
 
 // Text that names the objects and triangles of a pair, and its place.
-std::string CollisionStage::describe(const collision::CornerPair& pair, const SystemState& moment) const {
-  const Vec3& at = moment.x[pair.a[0]];
+std::string CollisionStage::describe(const collision::CornerPair& pair, const SystemState& state) const {
+  const Vec3& at = state.x[pair.a[0]];
   const collision::Bodies& bodies = engine_.bodies();
   return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m",
                      names_[bodies.body_of(pair.a[0])], bodies.triangle_of(pair.a), names_[bodies.body_of(pair.b[0])],
@@ -241,7 +241,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
 }
 
 bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemState& now) const {
-  const double max_sagitta = numerics.contact.margin * engine_.detection_distance();
+  const double max_sagitta = numerics.contact.verlet_margin * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= model_.bodies[bodies_[b]].dynamics->release)) continue;
     // Samples of the angular velocity at the start, middle and end of the step are enough: it
@@ -272,7 +272,7 @@ bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now,
 }
 
 bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemState& next) const {
-  const double max_motion = numerics.contact.margin * engine_.detection_distance();
+  const double max_motion = numerics.contact.verlet_margin * engine_.detection_distance();
   for (auto v = static_cast<std::size_t>(rigid_.end()); v < now.x.size(); ++v)
     if ((next.x[v] - now.x[v]).squaredNorm() > max_motion * max_motion &&
         !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))
@@ -320,11 +320,11 @@ bool CollisionStage::solved_surface_comes_near(std::size_t body, double t, doubl
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
   const model::Body& object = model_.bodies[body];
-  if (!object.moving || object.deforms() || object.dynamics) return motion;
+  if (!object.may_move || object.deforms() || object.dynamics) return motion;
   const motion::PoseSample from = model_.pose(body, t), to = model_.pose(body, t + h);
   if (from.rotation.coeffs() != to.rotation.coeffs())
-    motion.turn = (to.rotation * from.rotation.conjugate()).toRotationMatrix();
-  motion.shift = to.position - motion.turn * from.position;
+    motion.rotation = (to.rotation * from.rotation.conjugate()).toRotationMatrix();
+  motion.translation = to.position - motion.rotation * from.position;
   return motion;
 }
 
@@ -367,19 +367,19 @@ void CollisionStage::continue_from(const SystemState& next) {
 
 bool CollisionStage::restarts_at(const SystemState& next) const {
   const double most =
-      std::min(numerics.separation.restored_gap, numerics.contact.margin * engine_.detection_distance());
+      std::min(numerics.separation.restored_gap, numerics.contact.verlet_margin * engine_.detection_distance());
   return !x_restart_.empty() && parallel_all_of(particles_, [&](std::size_t i) {
     return (next.x[i] - x_restart_[i]).squaredNorm() <= most * most;
   });
 }
 
-std::string CollisionStage::describe(const collision::ObstructedPin& given, const SystemState& now) const {
-  const auto is_it = [&](Index v) { return v == given.particle; };
-  const collision::Triangle& other = std::ranges::any_of(given.pair.a, is_it) ? given.pair.b : given.pair.a;
-  const Vec3& at = now.x[given.particle];
+std::string CollisionStage::describe(const collision::ObstructedPin& pin, const SystemState& now) const {
+  const auto is_it = [&](Index v) { return v == pin.particle; };
+  const collision::Triangle& other = std::ranges::any_of(pin.pair.a, is_it) ? pin.pair.b : pin.pair.a;
+  const Vec3& at = now.x[pin.particle];
   const std::size_t body = engine_.bodies().body_of(other[0]);
   return fmt::format("'{}'{} near ({:.4g}, {:.4g}, {:.4g}) m", names_[body],
-                     body == engine_.bodies().body_of(given.particle) ? " itself" : "", at.x(), at.y(), at.z());
+                     body == engine_.bodies().body_of(pin.particle) ? " itself" : "", at.x(), at.y(), at.z());
 }
 
 std::string CollisionStage::describe(const collision::Pinch& pinch) const {

@@ -30,7 +30,7 @@ struct SystemState : integrator::State {
 class CollisionStage {
  public:
   /// Whether anything in the model can collide. Otherwise, the caller makes no stage.
-  static bool needed(const model::Model& model);
+  static bool is_needed(const model::Model& model);
 
   /// Appends the vertices of the bodies at start.bodies_time to start.x. The model must outlive the stage.
   CollisionStage(const model::Model& model, const ClothSystem& cloth, SystemState& start);
@@ -68,14 +68,14 @@ class CollisionStage {
 
   /// The search for contacts assumes that vertices move on straight lines. Returns whether an obstacle near cloth, or
   /// near a body that forces move, turns so far between t and t + h [s] that its vertices may deviate from such lines
-  /// by more than `numerics.contact.margin` detection distances.
+  /// by more than `numerics.contact.verlet_margin` detection distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether all key-framed bodies have the same positions at t0 and t1 [s], the times of `now` and `next`. Bodies that
   /// come near neither cloth nor dynamic bodies do not count. Places bodies in both states.
   bool bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const;
 
-  /// Whether all vertices of obstacles near cloth move by at most `numerics.contact.margin`
+  /// Whether all vertices of obstacles near cloth move by at most `numerics.contact.verlet_margin`
   /// detection distances from `now` to `next`. If so, a shorter step would not find more space for
   /// cloth.
   bool obstacles_move_little(const SystemState& now, const SystemState& next) const;
@@ -117,7 +117,7 @@ class CollisionStage {
   void continue_from(const SystemState& next);
   /// Whether each particle of `next` is where it was in the last call of continue_from() in this step; false without
   /// such a call. The tolerance is the gap that push_apart() restores or, if smaller, the Verlet margin
-  /// (Numerics::Contact::margin).
+  /// (Numerics::Contact::verlet_margin).
   bool restarts_at(const SystemState& next) const;
   /// Adds to obstructed_pins() the pinned particles of cloth triangles between which is_separated() found no plane.
   /// Returns whether obstructed_pins() has any.
@@ -125,7 +125,7 @@ class CollisionStage {
   /// The pinned particles that the last push_apart() or find_pins_between_cloths() has listed.
   std::span<const collision::ObstructedPin> obstructed_pins() const { return obstructed_pins_; }
   /// Text that says which object obstructs this pinned particle, and where: "'a' near (0, 0, 0) m".
-  std::string describe(const collision::ObstructedPin& given, const SystemState& now) const;
+  std::string describe(const collision::ObstructedPin& pin, const SystemState& now) const;
 
   /// Cloth that obstacles pinched in the steps of a frame. take_pinches() also begins the next frame.
   struct Pinches {
@@ -161,10 +161,10 @@ class CollisionStage {
   std::vector<double> masses_of_all(const ClothSystem& cloth) const;
   const std::vector<Vec3>& append_bodies(SystemState& start) const;
   bool is_dynamic(std::size_t body) const { return model_.bodies[bodies_[body]].dynamics != nullptr; }
-  void place_bodies(double t, SystemState& moment) const;
+  void place_bodies(double t, SystemState& state) const;
   bool solved_surface_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
-  std::string describe(const collision::CornerPair& pair, const SystemState& moment) const;
+  std::string describe(const collision::CornerPair& pair, const SystemState& state) const;
   std::string describe(const collision::Pinch& pinch) const;
   void note_pinches(const SystemState& start);
   template <class Archive>

@@ -28,7 +28,7 @@ bool is_driven_by_pins_alone(const model::Model& model) {
       if (pin.strength && (moves(pin.motion) || pin.body)) return false;
   }
   for (const model::Body& body : model.bodies) {
-    if (body.deforms() || (body.collide && body.moving)) return false;
+    if (body.deforms() || (body.collide && body.may_move)) return false;
     // A body that gets a velocity at its release gains energy then.
     if (body.dynamics && body.dynamics->release > model.start_time() &&
         (body.dynamics->velocity != Vec3::Zero() || body.dynamics->angular_velocity != Vec3::Zero()))
@@ -36,7 +36,7 @@ bool is_driven_by_pins_alone(const model::Model& model) {
   }
   // Attachments that contract to a given length, or whose target moves, do work that is not measured.
   for (const model::Attachment& attachment : model.attachments)
-    if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].moving)) return false;
+    if (attachment.length || (attachment.to_body && model.bodies[*attachment.to_body].may_move)) return false;
   const std::vector<model::PhysicsKey>& keys = model.physics.keys;
   if (keys.size() > 1 || !model.fans.empty()) return false;
   const Vec3& wind = keys.empty() ? model.physics.wind : keys.front().wind;
@@ -51,7 +51,8 @@ double mechanical_energy(const FrameReport& report) {
 
 EnergyBound::EnergyBound(const model::Model& model, double mass, const FrameReport& start)
     : applies_(is_driven_by_pins_alone(model)),
-      damped_contact_(CollisionStage::needed(model) && model.time.integrator != integrator::Method::implicit_midpoint),
+      damped_contact_(CollisionStage::is_needed(model) &&
+                      model.time.integrator != integrator::Method::implicit_midpoint),
       integrator_(model.time.integrator),
       negligible_energy_(mass * numerics.energy.negligible),
       start_energy_(mechanical_energy(start)),

@@ -31,7 +31,7 @@ motion::Spline<1> air_track_of(const model::Pressure& pressure) {
 Inflation::Inflation(const model::Model& model, std::span<const Index> first_particle) {
   for (std::size_t c = 0; c < model.cloths.size(); ++c) {
     const model::Pressure& pressure = model.cloths[c].pressure;
-    if (!pressure.acts()) continue;
+    if (!pressure.has_effect()) continue;
     const model::Cloth& object = model.cloths[c];
     Cloth& cloth = cloths_.emplace_back(Cloth{object.name,
                                               object.source + ".pressure",

@@ -25,7 +25,7 @@ class Inflation {
   static constexpr double kAmbientPressure = 101325;
 
   Inflation() = default;
-  /// Selects the cloths for which Pressure::acts() is true. `first_particle`: of each cloth of the
+  /// Selects the cloths for which Pressure::has_effect() is true. `first_particle`: of each cloth of the
   /// model.
   Inflation(const model::Model& model, std::span<const Index> first_particle);
 

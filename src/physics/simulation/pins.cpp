@@ -36,8 +36,8 @@ struct TriangleAxes {
 
 // Takes time linear in the number of particles of all pins. A later pin becomes an owner of a particle only if it is
 // released after all earlier owners.
-std::vector<std::vector<Pins::Owner>> Pins::owners(const model::Model& model,
-                                                   const std::vector<Index>& first_particle) {
+std::vector<std::vector<Pins::Owner>> Pins::list_owners(const model::Model& model,
+                                                        const std::vector<Index>& first_particle) {
   std::size_t count = 0;
   for (std::size_t c = 0; c < model.cloths.size(); ++c)
     count = static_cast<std::size_t>(first_particle[c]) + model.cloths[c].start.size();
@@ -65,7 +65,7 @@ Pins::Owner Pins::owner_at(Index particle, double t) const {
 }
 
 Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
-    : owners_of_(owners(model, first_particle)) {
+    : owners_of_(list_owners(model, first_particle)) {
   const double start_time = model.start_time();
   for (std::size_t c = 0; c < model.cloths.size(); ++c) {
     const model::Cloth& cloth = model.cloths[c];
@@ -92,7 +92,7 @@ Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
       } else if (pin.body && model.bodies[*pin.body].deforms()) {
         std::vector<Vec3> starts;
         for (Index particle : group.particles) starts.push_back(start(particle));
-        group.anchors = anchor(model, static_cast<std::size_t>(group.follow), start_time, starts);
+        group.anchors = make_anchors(model, static_cast<std::size_t>(group.follow), start_time, starts);
       } else if (group.follow >= 0) {
         const motion::PoseSample pose = model.pose(static_cast<std::size_t>(group.follow), start_time);
         for (Index particle : group.particles)
@@ -105,27 +105,27 @@ Pins::Pins(const model::Model& model, const std::vector<Index>& first_particle)
   }
 }
 
-std::vector<Pins::Anchor> Pins::anchor(const model::Model& model, std::size_t character, double t,
-                                       std::span<const Vec3> places) {
-  const mesh::Mesh& skin = model.bodies[character].mesh;
+std::vector<Pins::Anchor> Pins::make_anchors(const model::Model& model, std::size_t body, double t,
+                                             std::span<const Vec3> places) {
+  const mesh::Mesh& surface = model.bodies[body].mesh;
   std::vector<MovingPoint> vertices;
   std::vector<Vec3> x;
-  for (std::size_t v = 0; v < skin.positions.size(); ++v) {
-    vertices.push_back({model.vertex(character, v, t).position, Vec3::Zero()});
+  for (std::size_t v = 0; v < surface.positions.size(); ++v) {
+    vertices.push_back({model.vertex(body, v, t).position, Vec3::Zero()});
     x.push_back(vertices.back().x);
   }
   std::vector<Anchor> anchors;
   for (const Vec3& place : places) {
-    const collision::SurfacePoint nearest = collision::nearest_point(place, skin.topology.triangles, x);
+    const collision::SurfacePoint nearest = collision::nearest_point(place, surface.topology.triangles, x);
     Anchor& anchor = anchors.emplace_back();
-    Vec3 foot = Vec3::Zero();
+    Vec3 nearest_point = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
       anchor.corners[k] = static_cast<std::size_t>(nearest.face[k]);
       anchor.weights[k] = nearest.weights[k];
-      foot += nearest.weights[k] * x[anchor.corners[k]];
+      nearest_point += nearest.weights[k] * x[anchor.corners[k]];
     }
     const auto& [a, b, c] = anchor.corners;
-    anchor.arm = TriangleAxes(vertices[a], vertices[b], vertices[c]).axes.transpose() * (place - foot);
+    anchor.arm = TriangleAxes(vertices[a], vertices[b], vertices[c]).axes.transpose() * (place - nearest_point);
   }
   return anchors;
 }

@@ -63,10 +63,11 @@ class Pins {
     double fraction = 0;  // 0: no pin
     double release = 0;   // of the pin [s]; infinite: never
   };
-  static std::vector<std::vector<Owner>> owners(const model::Model& model, const std::vector<Index>& first_particle);
+  static std::vector<std::vector<Owner>> list_owners(const model::Model& model,
+                                                     const std::vector<Index>& first_particle);
   Owner owner_at(Index particle, double t) const;
-  static std::vector<Anchor> anchor(const model::Model& model, std::size_t character, double t,
-                                    std::span<const Vec3> places);
+  static std::vector<Anchor> make_anchors(const model::Model& model, std::size_t body, double t,
+                                          std::span<const Vec3> places);
   /// The particles that one pin has at any time.
   struct Group {
     Info info;

@@ -221,9 +221,9 @@ void Simulation::Impl::report_obstructions(FrameReport& report) const {
   report.pinched_pairs = pinches.pairs;
   for (const std::string& text : pinches.begun)
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
-  const YieldingPins::Lags lags = steps->take_lags();
-  report.lagging_particles = lags.particles;
-  for (const std::string& text : lags.messages)
+  const YieldingPins::LagReport lag_report = steps->take_lag_report();
+  report.lagging_particles = lag_report.particles;
+  for (const std::string& text : lag_report.messages)
     report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
 }
 

@@ -107,8 +107,8 @@ class Simulation {
   /// Total contact force on each particle [N] at the end of the last step, per cloth; empty until the cloth is put on.
   std::vector<std::vector<Vec3>> contact_forces() const;
 
-  /// Announces that drive() may move this rigid body (number in the model), which must be `moving`. Only allowed before
-  /// the first advance().
+  /// Announces that drive() may move this rigid body (number in the model), which must have Body::may_move. Only
+  /// allowed before the first advance().
   void allow_drive(std::size_t body);
   /// Moves a body that allow_drive() has announced to `end` at constant velocity during the next frame, in place of its
   /// motion in the model. The body then stays there.

@@ -27,8 +27,8 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
                                        : solve_with_velocity_constraints(attempt, start, report);
     // An accepted step needs no release: obstructed pins may be those of an early check, after which the solve went on.
     if (!rejection || collisions_->obstructed_pins().empty() || !may_release_pins(attempt)) return rejection;
-    for (const collision::ObstructedPin& given : collisions_->obstructed_pins())
-      pins_.release_particle(given.particle, collisions_->describe(given, progress_.now));
+    for (const collision::ObstructedPin& pin : collisions_->obstructed_pins())
+      pins_.release_particle(pin.particle, collisions_->describe(pin, progress_.now));
   }
 }
 
@@ -132,7 +132,7 @@ StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start s
 }
 
 // Solves the step with velocity constraints (Etzmuß et al. 2001). After each solve, the response sets and releases
-// constraints; pairs without a separating plane get contacts. After `numerics.walls.solves` solves, only pushes
+// constraints; pairs without a separating plane get contacts. After `numerics.walls.max_solves` solves, only pushes
 // particles apart.
 StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
                                                               FrameReport& report) {
@@ -144,7 +144,7 @@ StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& att
     bool solved = false;
     if (Rejection rejection = solve_contacts(attempt, start, is_first, is_first, solved, report)) return rejection;
     const Stopwatch watch(report.collide);
-    const bool may_revise = revisions + 1 < numerics.walls.solves;
+    const bool may_revise = revisions + 1 < numerics.walls.max_solves;
     if (solved && response.revise(now.x, next_.x, force_on) > 0 && may_revise) {
       ++revisions;
     } else if (collisions_->is_separated(now, next_)) {
@@ -241,10 +241,10 @@ bool StepLoop::may_pinch(const Attempt& attempt) const {
 }
 
 // Mechanical energy of a state, with the gravity of the current step [J].
-double StepLoop::energy(const SystemState& moment) const {
-  return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
-         attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
-         cloth_.potential_energy(moment.particles(), gravity_);
+double StepLoop::energy(const SystemState& state) const {
+  return cloth_.elastic_energy(state.particles()) + cloth_.air_energy(state.particles()) +
+         attachments_.energy(state.particles()) + cloth_.kinetic_energy(state.v) +
+         cloth_.potential_energy(state.particles(), gravity_);
 }
 
 // Difference between the energy of `next_` and `before` [J], relative to the kinetic and elastic energy at the start of
@@ -262,7 +262,7 @@ StepLoop::Rejection StepLoop::rejection_of(const integrator::StepReport& step) {
   if (step.verdict == integrator::Verdict::solved || step.verdict == integrator::Verdict::unfinished)
     return std::nullopt;
   return fmt::format("{} (after {} iterations, velocities are off by {:.2g} m/s; at most {:.2g} m/s is allowed)",
-                     integrator::describe(step.verdict), step.newton_iterations, step.left, step.allowed);
+                     integrator::describe(step.verdict), step.newton_iterations, step.remaining_error, step.allowed);
 }
 
 }  // namespace weft::simulation

@@ -37,14 +37,14 @@ StepLoop::StepLoop(const model::Model& model, double start)
   SystemState& now = progress_.now;
   pins_.begin_step(start, 0, now.x);
   held_ = pins_.held();
-  cloth_.hold(held_);
+  cloth_.set_held_particles(held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
-  if (CollisionStage::needed(model)) {
+  if (CollisionStage::is_needed(model)) {
     collisions_.emplace(model, cloth_, now);
     problem_.use_contacts(collisions_->response(), collisions_->rigid_vertices());
   }
   if (!attachments_.empty()) problem_.use_attachments(attachments_);
-  cloth_.inflate(start - start_, now.particles());
+  cloth_.update_enclosed_air(start - start_, now.particles());
   step_end_ = start;
   next_ = now;
 }
@@ -70,7 +70,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
   cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
   attachments_.copy_state_from(before.attachments_, cloths);
   cloth_.copy_sewing_from(before.cloth_, cloths);
-  cloth_.sew(step_end_ - start_);
+  cloth_.update_rest_shapes(step_end_ - start_);
   next_ = progress_.now;
 }
 
@@ -118,7 +118,7 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   const double fps = model_.time.fps;
   const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * model_.time.step) - 1e-9)));
   const double h = 1 / (fps * steps);
-  if (steps > 1 && may_rest(t_t0, h, steps) && attempt_resting_frame(t_t0, 1 / fps, report)) return;
+  if (steps > 1 && may_merge_steps(t_t0, h, steps) && attempt_merged_step(t_t0, 1 / fps, report)) return;
   const double done = std::round(t_t0 * fps) * steps;
   for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, model_.solver.halvings, report);
 }
@@ -127,7 +127,7 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
 // contacts are springs; all cloth is slow and has settled in its last step; no earlier rejection limits the length;
 // everything that keys move or set is the same at t and at the end of each step. These conditions are tested before the
 // attempt, because the contacts of a long step that fails would affect later steps.
-bool StepLoop::may_rest(double t, double h, int steps) {
+bool StepLoop::may_merge_steps(double t, double h, int steps) {
   const double whole = steps * h;
   // With velocity constraints, contacts release and stick again from step to step.
   const bool needs_steps = model_.contact.response == model::Response::velocity_constraints;
@@ -152,21 +152,21 @@ bool StepLoop::has_settled() const {
   if (last.h == 0) return false;
   double sum = 0;
   for (std::size_t i = 0; i < last.before.v.size(); ++i) sum += (progress_.now.v[i] - last.before.v[i]).squaredNorm();
-  const double most = numerics.newton.unseen_acceleration * last.h;
+  const double most = numerics.newton.min_visible_acceleration * last.h;
   return sum <= most * most * static_cast<double>(last.before.v.size());
 }
 
-bool StepLoop::is_slow(const SystemState& moment) {
-  return std::ranges::all_of(moment.v, [](const Vec3& v) {
+bool StepLoop::is_slow(const SystemState& state) {
+  return std::ranges::all_of(state.v, [](const Vec3& v) {
     return v.squaredNorm() <= numerics.steps.rest_velocity * numerics.steps.rest_velocity;
   });
 }
 
 // Takes one step in place of several. If the step is rejected or something begins to move in it, discards the step,
 // counts it neither as a step nor as a rejected step, and returns false.
-bool StepLoop::attempt_resting_frame(double t, double h, FrameReport& report) {
+bool StepLoop::attempt_merged_step(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
-  if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
+  if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.min_visible_acceleration) return false;
   accept(h, report);
   return true;
 }
@@ -197,15 +197,15 @@ void StepLoop::advance_over(double t, double h, int rejections, int halvings_lef
 void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
   integrator::StepControl& control = *progress_.control;
   double t = t_t0, h = 0;
-  int left = 0, rejections = 0;
+  int steps_left = 0, rejections = 0;
   for (;;) {
     const double longest = std::min(control.next_step_size(), stepper_.longest_step());
-    const int needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
-    if (needed != left) {
-      left = needed;
-      h = (t_t1 - t) / left;
+    const int steps_needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
+    if (steps_needed != steps_left) {
+      steps_left = steps_needed;
+      h = (t_t1 - t) / steps_left;
     }
-    for (; obstacle_turns_too_far(t, h); h *= 0.5) left *= 2;
+    for (; obstacle_turns_too_far(t, h); h *= 0.5) steps_left *= 2;
     const bool is_last = rejections == model_.solver.halvings || h < numerics.steps.min_step;
     const Rejection rejection = attempt(t, h, rejections, is_last, report);
     if (rejection && is_last) fail(report.frame, t, h, *rejection);
@@ -215,11 +215,11 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
       rejection ? control.record_unsolved_step(h) : control.record_rejected_step(h, local_error_);
       continue;
     }
-    report.inexact_steps += !control.meets(local_error_);
+    report.inexact_steps += !control.meets_tolerance(local_error_);
     control.record_accepted_step(h, local_error_);
     accept(h, report);
     rejections = 0;
-    if (--left == 0) return;
+    if (--steps_left == 0) return;
     t += h;
   }
 }

@@ -88,7 +88,7 @@ class StepLoop {
     return collisions_ ? collisions_->take_pinches(next_) : CollisionStage::Pinches{};
   }
   /// Lagging pins (YieldingPins) in the frame that has just ended.
-  YieldingPins::Lags take_lags() { return pins_.take_lags(); }
+  YieldingPins::LagReport take_lag_report() { return pins_.take_lag_report(); }
 
   /// These functions save or restore the state that later frames depend on. Call serialize() first, which handles
   /// everything except contacts, then serialize_contacts() with the time t of the frame [s].
@@ -117,10 +117,10 @@ class StepLoop {
   void advance_equally(double t_t0, FrameReport& report);
   void advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report);
   void advance_controlled(double t_t0, double t_t1, FrameReport& report);
-  bool may_rest(double t, double h, int steps);
+  bool may_merge_steps(double t, double h, int steps);
   bool has_settled() const;
-  static bool is_slow(const SystemState& moment);
-  bool attempt_resting_frame(double t, double h, FrameReport& report);
+  static bool is_slow(const SystemState& state);
+  bool attempt_merged_step(double t, double h, FrameReport& report);
   bool obstacle_turns_too_far(double t, double h) const {
     return collisions_ && collisions_->obstacle_turns_too_far(t, h, progress_.now);
   }
@@ -146,7 +146,7 @@ class StepLoop {
   Rejection push_apart(const Attempt& attempt);
   bool may_release_pins(const Attempt& attempt) const;
   bool may_pinch(const Attempt& attempt) const;
-  double energy(const SystemState& moment) const;
+  double energy(const SystemState& state) const;
   double added_energy_ratio(double before, double h) const;
   static Rejection rejection_of(const integrator::StepReport& step);
 

@@ -10,8 +10,8 @@
 namespace weft::simulation {
 namespace {
 
-std::size_t size_of(const solver::DiagonalBlock& part) {
-  return static_cast<std::size_t>(part.end - part.begin);
+std::size_t size_of(const solver::DiagonalBlock& block) {
+  return static_cast<std::size_t>(block.end - block.begin);
 }
 
 }  // namespace
@@ -37,9 +37,10 @@ void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const 
                              std::span<const PinSpring> pulls) {
   pulls_ = pulls;
   reset_memory();
-  const bool lengths_change = cloth_.sew(t);
-  cloth_.inflate(t, x);
-  if (cloth_.hold(pinned) || lengths_change) memory_.rate = 0;  // the constant part of the matrix has changed
+  const bool lengths_change = cloth_.update_rest_shapes(t);
+  cloth_.update_enclosed_air(t, x);
+  if (cloth_.set_held_particles(pinned) || lengths_change)
+    memory_.rate = 0;  // the constant part of the matrix has changed
   memory_.contacts = {};
   cloth_.begin_locks(x, memory_.locks);
 }
@@ -79,7 +80,7 @@ void StepProblem::add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3
 
 void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
-  if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
+  if (!memory_.locks.empty()) cloth_.add_lock_differences(at.x, memory_.locks, force);
   cloth_.inflation().add_forces(at.x, force);
   add_pulls(at, force);
   if (contacts_ == nullptr) return;
@@ -97,7 +98,7 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   if (!memory_.locks.empty()) cloth_.update_locks(at.x, iteration == 0, memory_.locks);
   assemble_rows(at);
   add_cloth_forces(at, force);
-  if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
+  if (!memory_.locks.empty()) cloth_.add_lock_differences(at.x, memory_.locks, force);
   cloth_.inflation().linearise(at.x, force, system);
   add_pulls(at, force);
   restart_terms(at);
@@ -186,12 +187,12 @@ void StepProblem::use_rate(double rate) {
 }
 
 // Copies the positions and velocities of a part into the memory. Returns whether any of them has changed.
-bool StepProblem::update_positions(std::size_t cloth, const integrator::StagePoint& at) {
-  const solver::DiagonalBlock& part = memory_.system.blocks[cloth];
-  return parallel_sum(size_of(part), kGrainSize, [&](std::size_t begin, std::size_t end) {
+bool StepProblem::update_positions(std::size_t part, const integrator::StagePoint& at) {
+  const solver::DiagonalBlock& block = memory_.system.blocks[part];
+  return parallel_sum(size_of(block), kGrainSize, [&](std::size_t begin, std::size_t end) {
            bool moved = false;
            for (std::size_t k = begin; k < end; ++k) {
-             const auto i = static_cast<std::size_t>(part.begin) + k;
+             const auto i = static_cast<std::size_t>(block.begin) + k;
              const auto x = solver::padded<double>(at.x[i]), v = solver::padded<double>(at.v[i]);
              auto &own_x = memory_.x[i], &own_v = memory_.v[i];
              for (int axis = 0; axis < 3; ++axis) moved |= x[axis] != own_x[axis] || v[axis] != own_v[axis];
@@ -210,29 +211,29 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble) {
   // them.
   const CountedLoop counted(cloth_.largest_range_count());
   parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
-    const auto& [cloth, begin, end, number] = ranges[r];
-    if (!is_active_[cloth]) return;
+    const auto& [part, begin, end, number] = ranges[r];
+    if (!is_active_[part]) return;
     forces::Evaluation evaluation{memory_.x, memory_.v, forces::ForceRows(memory_.force, begin, end)};
     evaluation.rate = at.rate;
     evaluation.past = at.past;
     evaluation.range = number;
     evaluation.air_velocity = air_;
     if (assemble) {
-      if (cloth < memory_.locks.size()) evaluation.locks = &memory_.locks[cloth];
+      if (part < memory_.locks.size()) evaluation.locks = &memory_.locks[part];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, memory_.system.matrix, begin, end);
       memory_.assembly.start(begin, end, memory_.system.matrix);
     }
     std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::PaddedVec3<double>{});
-    cloth_.add_forces(cloth, evaluation);
+    cloth_.add_forces(part, evaluation);
   });
 }
 
 // Whether a particle of a part has moved too far from where the part's rows of the matrix were
 // assembled: for a cloth, farther than Numerics::Newton::stale_motion; for a frame, at all.
-bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
-  const solver::DiagonalBlock& part = memory_.system.blocks[cloth];
-  const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();
-  for (auto i = part.begin; i < part.end; ++i)
+bool StepProblem::is_stale(std::size_t part, std::span<const Vec3> x) const {
+  const solver::DiagonalBlock& block = memory_.system.blocks[part];
+  const double most = block.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();
+  for (auto i = block.begin; i < block.end; ++i)
     if (!((x[i] - memory_.linearised_at[i]).squaredNorm() <= most * most)) return true;
   return false;
 }
@@ -240,18 +241,18 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
 void StepProblem::assemble_rows(const integrator::StagePoint& at) {
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
-    solver::DiagonalBlock& part = memory_.system.blocks[c];
-    std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
+    solver::DiagonalBlock& block = memory_.system.blocks[c];
+    std::copy_n(at.x.begin() + block.begin, block.end - block.begin, memory_.linearised_at.begin() + block.begin);
     update_positions(c, at);
-    ++part.version;
+    ++block.version;
   }
   evaluate(at, true);
   for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!is_active_[c]) continue;
-    const solver::DiagonalBlock& part = memory_.system.blocks[c];
+    const solver::DiagonalBlock& block = memory_.system.blocks[c];
     const auto for_rows = [&](const auto& complete) {
-      parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-        complete(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end));
+      parallel_for(size_of(block), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+        complete(block.begin + static_cast<Index>(begin), block.begin + static_cast<Index>(end));
       });
     };
     for_rows([&](Index begin, Index end) { memory_.assembly.complete_pairs(begin, end, memory_.system.matrix); });

@@ -24,7 +24,7 @@ struct SolveMemory {
   solver::Assembly assembly;        ///< of the matrix in `system`
   double rate = 0;                  ///< StagePoint::rate for which system and assembly were filled [1/s]; 0: not set
   std::vector<Vec3> linearised_at;  ///< positions where each cloth's rows were assembled; empty: not assembled
-  collision::ContactLag contacts;
+  collision::ContactStates contacts;
   ClothSystem::LockLinearisations locks;  ///< empty before the first step
 
   // Internal forces of cloths. They are kept to save time: in a solve, most cloths converge before
@@ -99,10 +99,10 @@ class StepProblem final : public integrator::System {
   void restart_terms(const integrator::StagePoint& at);
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
-  bool update_positions(std::size_t cloth, const integrator::StagePoint& at);
+  bool update_positions(std::size_t part, const integrator::StagePoint& at);
   void evaluate(const integrator::StagePoint& at, bool assemble);
   void use_rate(double rate);
-  bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
+  bool is_stale(std::size_t part, std::span<const Vec3> x) const;
   template <class Add>
   void add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add);
   std::vector<Vec3> with_vertices(std::span<const Vec3> of_particles) const;

@@ -123,7 +123,7 @@ void release_frames(const model::Model& model, const ClothSystem& cloth, double 
 
 bool frames_are_constant(const model::Model& model, double t0, double t1) {
   return std::ranges::none_of(model.bodies, [&](const model::Body& body) {
-    return body.dynamics && is_held_until(*body.dynamics, t0) && (body.moving || !is_held_until(*body.dynamics, t1));
+    return body.dynamics && is_held_until(*body.dynamics, t0) && (body.may_move || !is_held_until(*body.dynamics, t1));
   });
 }
 

@@ -113,9 +113,9 @@ void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, st
     std::vector<collision::Triangle> triangles(surface.triangles.begin(), surface.triangles.end());
     for (collision::Triangle& t : triangles)
       for (Index& v : t) v -= surface.first_vertex;
-    const bool fresh = b < cloths && std::ranges::find(put_on, b) == put_on.end();
-    bodies.add(triangles, surface.vertex_count, {.deformable = fresh, .thickness = engine_.bodies()[b].thickness});
-    if (fresh)
+    const bool is_new = b < cloths && std::ranges::find(put_on, b) == put_on.end();
+    bodies.add(triangles, surface.vertex_count, {.deformable = is_new, .thickness = engine_.bodies()[b].thickness});
+    if (is_new)
       kinds.push_back(untangle::SurfaceKind::cloth);
     else if (b >= cloths)
       kinds.push_back(kind_of(model_.bodies[bodies_[b - cloths]]));
@@ -123,18 +123,18 @@ void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, st
       kinds.push_back(is_layer(model_, b, put_on) ? untangle::SurfaceKind::layer : untangle::SurfaceKind::open);
     for (std::size_t v = first; v < first + static_cast<std::size_t>(surface.vertex_count); ++v) {
       x.push_back(start.x[v]);
-      movable.push_back(fresh && model_.cloths[b].may_be_untangled() && is_held[v] == 0);
+      movable.push_back(is_new && model_.cloths[b].may_be_untangled() && is_held[v] == 0);
     }
     const std::vector<Vec3>& given = b < cloths ? model_.cloths[b].mesh.positions : rest;
-    if (fresh) rest.insert(rest.end(), given.begin(), given.end());
+    if (is_new) rest.insert(rest.end(), given.begin(), given.end());
   }
 
   const untangle::UntangleInput input(bodies, std::move(kinds), x, rest, movable);
   const untangle::Report report =
       untangle::untangle(input, {model_.contact.self, order.size() > cloths - put_on.size()}, x);
-  if (!report.locked.empty()) {
+  if (!report.locked_regions.empty()) {
     std::string regions;
-    for (const untangle::InsideRegion& region : report.locked) {
+    for (const untangle::InsideRegion& region : report.locked_regions) {
       regions += fmt::format("{}'{}' in '{}' around ({:.3g}, {:.3g}, {:.3g}) m, {:.3g} m across, ",
                              regions.empty() ? "" : "; ", names_[order[region.cloth]], names_[order[region.body]],
                              region.centre.x(), region.centre.y(), region.centre.z(), region.size);

@@ -125,7 +125,7 @@ void YieldingPins::pull(const integrator::HeldParticle& target, const integrator
                 std::min(pull_force_[pin] / static_cast<double>(lagging_particles_[pin]),
                          numerics.pins.most_acceleration * masses_[i]),
                 numerics.pins.acceleration * masses_[i]});
-  const double damping = max_force / std::max(numerics.newton.unseen_velocity(), speed.norm());
+  const double damping = max_force / std::max(numerics.newton.min_visible_velocity(), speed.norm());
   pulls_.push_back({particle, x[i], speed, 0, damping, x[i], speed});
 }
 
@@ -142,25 +142,25 @@ void YieldingPins::accept() {
     ++count;
     const std::size_t pin = pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
-    seen_.messages.push_back(fmt::format("{}: yields to {}, and lags behind until the way is free",
-                                         name_of(model_, pins_.info(pin)), obstructions_[pin]));
+    lag_report_.messages.push_back(fmt::format("{}: yields to {}, and lags behind until the way is free",
+                                               name_of(model_, pins_.info(pin)), obstructions_[pin]));
   }
-  seen_.particles = std::max(seen_.particles, count);
+  lag_report_.particles = std::max(lag_report_.particles, count);
   std::swap(lagged_, lags_);
   std::ranges::fill(released_, std::uint8_t{0});
   obstructions_.clear();
 }
 
-YieldingPins::Lags YieldingPins::take_lags() {
+YieldingPins::LagReport YieldingPins::take_lag_report() {
   for (std::size_t pin : lagging_before_) {
     const auto is_of_pin = [&](const auto& target) { return pin_of(target.constraint.particle) == pin; };
     const bool holds = std::ranges::any_of(targets_, is_of_pin);  // else it was released meanwhile
     if (lagging_.contains(pin) || !holds) continue;
-    seen_.messages.push_back(fmt::format("{}: is at its target again", name_of(model_, pins_.info(pin))));
+    lag_report_.messages.push_back(fmt::format("{}: is at its target again", name_of(model_, pins_.info(pin))));
   }
   lagging_before_ = std::move(lagging_);
   lagging_.clear();
-  return std::exchange(seen_, {});
+  return std::exchange(lag_report_, {});
 }
 
 void YieldingPins::copy_state_from(const YieldingPins& there, Index first_there, Index first, Index count) {
@@ -183,7 +183,7 @@ void YieldingPins::serialize(Archive& archive) {
   lagging_before_ = {before.begin(), before.end()};
   // Discards what belongs to a frame that has not ended.
   lagging_.clear();
-  seen_ = {};
+  lag_report_ = {};
   std::ranges::fill(released_, std::uint8_t{0});
   obstructions_.clear();
 }

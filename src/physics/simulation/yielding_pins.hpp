@@ -42,12 +42,12 @@ class YieldingPins {
   /// Accepts the step: particles that lag in it also lag in the next steps, until they reach their targets.
   void accept();
 
-  /// Lagging pins of the steps of a frame. take_lags() also begins the next frame.
-  struct Lags {
+  /// Lagging pins of the steps of a frame. take_lag_report() also begins the next frame.
+  struct LagReport {
     int particles = 0;                  ///< largest number of particles that lagged in one step
     std::vector<std::string> messages;  ///< one text per pin that began to lag or is at its target again
   };
-  Lags take_lags();
+  LagReport take_lag_report();
 
   /// Between two frames: copies which particles of one cloth lag. The cloth has `count` particles, which begin at
   /// `first_there` in `there` and at `first` in this object. Pins that `there` has reported are not reported again.
@@ -82,7 +82,7 @@ class YieldingPins {
   std::map<std::size_t, std::string> obstructions_;  // per pin: text of its first obstruction in this step
   double step_start_ = 0, step_length_ = 0;          // start and length of the last step that began [s]
   std::set<std::size_t> lagging_, lagging_before_;   // pins, in this frame and in the previous one
-  Lags seen_;
+  LagReport lag_report_;
 };
 
 }  // namespace weft::simulation

@@ -25,13 +25,13 @@ class TermBlocks {
  public:
   explicit TermBlocks(std::size_t count) : products(count, BlockMotions::Products::Zero()) {}
 
-  void add(std::span<const std::pair<int, TermForces>> of_parts, const Mat3& stiffness) {
+  void add(std::span<const std::pair<int, TermForces>> of_blocks, const Mat3& stiffness) {
     TermForces all = TermForces::Zero();
-    for (const auto& [part, of_part] : of_parts) all += of_part;
-    for (const auto& [row, of_row] : of_parts) {
+    for (const auto& [block_index, of_block] : of_blocks) all += of_block;
+    for (const auto& [row, of_row] : of_blocks) {
       const TermForces forces = of_row * stiffness;
       products[static_cast<std::size_t>(row)] += forces * all.bottomRows<kMaxMotions>().transpose();
-      for (const auto& [column, of_column] : of_parts)
+      for (const auto& [column, of_column] : of_blocks)
         if (column <= row) block(row, column) += forces * of_column.transpose();
     }
   }
@@ -66,10 +66,10 @@ class SelectionIndex {
 
 // Marks the motions of a diagonal block that are not independent of the directions before them as
 // not used.
-void BlockMotions::find_used(std::size_t part, const Block& block) {
+void BlockMotions::find_used(std::size_t block_index, const Block& block) {
   std::vector<int> used;
   for (int k = 0; k < kDirections; ++k) {
-    bool& is_used = is_used_[part][static_cast<std::size_t>(k)];
+    bool& is_used = is_used_[block_index][static_cast<std::size_t>(k)];
     if (is_used && k >= 3) {
       double shared = 0;
       if (!used.empty()) {
@@ -91,8 +91,8 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
   for (int k = 0; k < kDirections; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
   is_used_.assign(selected.size(), all);
   for (const ParticleConstraint& c : system.constraints)
-    if (const int part = numbers.of(c.particle); part >= 0)
-      std::fill_n(is_used_[static_cast<std::size_t>(part)].begin(), 3, false);
+    if (const int block_index = numbers.of(c.particle); block_index >= 0)
+      std::fill_n(is_used_[static_cast<std::size_t>(block_index)].begin(), 3, false);
 
   const auto directions_at = [&](Index particle) {
     TermForces result = TermForces::Zero();
@@ -105,30 +105,30 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
   const std::size_t count = term_count(system);
   std::vector<TermBlocks> of_chunks((count + kFineGrainSize - 1) / kFineGrainSize, TermBlocks(selected.size()));
   parallel_for(count, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::pair<int, TermForces>> of_parts;
+    std::vector<std::pair<int, TermForces>> of_blocks;
     for (std::size_t t = begin; t < end; ++t) {
       const AnyTerm term = term_at(system, t);
-      of_parts.clear();
+      of_blocks.clear();
       for (std::size_t k = 0; k < term.particles.size(); ++k) {
-        const int part = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
-        if (part < 0) continue;
-        auto entry = std::ranges::find(of_parts, part, &std::pair<int, TermForces>::first);
-        if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, TermForces::Zero()});
+        const int block_index = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
+        if (block_index < 0) continue;
+        auto entry = std::ranges::find(of_blocks, block_index, &std::pair<int, TermForces>::first);
+        if (entry == of_blocks.end()) entry = of_blocks.insert(entry, {block_index, TermForces::Zero()});
         entry->second += term.weights[k] * directions_at(term.particles[k]);
       }
-      of_chunks[begin / kFineGrainSize].add(of_parts, term.stiffness);
+      of_chunks[begin / kFineGrainSize].add(of_blocks, term.stiffness);
     }
   });
   TermBlocks terms(selected.size());
   for (const TermBlocks& of_chunk : of_chunks) terms.add(of_chunk);
   for (const RankOneTerm& term : system.rank_one_terms) {
-    const int part = numbers.of(term.begin);
-    if (part < 0) continue;
+    const int block_index = numbers.of(term.begin);
+    if (block_index < 0) continue;
     AlongMotions along = AlongMotions::Zero();
     for (std::size_t i = 0; i < term.direction.size(); ++i)
       along += directions_at(term.begin + static_cast<Index>(i)) * term.direction[i];
-    terms.block(part, part) += term.stiffness * along * along.transpose();
-    terms.products[static_cast<std::size_t>(part)] +=
+    terms.block(block_index, block_index) += term.stiffness * along * along.transpose();
+    terms.products[static_cast<std::size_t>(block_index)] +=
         term.stiffness * along * along.template tail<kMaxMotions>().transpose();
   }
 

@@ -43,7 +43,7 @@ class BlockMotions {
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;
 
  private:
-  void find_used(std::size_t part, const Eigen::Matrix<double, kDirections, kDirections>& block);
+  void find_used(std::size_t block_index, const Eigen::Matrix<double, kDirections, kDirections>& block);
 
   std::vector<std::array<bool, kDirections>> is_used_;  // per selected block
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;

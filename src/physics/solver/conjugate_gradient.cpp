@@ -123,9 +123,9 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
   // Without iterations, or if only rounding remains in the residual, the error counts as zero.
-  for (const Progress::BlockProgress& part : progress.blocks)
+  for (const Progress::BlockProgress& block : progress.blocks)
     report.errors.push_back(
-        part.gains.empty() || progress.is_exact ? 0 : std::sqrt(part.error_energy() * part.error_norm_ratio()));
+        block.gains.empty() || progress.is_exact ? 0 : std::sqrt(block.error_energy() * block.error_norm_ratio()));
   return report;
 }
 

@@ -56,8 +56,8 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sum
     for (std::size_t c = 0; c < constraints_.size(); ++c) {
       const Index particle = constraints_[c].particle;
       constraint_of_[at(particle)] = static_cast<Index>(c);
-      const auto part = std::ranges::find_if(blocks_, [&](const DiagonalBlock& rows) { return particle < rows.end; });
-      filters_[at(static_cast<Index>(part - blocks_.begin()))].push_back(
+      const auto block = std::ranges::find_if(blocks_, [&](const DiagonalBlock& rows) { return particle < rows.end; });
+      filters_[at(static_cast<Index>(block - blocks_.begin()))].push_back(
           {particle, PaddedMat3<Real>(constraints_[c].free)});
     }
   }
@@ -88,7 +88,7 @@ void Preconditioner<Real>::select(std::span<const std::size_t> blocks) {
   rows_ = RowChunks(ranges_of(blocks_, selected_), kGrainSize);
   for (Level& level : levels_) {
     std::vector<RowRange> ranges;
-    for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
+    for (std::size_t p : selected_) ranges.push_back(level.of_block[p]);
     // An aggregate costs more than a particle: it has about twelve members.
     level.chunks = RowChunks(ranges, kGrainSize / 4);
   }
@@ -97,21 +97,21 @@ void Preconditioner<Real>::select(std::span<const std::size_t> blocks) {
 template <class Real>
 bool Preconditioner<Real>::has_stiff_threads() const {
   if (system_->norm_weights.empty()) return false;
-  return std::ranges::any_of(blocks_of(*system_), [&](const DiagonalBlock& part) {
-    if (part.is_small) return false;
+  return std::ranges::any_of(blocks_of(*system_), [&](const DiagonalBlock& rows) {
+    if (rows.is_small) return false;
     const double norm_weights =
-        parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
+        parallel_sum(at(rows.end - rows.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
           double sum = 0;
-          for (std::size_t k = begin; k < end; ++k) sum += system_->norm_weights[at(part.begin) + k];
+          for (std::size_t k = begin; k < end; ++k) sum += system_->norm_weights[at(rows.begin) + k];
           return sum;
         });
     const auto stiff = [&](std::size_t i) {
       const double* block = system_->matrix.values().data() + 9 * at(system_->matrix.diagonal(static_cast<Index>(i)));
       return block[0] + block[4] + block[8] > numerics.linear.stiff_particle * norm_weights;
     };
-    return parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(at(rows.end - rows.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
              int any = 0;
-             for (std::size_t k = begin; k < end; ++k) any |= stiff(at(part.begin) + k) ? 1 : 0;
+             for (std::size_t k = begin; k < end; ++k) any |= stiff(at(rows.begin) + k) ? 1 : 0;
              return any;
            }) > 0;
   });
@@ -137,11 +137,11 @@ void Preconditioner<Real>::allocate_levels() {
     level.has_terms.assign(at(aggregates.count), 0);
     level.inverse.resize(at(aggregates.count));
     for (auto* v : {&level.residual, &level.correction}) v->assign(at(aggregates.count), PaddedVec3<Real>{});
-    level.of_part.clear();
-    for (const DiagonalBlock& part : blocks_) {
+    level.of_block.clear();
+    for (const DiagonalBlock& block : blocks_) {
       const auto [lowest, highest] =
-          std::minmax_element(level.aggregate_of.begin() + part.begin, level.aggregate_of.begin() + part.end);
-      level.of_part.push_back(part.begin == part.end ? RowRange{} : RowRange{at(*lowest), at(*highest) + 1});
+          std::minmax_element(level.aggregate_of.begin() + block.begin, level.aggregate_of.begin() + block.end);
+      level.of_block.push_back(block.begin == block.end ? RowRange{} : RowRange{at(*lowest), at(*highest) + 1});
     }
   }
   selected_.clear();
@@ -163,8 +163,8 @@ void Preconditioner<Real>::compute_weights() {
   std::vector<std::vector<Index>> neighbours(inverse_.size());
   // Each particle of a small diagonal block is an aggregate of its own, and interpolates from no other.
   std::vector<char> is_small(neighbours.size(), 0);
-  for (const DiagonalBlock& part : blocks_)
-    if (part.is_small) std::fill(is_small.begin() + part.begin, is_small.begin() + part.end, 1);
+  for (const DiagonalBlock& block : blocks_)
+    if (block.is_small) std::fill(is_small.begin() + block.begin, is_small.begin() + block.end, 1);
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s)
       if (full.columns[s] != static_cast<Index>(i) && is_small[i] == 0) neighbours[i].push_back(full.columns[s]);
@@ -236,18 +236,18 @@ void Preconditioner<Real>::invert_particles() {
 // Sums the stiffness of one diagonal block (its matrix without the mass part). A 3×3 block enters the finest aggregate
 // that contains its row and its column, and thus all coarser ones. If there is none, it enters the coarsest matrix.
 template <class Real>
-void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
+void Preconditioner<Real>::sum_aggregate_blocks(std::size_t index) {
   const std::size_t depth = levels_.size();
   for (Level& level : levels_)
-    for (std::size_t g = level.of_part[part].begin; g < level.of_part[part].end; ++g) level.of_matrix[g].setZero();
-  const auto first = static_cast<Eigen::Index>(3 * levels_.back().of_part[part].begin);
-  const auto last = static_cast<Eigen::Index>(3 * levels_.back().of_part[part].end);
+    for (std::size_t g = level.of_block[index].begin; g < level.of_block[index].end; ++g) level.of_matrix[g].setZero();
+  const auto first = static_cast<Eigen::Index>(3 * levels_.back().of_block[index].begin);
+  const auto last = static_cast<Eigen::Index>(3 * levels_.back().of_block[index].end);
   coarse_matrix_without_terms_.block(first, first, last - first, last - first).setZero();
   const std::vector<Index>& coarse_of = levels_.back().aggregate_of;
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
   const double stiffness_fraction =
-      interpolates_ && !blocks_[part].is_small ? std::pow(kLevelStiffness, static_cast<double>(depth)) : 1;
+      interpolates_ && !blocks_[index].is_small ? std::pow(kLevelStiffness, static_cast<double>(depth)) : 1;
   const auto add_to_coarse = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index coarse_i = coarse_of[at(i)], coarse_j = coarse_of[at(j)];
@@ -288,19 +288,19 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t part) {
       of_group.diagonal().array() += own_scalars[l];
     }
   };
-  parallel_for(at(last - first) / 3, 1, [&](std::size_t patch, std::size_t) {
-    for (Index i : members_of_coarse_[levels_.back().of_part[part].begin + patch]) sum_row(i);
+  parallel_for(at(last - first) / 3, 1, [&](std::size_t aggregate, std::size_t) {
+    for (Index i : members_of_coarse_[levels_.back().of_block[index].begin + aggregate]) sum_row(i);
   });
   for (std::size_t l = 1; l < depth; ++l)
-    for (std::size_t g = levels_[l - 1].of_part[part].begin; g < levels_[l - 1].of_part[part].end; ++g)
+    for (std::size_t g = levels_[l - 1].of_block[index].begin; g < levels_[l - 1].of_block[index].end; ++g)
       levels_[l].of_matrix[at(levels_[l - 1].parent[g])] += levels_[l - 1].of_matrix[g];
-  scale_sums(part);
+  scale_sums(index);
 }
 
 // Scales the sums of a diagonal block by the stiffness fraction of their level, and adds the parts that are the same on
 // all levels: the mass part, and the stiffness along held directions.
 template <class Real>
-void Preconditioner<Real>::scale_sums(std::size_t part) {
+void Preconditioner<Real>::scale_sums(std::size_t index) {
   const auto unscaled_block_of = [&](Index i) -> Mat3 {
     Mat3 unscaled = (system_->norm_weights.empty() ? 0 : system_->norm_weights[i]) * Mat3::Identity();
     if (is_free(i)) return unscaled;
@@ -311,10 +311,10 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   double stiffness_fraction = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    if (interpolates_ && !blocks_[part].is_small) stiffness_fraction *= kLevelStiffness;
-    const RowRange groups = level.of_part[part];
+    if (interpolates_ && !blocks_[index].is_small) stiffness_fraction *= kLevelStiffness;
+    const RowRange groups = level.of_block[index];
     const RowRange members =
-        l == 0 ? RowRange{at(blocks_[part].begin), at(blocks_[part].end)} : levels_[l - 1].of_part[part];
+        l == 0 ? RowRange{at(blocks_[index].begin), at(blocks_[index].end)} : levels_[l - 1].of_block[index];
     std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
     for (std::size_t m = members.begin; m < members.end; ++m)
       sums[at(system_->aggregate_levels[l].of[m]) - groups.begin] +=
@@ -324,7 +324,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
     unscaled = std::move(sums);
   }
   const Level& coarsest = levels_.back();
-  const RowRange groups = coarsest.of_part[part];
+  const RowRange groups = coarsest.of_block[index];
   for (std::size_t g = groups.begin; g < groups.end; ++g)
     coarse_matrix_without_terms_.block<3, 3>(static_cast<Eigen::Index>(3 * g), static_cast<Eigen::Index>(3 * g)) +=
         coarsest.of_matrix[g];
@@ -383,8 +383,8 @@ void Preconditioner<Real>::invert_aggregates() {
     }
     for (std::size_t p = 0; p < blocks_.size(); ++p)
       if (sums_changed_[p])
-        std::fill(needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].begin),
-                  needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].end), 1);
+        std::fill(needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_block[p].begin),
+                  needs_inverse.begin() + static_cast<std::ptrdiff_t>(level.of_block[p].end), 1);
     parallel_for(needs_inverse.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) {
         if (!needs_inverse[g]) continue;
@@ -456,13 +456,13 @@ void Preconditioner<Real>::correct_aggregates() {
   Level& coarsest = levels_.back();
   coarse_vector_.setZero(coarse_factor_.rows());
   for (std::size_t p : selected_)
-    for (std::size_t g = coarsest.of_part[p].begin; g < coarsest.of_part[p].end; ++g)
+    for (std::size_t g = coarsest.of_block[p].begin; g < coarsest.of_block[p].end; ++g)
       for (int k = 0; k < 3; ++k) coarse_vector_[static_cast<Eigen::Index>(3 * g) + k] = coarsest.residual[g][k];
   coarse_factor_.template triangularView<Eigen::Lower>().solveInPlace(coarse_vector_);
   coarse_factor_.template triangularView<Eigen::Lower>().adjoint().solveInPlace(coarse_vector_);
   for (std::size_t g = 0; g < coarsest.correction.size(); ++g) {
-    const Real* of_patch = coarse_vector_.data() + 3 * g;
-    coarsest.correction[g] = padded(of_patch[0], of_patch[1], of_patch[2]);
+    const Real* of_aggregate = coarse_vector_.data() + 3 * g;
+    coarsest.correction[g] = padded(of_aggregate[0], of_aggregate[1], of_aggregate[2]);
   }
   for (std::size_t l = levels_.size() - 1; l-- > 0;) {
     Level& level = levels_[l];

@@ -63,7 +63,7 @@ class Preconditioner {
     std::vector<Index> parent;              // per aggregate: its aggregate on the coarser level
     Weights<Real> interpolation;            // per member (a particle, or an aggregate of the finer level)
     Weights<Real> restriction;              // per aggregate: its members
-    std::vector<RowRange> of_part;          // aggregates of each diagonal block
+    std::vector<RowRange> of_block;         // aggregates of each diagonal block
     RowChunks chunks;                       // of aggregates, in the selected blocks
     std::vector<Mat3> of_matrix;            // per aggregate: scaled stiffness and mass part, no contact terms
     std::vector<char> has_terms;            // per aggregate: its `inverse` contains contact terms
@@ -74,8 +74,8 @@ class Preconditioner {
   void allocate_levels();
   void compute_weights();
   void find_common_levels();
-  void sum_aggregate_blocks(std::size_t part);
-  void scale_sums(std::size_t part);
+  void sum_aggregate_blocks(std::size_t index);
+  void scale_sums(std::size_t index);
   void mark_particles_with_terms();
   void invert_particles();
   /// A 3×3 block for each particle on which contact terms act.

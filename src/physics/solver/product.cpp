@@ -160,7 +160,7 @@ template <class Real>
 double Product<Real>::multiply(std::span<const PaddedVec3<Real>> p, std::span<PaddedVec3<Real>> q,
                                std::span<double> norms_sq) const {
   const auto sums = rows_.sums([&](std::size_t begin, std::size_t end) {
-    PaddedVec3<double> of_product{}, of_metric{};
+    PaddedVec3<double> of_product{}, of_norm{};
     for (std::size_t from = begin; from < end; from += kFineGrainSize) {
       const std::size_t to = std::min(from + kFineGrainSize, end);
       if constexpr (std::is_same_v<Real, float>)
@@ -169,14 +169,14 @@ double Product<Real>::multiply(std::span<const PaddedVec3<Real>> p, std::span<Pa
         system_->matrix.multiply(p, q, from, to);
       for (std::size_t i = from; i < to; ++i) of_product += products(p[i], q[i]);
       if (!norm_weights_.empty())
-        for (std::size_t i = from; i < to; ++i) of_metric += products(norm_weights_[i] * p[i], p[i]);
+        for (std::size_t i = from; i < to; ++i) of_norm += products(norm_weights_[i] * p[i], p[i]);
     }
-    return PaddedVec3<double>{sum_of_first_three(of_product), sum_of_first_three(of_metric), 0, 0};
+    return PaddedVec3<double>{sum_of_first_three(of_product), sum_of_first_three(of_norm), 0, 0};
   });
   double curvature = 0;
-  for (std::size_t part = 0; part < selected_.size(); ++part) {
-    curvature += sums[part][0];
-    norms_sq[part] = sums[part][1];
+  for (std::size_t k = 0; k < selected_.size(); ++k) {
+    curvature += sums[k][0];
+    norms_sq[k] = sums[k][1];
   }
   for (const ParticleBlock& term : terms_) {
     const PaddedVec3<Real> force = term.block * p[term.particle];
@@ -205,8 +205,9 @@ std::vector<Mat3> Product<Real>::row_sums() const {
     Sum& operator+=(const Sum& other) { return block += other.block, *this; }
   };
   std::vector<Mat3> result;
-  for (const std::size_t part : selected_) {
-    const auto first = static_cast<std::size_t>(blocks_[part].begin), end = static_cast<std::size_t>(blocks_[part].end);
+  for (const std::size_t block_index : selected_) {
+    const auto first = static_cast<std::size_t>(blocks_[block_index].begin),
+               end = static_cast<std::size_t>(blocks_[block_index].end);
     result.push_back(parallel_sum(end - first, kGrainSize, [&](std::size_t begin, std::size_t stop) {
                        Sum sum;
                        for (std::size_t row = first + begin; row < first + stop; ++row) sum.block += sum_of_row(row);

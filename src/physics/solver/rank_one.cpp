@@ -16,7 +16,7 @@ void RankOneTerms<Real>::prepare(const LinearSystem& system) {
     Term& term = terms_.emplace_back();
     term.begin = static_cast<std::size_t>(of_system.begin);
     const auto after = std::ranges::upper_bound(blocks, of_system.begin, {}, &DiagonalBlock::begin);
-    term.part = static_cast<std::size_t>(after - blocks.begin()) - 1;
+    term.block_index = static_cast<std::size_t>(after - blocks.begin()) - 1;
     term.stiffness = of_system.stiffness;
     for (const Vec3& d : of_system.direction) term.direction.push_back(padded<Real>(d));
     for (const ParticleConstraint& c : system.constraints) {
@@ -29,7 +29,7 @@ void RankOneTerms<Real>::prepare(const LinearSystem& system) {
 
 template <class Real>
 void RankOneTerms<Real>::select(std::span<const std::size_t> blocks) {
-  for (Term& term : terms_) term.is_selected = std::ranges::count(blocks, term.part) > 0;
+  for (Term& term : terms_) term.is_selected = std::ranges::count(blocks, term.block_index) > 0;
 }
 
 template <class Real>

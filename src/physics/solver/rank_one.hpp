@@ -38,7 +38,7 @@ class RankOneTerms {
 
  private:
   struct Term {
-    std::size_t begin = 0, part = 0;
+    std::size_t begin = 0, block_index = 0;
     double stiffness = 0;
     std::vector<PaddedVec3<Real>> direction;  // filtered by the constraints
     std::vector<PaddedVec3<Real>> inverse;    // w, where P includes the terms before

@@ -12,8 +12,8 @@
 namespace weft::solver {
 namespace {
 
-double absolute_goal(const LinearGoal& goal, std::size_t part) {
-  return goal.absolute.empty() ? 0 : goal.absolute[part];
+double absolute_goal(const LinearGoal& goal, std::size_t block_index) {
+  return goal.absolute.empty() ? 0 : goal.absolute[block_index];
 }
 
 template <class Real>
@@ -96,12 +96,12 @@ template <class Real>
 std::vector<double> Recurrence<Real>::dots(std::span<const PaddedVec3<Real>> a,
                                            std::span<const PaddedVec3<Real>> b) const {
   std::vector<double> result;
-  for (const PaddedVec3<double>&of_part : rows_.sums([&](std::size_t first, std::size_t end) {
+  for (const PaddedVec3<double>&of_block : rows_.sums([&](std::size_t first, std::size_t end) {
          PaddedVec3<double> of_chunk{};
          for (std::size_t i = first; i < end; ++i) of_chunk += products(a[i], b[i]);
          return of_chunk;
        }))
-    result.push_back(sum_of_first_three(of_part));
+    result.push_back(sum_of_first_three(of_block));
   return result;
 }
 
@@ -171,12 +171,12 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
     }
   });
   for (std::size_t k = 0; k < selected_.size(); ++k) {
-    Progress::BlockProgress& part = progress.blocks[selected_[k]];
+    Progress::BlockProgress& block = progress.blocks[selected_[k]];
     const double gain = alpha * rz_[k];
     const bool has_norm = !system_->norm_weights.empty() && gain > 0;
-    part.gains.push_back(gain);
-    part.norm_ratios.push_back(has_norm ? std::min(1.0, alpha * alpha * norms_sq_[k] / gain) : 1);
-    part.energy += gain;
+    block.gains.push_back(gain);
+    block.norm_ratios.push_back(has_norm ? std::min(1.0, alpha * alpha * norms_sq_[k] / gain) : 1);
+    block.energy += gain;
   }
   ++progress.iterations;
 }

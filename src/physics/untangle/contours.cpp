@@ -21,19 +21,19 @@ constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
 // in `cut`.
 std::vector<Index> label_islands(const UntangleInput& input, const std::set<std::array<Index, 2>>& cut) {
   std::vector<Index> island(static_cast<std::size_t>(input.particles()), -1);
-  std::vector<Index> open;
+  std::vector<Index> stack;
   Index count = 0;
   for (Index first = 0; first < input.particles(); ++first) {
     if (island[first] >= 0) continue;
     island[first] = count;
-    open.assign(1, first);
-    while (!open.empty()) {
-      const Index i = open.back();
-      open.pop_back();
+    stack.assign(1, first);
+    while (!stack.empty()) {
+      const Index i = stack.back();
+      stack.pop_back();
       for (const Index j : input.neighbours[i]) {
         if (island[j] >= 0 || cut.contains({std::min(i, j), std::max(i, j)})) continue;
         island[j] = count;
-        open.push_back(j);
+        stack.push_back(j);
       }
     }
     ++count;
@@ -49,10 +49,10 @@ struct CutPoint {
 
 struct Island {
   std::vector<Index> particles;
-  std::set<Index> beside;            // particles of other islands at the other ends of cut edges
-  std::vector<CutPoint> line;        // line of crossing that cuts the island off
-  std::set<Index> through;           // corners of the crossed triangles
-  std::optional<std::size_t> other;  // the crossed body; none if several are crossed, or only the island's own cloth
+  std::set<Index> adjacent_particles;  // particles of other islands at the other ends of cut edges
+  std::vector<CutPoint> line;          // line of crossing that cuts the island off
+  std::set<Index> crossed_vertices;    // corners of the crossed triangles
+  std::optional<std::size_t> other;    // the crossed body; none if several are crossed, or only the island's own cloth
 };
 
 const CutPoint& nearest(std::span<const CutPoint> line, const Vec3& p) {
@@ -176,7 +176,7 @@ std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::spa
 
 std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> all_crossings,
                                                     const collision::BroadPhase& surfaces,
-                                                    std::span<const double> above,
+                                                    std::span<const double> min_height,
                                                     const std::optional<CrossedPair>& only, std::span<const Vec3> x) {
   std::vector<Crossing> crossings;
   std::ranges::copy_if(all_crossings, std::back_inserter(crossings), [&](const Crossing& c) {
@@ -202,13 +202,13 @@ std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, 
     const Vec3 place = x[i] + c.fraction * (x[j] - x[i]);
     Vec3 normal = collision::face_normal(t, x);
     if (normal.dot(x[j] - x[i]) < 0) normal = -normal;
-    const CrossedPair through = crossed_pair_of(input, c);
+    const CrossedPair crossed_pair = crossed_pair_of(input, c);
     for (const auto& [inner, outer, sign] : {std::tuple{i, j, 1.0}, {j, i, -1.0}}) {
       Island& island = islands[island_of[inner]];
-      island.beside.insert(outer);
+      island.adjacent_particles.insert(outer);
       island.line.push_back({place, sign * normal});
-      island.through.insert(t.begin(), t.end());
-      island.other = through.other;
+      island.crossed_vertices.insert(t.begin(), t.end());
+      island.other = crossed_pair.other;
     }
   }
 
@@ -221,14 +221,14 @@ std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, 
   for (const Index p : order) {
     Island& island = islands[p];
     const bool stays = largest[whole[island.particles.front()]] == p || island.line.empty() ||
-                       std::ranges::any_of(island.through, has_moved) ||
-                       std::ranges::any_of(island.beside, has_moved) ||
+                       std::ranges::any_of(island.crossed_vertices, has_moved) ||
+                       std::ranges::any_of(island.adjacent_particles, has_moved) ||
                        std::ranges::any_of(island.particles, [&](Index i) { return !input.movable[i]; });
     if (stays) continue;
     const std::size_t cloth = input.bodies.body_of(island.particles.front());
-    const double height = above[cloth];
+    const double height = min_height[cloth];
     const auto is_other = [&](Index v) { return input.bodies.body_of(v) == island.other; };
-    if (island.other == cloth || !std::ranges::all_of(island.through, is_other)) island.other.reset();
+    if (island.other == cloth || !std::ranges::all_of(island.crossed_vertices, is_other)) island.other.reset();
     std::vector<Move> moves = best_moves(input, island, height, surfaces, x);
     for (const Move& move : moves) moved[move.particle] = 1;
     if (!moves.empty()) all.push_back(std::move(moves));
@@ -252,11 +252,11 @@ void shorten_contours(const UntangleInput& input, std::span<const Crossing> cros
     Vec3 gradient = Vec3::Zero();
     for (const Index triangle : edge.triangles) {
       if (triangle < 0) continue;
-      const collision::Triangle& beside = input.bodies.triangles()[triangle];
-      Index third = beside[0];
-      for (const Index v : beside)
+      const collision::Triangle& adjacent_triangle = input.bodies.triangles()[triangle];
+      Index third = adjacent_triangle[0];
+      for (const Index v : adjacent_triangle)
         if (v != i && v != j) third = v;
-      Vec3 r = collision::face_normal(beside, x).cross(n).stableNormalized();
+      Vec3 r = collision::face_normal(adjacent_triangle, x).cross(n).stableNormalized();
       const Vec3 arm = x[third] - x[i];
       if (r.dot(arm - arm.dot(e) * e) < 0) r = -r;
       gradient += r - 2 * e.dot(r) / across * n;
@@ -276,7 +276,8 @@ void shorten_contours(const UntangleInput& input, std::span<const Crossing> cros
 }
 
 void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
-                        std::span<const ForbiddenRegion> solids, std::span<const double> above, std::span<Vec3> x) {
+                        std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
+                        std::span<Vec3> x) {
   const auto raise = [&](const ForbiddenRegion& solid, std::span<const Index> corners, std::span<const double> weights,
                          double height) {
     Vec3 p = Vec3::Zero();
@@ -285,7 +286,7 @@ void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> cr
       p += weights[k] * x[corners[k]];
       sum_sq += input.movable[corners[k]] ? weights[k] * weights[k] : 0;
     }
-    const ForbiddenRegion::Exit exit = solid.exit(p);
+    const ForbiddenRegion::Exit exit = solid.find_exit(p);
     if (exit.height >= height || sum_sq == 0) return;
     for (std::size_t k = 0; k < corners.size(); ++k)
       if (input.movable[corners[k]]) x[corners[k]] += (height - exit.height) * weights[k] / sum_sq * exit.normal;
@@ -300,14 +301,14 @@ void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> cr
     const auto solid = std::ranges::find(solids, body, &ForbiddenRegion::number);
     if (cloth_edge) {
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
-        raise(*solid, edge, std::array{1 - fraction, fraction}, above[cloth]);
+        raise(*solid, edge, std::array{1 - fraction, fraction}, min_height[cloth]);
     } else {
-      // An edge of the body crosses a triangle of cloth. Raise the crossing point higher than `above` by the length of
-      // the shorter part of the edge, but at most by half the longest side of the triangle.
+      // An edge of the body crosses a triangle of cloth. Raise the crossing point higher than `min_height` by the
+      // length of the shorter part of the edge, but at most by half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =
           std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});
-      raise(*solid, t, c.weights, above[cloth] + std::min(out, 0.5 * longest));
+      raise(*solid, t, c.weights, min_height[cloth] + std::min(out, 0.5 * longest));
     }
   }
 }

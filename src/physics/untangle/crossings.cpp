@@ -44,17 +44,17 @@ CrossingFinder::CrossingFinder(const UntangleInput& input, std::span<const Vec3>
   const collision::Bodies& bodies = input.bodies;
   for (std::size_t a = 0; a < bodies.size() && bodies[a].deformable; ++a)
     for (std::size_t b = a; b < bodies.size(); ++b)
-      if (bodies[b].deformable ? self : obstacles) wanted_.push_back({a, b});
+      if (bodies[b].deformable ? self : obstacles) tested_body_pairs_.push_back({a, b});
 }
 
 void CrossingFinder::collect(std::span<const Vec3> x, double margin) {
   for (std::size_t b = 0; b < input_.bodies.size(); ++b) broad_phase_.refit(b, x, x, margin);
   candidates_.clear();
-  for (const auto& [a, b] : wanted_)
+  for (const auto& [a, b] : tested_body_pairs_)
     a == b ? broad_phase_.self_pairs(a, candidates_) : broad_phase_.pairs(a, b, candidates_);
 }
 
-std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Vec3> x, double distance) {
+std::span<const collision::TrianglePair> CrossingFinder::find_near_pairs(std::span<const Vec3> x, double distance) {
   collect(x, 0.5 * distance);
   return candidates_.apart.view();
 }
@@ -78,15 +78,15 @@ std::span<const Crossing> CrossingFinder::find(std::span<const Vec3> x) {
   collect(x, 0);
   crossings_.clear();
   pairs_ = 0;
-  const auto both = [&](Index a, Index b, Index shared) {
+  const auto test_pair = [&](Index a, Index b, Index shared) {
     const bool first = test(a, b, shared, x), second = test(b, a, shared, x);
     pairs_ += first || second;
   };
-  for (const auto& [a, b] : candidates_.apart) both(a, b, -1);
+  for (const auto& [a, b] : candidates_.apart) test_pair(a, b, -1);
   for (const auto& [a, b] : candidates_.one_shared) {
     const auto& corners = input_.bodies.triangles()[b];
     for (const Index v : input_.bodies.triangles()[a])
-      if (std::ranges::find(corners, v) != corners.end()) both(a, b, v);
+      if (std::ranges::find(corners, v) != corners.end()) test_pair(a, b, v);
   }
   const auto key = [](const Crossing& c) { return std::tie(c.edge, c.triangle); };
   std::ranges::stable_sort(crossings_, {}, key);

@@ -35,7 +35,7 @@ class CrossingFinder {
 
   /// Pairs of triangles without a common vertex, of the surfaces that find() tests, whose bounding boxes overlap if
   /// enlarged by `distance` / 2 [m] on each side.
-  std::span<const collision::TrianglePair> near(std::span<const Vec3> x, double distance);
+  std::span<const collision::TrianglePair> find_near_pairs(std::span<const Vec3> x, double distance);
 
   const collision::BroadPhase& surfaces() const { return broad_phase_; }
 
@@ -45,7 +45,7 @@ class CrossingFinder {
 
   const UntangleInput& input_;
   collision::BroadPhase broad_phase_;
-  std::vector<std::array<std::size_t, 2>> wanted_;  // pairs of bodies to test
+  std::vector<std::array<std::size_t, 2>> tested_body_pairs_;  // pairs of bodies to test
   collision::CandidatePairs candidates_;
   std::vector<Crossing> crossings_;
   int pairs_ = 0;

@@ -33,9 +33,10 @@ ForbiddenRegion::ForbiddenRegion(const collision::BroadPhase& surfaces, std::siz
     place_ = x[surface.triangles.front()[0]];
     return;
   }
-  const double above = kProbeOffset * box_.diagonal().norm();
+  const double offset = kProbeOffset * box_.diagonal().norm();
   for (const collision::Triangle& t : surface.triangles)
-    buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
+    is_inside_other_shell_.push_back(
+        contains((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + offset * collision::face_normal(t, x)));
 }
 
 ForbiddenRegion::ForbiddenRegion(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
@@ -50,7 +51,7 @@ ForbiddenRegion::ForbiddenRegion(const collision::BroadPhase& surfaces, std::siz
     Vec3 away = (centre - box_.center()).stableNormalized();
     double nearest = std::numeric_limits<double>::infinity();
     for (const ForbiddenRegion& body : below) {
-      const Exit exit = body.exit(centre);
+      const Exit exit = body.find_exit(centre);
       if (std::abs(exit.height) >= nearest) continue;
       nearest = std::abs(exit.height);
       away = exit.normal;
@@ -66,7 +67,7 @@ bool ForbiddenRegion::is_near(const Vec3& p, double distance) const {
 }
 
 // Returns where the segment from p to p + `way` crosses faces, in the order along the segment.
-std::vector<ForbiddenRegion::Hit> ForbiddenRegion::hits(const Vec3& p, const Vec3& way) const {
+std::vector<ForbiddenRegion::Hit> ForbiddenRegion::find_hits(const Vec3& p, const Vec3& way) const {
   const collision::Surface& surface = surfaces_.surface(number_);
   std::vector<Index> numbers;
   surfaces_.triangles_in_box(number_, p.cwiseMin(p + way), p.cwiseMax(p + way), numbers);
@@ -88,12 +89,12 @@ std::vector<ForbiddenRegion::Hit> ForbiddenRegion::hits(const Vec3& p, const Vec
   return found;
 }
 
-bool ForbiddenRegion::inside(const Vec3& p) const {
+bool ForbiddenRegion::contains(const Vec3& p) const {
   if (kind_ == SurfaceKind::floor) return normal_.dot(p - place_) < 0;
   if (kind_ == SurfaceKind::layer) return exit_of_layer(p).height < 0;
   if (!box_.contains(p)) return false;
   int turns = 0;
-  for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRayDirection)) turns += hit.winding;
+  for (const Hit& hit : find_hits(p, 1.01 * box_.diagonal().norm() * kRayDirection)) turns += hit.winding;
   return turns < 0;
 }
 
@@ -110,7 +111,7 @@ ForbiddenRegion::Exit ForbiddenRegion::exit_of_layer(const Vec3& p) const {
   return {place, arm.isZero() ? Vec3(outer_sign_ * point.normal) : arm.normalized(), arm.norm()};
 }
 
-ForbiddenRegion::Exit ForbiddenRegion::exit(const Vec3& p) const {
+ForbiddenRegion::Exit ForbiddenRegion::find_exit(const Vec3& p) const {
   if (kind_ == SurfaceKind::layer) return exit_of_layer(p);
   if (kind_ == SurfaceKind::floor) {
     const double height = normal_.dot(p - place_);
@@ -121,7 +122,7 @@ ForbiddenRegion::Exit ForbiddenRegion::exit(const Vec3& p) const {
   surfaces_.nearest_triangles(
       number_, p,
       [&](Index number) {
-        if (buried_[number - surface.first_triangle]) return std::numeric_limits<double>::infinity();
+        if (is_inside_other_shell_[number - surface.first_triangle]) return std::numeric_limits<double>::infinity();
         const collision::Triangle& t = surface.triangles[number - surface.first_triangle];
         return collision::closest_vertex_face(p, x_[t[0]], x_[t[1]], x_[t[2]]).distance_sq;
       },
@@ -130,8 +131,8 @@ ForbiddenRegion::Exit ForbiddenRegion::exit(const Vec3& p) const {
   for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
   collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
   const Vec3 place = p - point.height * point.normal;
-  // If shells cross near p, the sign of `point.height` may be wrong, so inside() decides.
-  const double side = inside(p) ? -1 : 1;
+  // If shells cross near p, the sign of `point.height` may be wrong, so contains() decides.
+  const double side = contains(p) ? -1 : 1;
   if (side * point.height < 0) point.normal = -point.normal;
   return {place, point.normal, side * std::abs(point.height)};
 }
@@ -143,7 +144,7 @@ double ForbiddenRegion::distance_out(const Vec3& p, const Vec3& d) const {
   }
   const double length = 1.01 * box_.diagonal().norm();
   int depth = 0, shells = 0;
-  const std::vector<Hit> found = hits(p, length * d);
+  const std::vector<Hit> found = find_hits(p, length * d);
   if (kind_ == SurfaceKind::layer) {
     for (const Hit& hit : found)
       if (hit.winding < 0) return length * hit.fraction;
@@ -160,7 +161,7 @@ double ForbiddenRegion::distance_out(const Vec3& p, const Vec3& d) const {
 
 double ForbiddenRegion::midpoint_depth(const Vec3& p, const Vec3& q) const {
   const Vec3 middle = 0.5 * (p + q);
-  return inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
+  return contains(middle) ? -find_exit(middle).height / (p - q).norm() : 0;
 }
 
 }  // namespace weft::untangle

@@ -30,7 +30,7 @@ class ForbiddenRegion {
   /// `distance` above it. If false, p is outside a body or floor by more than `distance`, but may be behind a layer.
   bool is_near(const Vec3& p, double distance) const;
   /// Whether p is inside. Uses the winding number for a body, so that points in several of its shells are inside.
-  bool inside(const Vec3& p) const;
+  bool contains(const Vec3& p) const;
 
   /// The nearest point of the outer surface to a point p. Faces inside of another shell do not belong to the outer
   /// surface.
@@ -40,13 +40,13 @@ class ForbiddenRegion {
     Vec3 place, normal;
     double height;  ///< signed distance of p from `place` [m], negative inside
   };
-  Exit exit(const Vec3& p) const;
+  Exit find_exit(const Vec3& p) const;
   /// Distance from p, which is inside, along the unit direction d to the point where the ray leaves the region [m]; for
   /// a floor or layer, infinite if the ray does not leave the region.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; always false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const {
-    return kind_ != SurfaceKind::floor && !hits(p, q - p).empty();
+    return kind_ != SurfaceKind::floor && !find_hits(p, q - p).empty();
   }
   /// Depth of the midpoint of the segment from p to q inside the region, divided by the length of
   /// the segment; 0 if the midpoint is outside. Examples: 0.21 for a chord of a quarter circle, 0.5
@@ -58,7 +58,7 @@ class ForbiddenRegion {
     double fraction;  // of the segment, from its start to the crossing
     int winding;      // +1 into the region, −1 out of it
   };
-  std::vector<Hit> hits(const Vec3& p, const Vec3& way) const;
+  std::vector<Hit> find_hits(const Vec3& p, const Vec3& way) const;
   Exit exit_of_layer(const Vec3& p) const;
 
   const collision::BroadPhase& surfaces_;
@@ -67,7 +67,7 @@ class ForbiddenRegion {
   std::span<const Vec3> x_;
   Box3 box_;
   Vec3 normal_ = Vec3::UnitZ(), place_ = Vec3::Zero();  // of a floor
-  std::vector<std::uint8_t> buried_;                    // per triangle: whether it is inside another shell
+  std::vector<std::uint8_t> is_inside_other_shell_;     // per triangle: whether it is inside another shell
   std::span<const std::uint8_t> on_border_;             // of a layer, per vertex
   int outer_sign_ = 1;                                  // of a layer: −1 if its back is its outer side
 };

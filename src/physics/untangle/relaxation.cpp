@@ -15,22 +15,22 @@ constexpr std::size_t kParticlesPerTask = 256;
 
 }  // namespace
 
-void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
+void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
            std::span<Vec3> x) {
   parallel_for(static_cast<std::size_t>(input.particles()), kParticlesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!input.movable[i]) continue;
-      const double height = above[input.bodies.body_of(static_cast<Index>(i))];
+      const double height = min_height[input.bodies.body_of(static_cast<Index>(i))];
       for (const ForbiddenRegion& solid : solids) {
         if (!solid.is_near(x[i], height)) continue;
-        const ForbiddenRegion::Exit exit = solid.exit(x[i]);
+        const ForbiddenRegion::Exit exit = solid.find_exit(x[i]);
         if (exit.height < height) x[i] = exit.place + height * exit.normal;
       }
     }
   });
 }
 
-void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> above,
+void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
            int sweeps, std::span<Vec3> x) {
   for (int sweep = 1; sweep <= sweeps; ++sweep) {
     for (const UntangleInput::Link& link : input.links) {
@@ -45,7 +45,7 @@ void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, 
       if (input.movable[link.i]) x[link.i] += push;
       if (input.movable[link.j]) x[link.j] -= push;
     }
-    if (sweep % kSweepsPerRaise == 0 || sweep == sweeps) raise(input, solids, above, x);
+    if (sweep % kSweepsPerRaise == 0 || sweep == sweeps) raise(input, solids, min_height, x);
   }
 }
 

@@ -53,7 +53,7 @@ class Untangling {
   Untangling(const UntangleInput& input, const Options& options, std::span<Vec3> x)
       : input_(input), x_(x), start_(x.begin(), x.end()), finder_(input, x, options.self, options.obstacles) {
     for (std::size_t b = 0; b < input.bodies.size(); ++b) {
-      above_.push_back(kHeightInThicknesses * input.thickness[b]);
+      min_height_.push_back(kHeightInThicknesses * input.thickness[b]);
       const bool solid = input.kinds[b] == SurfaceKind::solid || input.kinds[b] == SurfaceKind::floor;
       if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, input.kinds[b], x);
     }
@@ -86,23 +86,23 @@ class Untangling {
   // Moves the regions of cloth that are inside solids out of them. If a region is locked, restores
   // the start and returns false.
   bool move_out_of_solids() {
-    for (int pass = 0; pass < kMaxPasses && report_.locked.empty(); ++pass) {
+    for (int pass = 0; pass < kMaxPasses && report_.locked_regions.empty(); ++pass) {
       std::vector<InsideRegion> regions;
       for (const ForbiddenRegion& solid : solids_) {
-        for (InsideRegion& region : find_inside(input_, solid, above_, x_)) {
-          const bool shallow = region.farthest < kShallowDepth * above_[region.cloth];
+        for (InsideRegion& region : find_inside(input_, solid, min_height_, x_)) {
+          const bool shallow = region.farthest < kShallowDepth * min_height_[region.cloth];
           const bool free = !region.moves.empty() && region.farthest <= kMaxDisplacementRatio * region.size &&
                             region.blocked <= kMaxBlockedFraction;
-          (shallow || free ? regions : report_.locked).push_back(std::move(region));
+          (shallow || free ? regions : report_.locked_regions).push_back(std::move(region));
         }
       }
-      if (regions.empty() || !report_.locked.empty()) break;
+      if (regions.empty() || !report_.locked_regions.empty()) break;
       for (const InsideRegion& region : regions) apply(region.moves);
-      relax(input_, solids_, above_, kSweepsAfterMove, x_);
+      relax(input_, solids_, min_height_, kSweepsAfterMove, x_);
       for (InsideRegion& region : regions)
-        if (is_overstretched(region)) report_.locked.push_back(std::move(region));
+        if (is_overstretched(region)) report_.locked_regions.push_back(std::move(region));
     }
-    if (report_.locked.empty()) return true;
+    if (report_.locked_regions.empty()) return true;
     std::ranges::copy(start_, x_.begin());
     report_.pairs_after = report_.pairs_before;
     return false;
@@ -139,7 +139,7 @@ class Untangling {
     const auto move = [&](const collision::Triangle& corners, const Vec3& along) {
       for (const Index v : corners) normals[v] += along;
     };
-    for (const collision::TrianglePair& pair : finder_.near(x_, kTouchDistance)) {
+    for (const collision::TrianglePair& pair : finder_.find_near_pairs(x_, kTouchDistance)) {
       const collision::CornerPair corners{input_.bodies.triangles()[pair.a], input_.bodies.triangles()[pair.b]};
       if (input_.bodies.body_of(corners.a[0]) == input_.bodies.body_of(corners.b[0])) continue;
       if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
@@ -165,9 +165,9 @@ class Untangling {
     fewest_pairs_ = finder_.pairs();
     for (int waited = 0, smoothings = 0; report_.rounds < kMaxRounds && fewest_pairs_ > 0; ++report_.rounds) {
       if (waited == 0 && move_islands()) continue;
-      push_out_of_solids(input_, crossings_, solids_, above_, x_);
+      push_out_of_solids(input_, crossings_, solids_, min_height_, x_);
       shorten_contours(input_, crossings_, step_, x_);
-      relax(input_, solids_, above_, kSweeps, x_);
+      relax(input_, solids_, min_height_, kSweeps, x_);
       find();
       waited = keep_if_better() ? 0 : waited + 1;
       if (waited < kPatience) continue;
@@ -188,7 +188,7 @@ class Untangling {
       bool any = false;
       for (const std::vector<Move>& moves : islands) any = apply(moves) || any;
       if (!any) return false;
-      relax(input_, solids_, above_, kSweepsAfterMove, x_);
+      relax(input_, solids_, min_height_, kSweepsAfterMove, x_);
       find();
       if (keep_if_better()) return true;
       std::ranges::copy(before, x_.begin());
@@ -196,7 +196,7 @@ class Untangling {
       return false;
     };
     const auto islands_of = [&](const std::optional<CrossedPair>& only) {
-      return move_cut_off_islands(input_, crossings_, finder_.surfaces(), above_, only, x_);
+      return move_cut_off_islands(input_, crossings_, finder_.surfaces(), min_height_, only, x_);
     };
     if (try_moves(islands_of(std::nullopt))) return true;
     for (const CrossedPair& only : list_crossed_pairs(input_, crossings_)) {
@@ -219,7 +219,7 @@ class Untangling {
       around.insert(around.end(), {edge[0], edge[1], t[0], t[1], t[2]});
     }
     smooth(input_, around, 1 + smoothings, 4 * smoothings, x_);
-    relax(input_, solids_, above_, kSweepsAfterMove, x_);
+    relax(input_, solids_, min_height_, kSweepsAfterMove, x_);
     find();
     keep_if_better();
   }
@@ -246,7 +246,7 @@ class Untangling {
     for (const double thickness : input_.thickness) max_gap = std::max(max_gap, kGapInThicknesses * thickness);
     for (int round = 0; round < kMaxGapRounds; ++round) {
       int close = 0;
-      for (const collision::TrianglePair& pair : finder_.near(x_, max_gap)) {
+      for (const collision::TrianglePair& pair : finder_.find_near_pairs(x_, max_gap)) {
         const collision::CornerPair corners{input_.bodies.triangles()[pair.a], input_.bodies.triangles()[pair.b]};
         close += push(corners);
       }
@@ -292,8 +292,8 @@ class Untangling {
   std::vector<Vec3> start_;
   CrossingFinder finder_;
   std::vector<ForbiddenRegion> solids_;
-  std::vector<double> above_;  // per body: height over other surfaces to which its cloth is moved [m]
-  double step_ = 0;            // maximum displacement by shorten_contours() [m]
+  std::vector<double> min_height_;  // per body: height over other surfaces to which its cloth is moved [m]
+  double step_ = 0;                 // maximum displacement by shorten_contours() [m]
   std::vector<Crossing> crossings_;
   std::vector<Vec3> best_x_;  // state with the fewest crossing pairs
   int fewest_pairs_ = 0;      // number of these pairs

@@ -27,8 +27,8 @@ struct Report {
   int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
   int rounds = 0;                         ///< number of rounds that tried to reduce the number of crossings
   double farthest = 0;                    ///< largest displacement of a particle [m]
-  double stretch = 0;                ///< largest excess of a thread over its maximum length, relative to that length
-  std::vector<InsideRegion> locked;  ///< regions without a way out; if there are any, nothing was moved
+  double stretch = 0;  ///< largest excess of a thread over its maximum length, relative to that length
+  std::vector<InsideRegion> locked_regions;  ///< regions without a way out; if there are any, nothing was moved
 };
 
 /// Moves particles in x [m] until no triangle of cloth crosses another triangle (`options` select which kinds of pairs

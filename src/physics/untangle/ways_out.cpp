@@ -94,10 +94,11 @@ std::vector<Index> mesh_of(const UntangleInput& input, Index first) {
 }  // namespace
 
 std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
-                                      std::span<const double> above, std::span<const Vec3> x) {
+                                      std::span<const double> min_height, std::span<const Vec3> x) {
   const Index particles = input.particles();
   std::vector<std::uint8_t> inside(particles, 0);
-  for (Index i = 0; i < particles; ++i) inside[i] = input.can_move[input.bodies.body_of(i)] != 0 && solid.inside(x[i]);
+  for (Index i = 0; i < particles; ++i)
+    inside[i] = input.can_move[input.bodies.body_of(i)] != 0 && solid.contains(x[i]);
   std::vector<Index> move_of(x.size(), -1);  // per vertex: index among the moves of the present region
   std::vector<InsideRegion> regions;
   for (Index first = 0; first < particles; ++first) {
@@ -125,9 +126,9 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
     region.centre = box.center();
     region.size = box.sizes().maxCoeff();
 
-    const double height = above[region.cloth];
+    const double height = min_height[region.cloth];
     double best = std::numeric_limits<double>::infinity();
-    const auto consider = [&](const std::function<Vec3(const Vec3&)>& out_of) {
+    const auto try_moves = [&](const std::function<Vec3(const Vec3&)>& out_of) {
       std::vector<Move> moves;
       double farthest = 0;
       for (const Index i : members) {
@@ -147,13 +148,13 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
       region.farthest = farthest;
       region.moves = std::move(moves);
     };
-    consider([&](const Vec3& p) -> Vec3 {
-      const ForbiddenRegion::Exit exit = solid.exit(p);
+    try_moves([&](const Vec3& p) -> Vec3 {
+      const ForbiddenRegion::Exit exit = solid.find_exit(p);
       return exit.place + height * exit.normal;
     });
-    // Considers a move of the region's whole mesh along d. All its particles must be movable. The move must take the
+    // Tries a move of the region's whole mesh along d. All its particles must be movable. The move must take the
     // region out of the body, take no particle into it, and leave no thread blocked.
-    const auto consider_whole_mesh = [&](const Vec3& d) {
+    const auto try_whole_mesh = [&](const Vec3& d) {
       double way = 0;
       for (const Index i : members) way = std::max(way, solid.distance_out(x[i], d) + height);
       const double whole = kWholeMeshCost + kDisplacementCost * way / std::max(region.size, height);
@@ -162,7 +163,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
       std::size_t through = 0;
       for (const Index i : mesh_of(input, members.front())) {
         const Vec3 target = x[i] + way * d;
-        if (!input.movable[i] || solid.inside(target)) return;
+        if (!input.movable[i] || solid.contains(target)) return;
         through += move_of[i] < 0 && solid.crosses_surface(x[i], target);
         moves.push_back({i, target});
       }
@@ -180,9 +181,9 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
     const Vec3 normal = mean_normal(input.bodies.surfaces()[region.cloth], move_of, x);
     if (!normal.isZero()) ways.insert(ways.begin(), {normal, -normal});
     for (const Vec3& d : ways)
-      consider([&](const Vec3& p) -> Vec3 { return p + (solid.distance_out(p, d) + height) * d; });
+      try_moves([&](const Vec3& p) -> Vec3 { return p + (solid.distance_out(p, d) + height) * d; });
     if (best > kWholeMeshCost) {
-      for (const Vec3& d : ways) consider_whole_mesh(d);
+      for (const Vec3& d : ways) try_whole_mesh(d);
     }
     for (const Index i : members) move_of[i] = -1;
     regions.push_back(std::move(region));

@@ -24,10 +24,10 @@ class BeforeATurningBlade : public ::testing::TestWithParam<double> {
         x_t0_.push_back(x + y * Vec3::UnitY());
     for (const Vec3& x : {Vec3(-0.3, 0, -0.1), Vec3(0.3, 0, -0.1), Vec3(0.3, 0, 0.1)}) x_t0_.push_back(x);
     const double angle = GetParam();
-    blade_.turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
-    blade_.shift = Vec3(0.02, 0, 0);
+    blade_.rotation = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+    blade_.translation = Vec3(0.02, 0, 0);
     x_t1_ = x_t0_;
-    for (int v = 6; v < 9; ++v) x_t1_[v] = blade_.turn * x_t0_[v] + blade_.shift;
+    for (int v = 6; v < 9; ++v) x_t1_[v] = blade_.rotation * x_t0_[v] + blade_.translation;
     carried_ = CarriedStarts(6, kBodyOf);
     carried_.begin_step(x_t0_, x_t1_, std::vector<RigidMotion>{{}, {}, blade_});
   }
@@ -40,11 +40,11 @@ class BeforeATurningBlade : public ::testing::TestWithParam<double> {
 };
 
 TEST_P(BeforeATurningBlade, ClothThatIsCarriedAlongIsApartThroughout) {
-  for (int v = 0; v < 6; ++v) x_t1_[v] = blade_.turn * x_t0_[v] + blade_.shift;
+  for (int v = 0; v < 6; ++v) x_t1_[v] = blade_.rotation * x_t0_[v] + blade_.translation;
   for (const CornerPair& pair : {kInner, kOuter}) {
     const auto seen = find_separating_plane(pair, carried_.of(pair, x_t0_), x_t1_);
     ASSERT_TRUE(seen);
-    EXPECT_NEAR(std::abs(seen->dot(blade_.turn.col(1))), 1, 1e-6) << "a plane that turns with the blade";
+    EXPECT_NEAR(std::abs(seen->dot(blade_.rotation.col(1))), 1, 1e-6) << "a plane that turns with the blade";
     EXPECT_FALSE(separates(*seen, pair, x_t0_, x_t1_)) << "one that keeps its direction does not";
   }
 }
@@ -60,7 +60,7 @@ TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
   const SeparationReport report = separation.enforce(x_t0_, x_t1_, movable, &pinched, &carried_);
   EXPECT_TRUE(report.separated);
   EXPECT_TRUE(pinched.empty());
-  for (const CornerPair& pair : {kInner, kOuter}) EXPECT_GT(gap_along(blade_.turn.col(1), pair, x_t1_), 0);
+  for (const CornerPair& pair : {kInner, kOuter}) EXPECT_GT(gap_along(blade_.rotation.col(1), pair, x_t1_), 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(By, BeforeATurningBlade, ::testing::Values(0.05, 0.3, 1.0));
@@ -72,8 +72,8 @@ TEST(CarriedStarts, ClothIsNotCarriedThroughAnObstacleThatStands) {
   for (const double z : {0.0, kGap, -2.5 * kGap})  // cloth, press, floor
     for (const Vec3& x : {Vec3(0, 0, z), Vec3(0.1, 0, z), Vec3(0, 0.1, z)}) x_t0.push_back(x);
   std::vector<Vec3> x_t1 = x_t0;
-  const RigidMotion down{.shift = Vec3(0, 0, -3 * kGap)};
-  for (int v = 3; v < 6; ++v) x_t1[v] += down.shift;
+  const RigidMotion down{.translation = Vec3(0, 0, -3 * kGap)};
+  for (int v = 3; v < 6; ++v) x_t1[v] += down.translation;
   const std::vector<std::size_t> body_of{0, 0, 0, 1, 1, 1, 2, 2, 2};
   CarriedStarts carried(3, body_of);
   carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, down, {}});
@@ -97,12 +97,12 @@ TEST(CarriedStarts, AreLookedAtOnlyForWhatTurns) {
   CarriedStarts carried(3, body_of);
   const CornerPair pair{{0, 1, 2}, {3, 4, 5}};
   EXPECT_FALSE(carried.carries(1));
-  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.shift = Vec3(0, 0, 1)}});
+  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.translation = Vec3(0, 0, 1)}});
   EXPECT_TRUE(carried.carries(1));
   EXPECT_EQ(carried.by(1)[0], Vec3(1, 2, 4));
   EXPECT_EQ(carried.of(pair, x_t0).data(), x_t0.data());
   const Mat3 quarter = Eigen::AngleAxisd(1, Vec3::UnitZ()).toRotationMatrix();
-  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.turn = quarter}});
+  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.rotation = quarter}});
   EXPECT_EQ(carried.of(pair, x_t0)[0], quarter * x_t0[0]);
   EXPECT_EQ(carried.of(pair, x_t0)[3], x_t1[3]) << "the obstacle is where it ends, to the bit";
   const CornerPair of_cloths{{0, 1, 2}, {0, 1, 2}};

@@ -76,20 +76,20 @@ struct VertexOnFace {
   }
 };
 
-/// Lagged values, as before the first linearisation of a step.
-ContactLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
-  ContactLag lag;
-  contacts.update(x, lag);
-  return lag;
+/// States of the contacts, as before the first linearisation of a step.
+ContactStates states_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  ContactStates states;
+  contacts.update(x, states);
+  return states;
 }
 
-std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const ContactLag& lag) {
+std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const ContactStates& states) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.add_forces(x, lag, f);
+  contacts.add_forces(x, states, f);
   return f;
 }
 std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
-  return forces_of(contacts, x, lag_at_start(contacts, x));
+  return forces_of(contacts, x, states_at_start(contacts, x));
 }
 
 TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
@@ -192,53 +192,53 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
   const double mu = 0.4;
   const VertexOnFace pair(mu);
   const ContactSet contacts = pair.set();
-  ContactLag lag;
+  ContactStates states;
   std::vector<Vec3> x = pair.x;
   x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // a third of the force
   const auto tangential = [&] {
     std::vector<Vec3> forces(x.size(), Vec3::Zero());
-    contacts.add_linear_forces(x, lag, forces);
+    contacts.add_linear_forces(x, states, forces);
     const Vec3 f = forces[0];
     return (f - pair.contact.normal.dot(f) * pair.contact.normal).norm();
   };
-  contacts.update(x, lag);
+  contacts.update(x, states);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.6), 1e-12);
   // The law itself uses the present normal force. Until updates stop, the residual therefore contains the effect of
   // lagging.
-  const Vec3 itself = forces_of(contacts, x, lag)[0];
+  const Vec3 itself = forces_of(contacts, x, states)[0];
   EXPECT_NEAR(itself.dot(pair.contact.normal.unitOrthogonal()), -mu * normal_force_at(0.2), 1e-12);
-  contacts.update(x, lag);
+  contacts.update(x, states);
   // The normal force is linearised at the initial depth 0.6, and friction uses the linearised force.
   const auto tangent = [](double at, double depth) {
     return std::max(0.0, normal_force_at(at) + slope_at(at) * kRange * (depth - at));
   };
   EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.2), 1e-12);
-  for (int k = 2; k < numerics.newton.slow_after - 1; ++k) contacts.update(x, lag);
+  for (int k = 2; k < numerics.newton.slow_after - 1; ++k) contacts.update(x, states);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.2),
               1e-3 * mu * normal_force_at(0.2));  // accuracy of the depth search
   // The number of updates in a step is limited, so that normal force and slip cannot alternate without end.
-  contacts.update(x, lag);
+  contacts.update(x, states);
   const double last = tangential();
   x[0] -= 0.2 * kRange * pair.contact.normal;
-  contacts.update(x, lag);
+  contacts.update(x, states);
   EXPECT_NEAR(tangential(), last, 1e-12);
-  lag = {};
-  contacts.update(x, lag);
-  contacts.update(x, lag);
+  states = {};
+  contacts.update(x, states);
+  contacts.update(x, states);
   EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.4), 1e-12);
 }
 
 TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) {
   const VertexOnFace pair(0.4);
   ContactSet contacts = pair.set();
-  ContactLag lag;
-  lag.updates = numerics.newton.slow_after;
-  contacts.update(pair.x, lag);
-  lag.normal_forces[0] = 7;
+  ContactStates states;
+  states.updates = numerics.newton.slow_after;
+  contacts.update(pair.x, states);
+  states.normal_forces[0] = 7;
   contacts.add(pair.contact);
-  contacts.update(pair.jittered(0.0003), lag);
-  EXPECT_EQ(lag.normal_forces[0], 7);
-  EXPECT_NEAR(lag.normal_forces[1], normal_force_at(0.6), 1e-12);
+  contacts.update(pair.jittered(0.0003), states);
+  EXPECT_EQ(states.normal_forces[0], 7);
+  EXPECT_NEAR(states.normal_forces[1], normal_force_at(0.6), 1e-12);
 }
 
 // −∂f/∂x of one contact, as linearise() adds it to the system.
@@ -259,7 +259,7 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
 // Forces of the linear system, with the tangents of the start.
 std::vector<Vec3> linear_forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.add_linear_forces(x, lag_at_start(contacts, x), f);
+  contacts.add_linear_forces(x, states_at_start(contacts, x), f);
   return f;
 }
 
@@ -287,7 +287,7 @@ solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Ve
   solver::LinearSystem system;
   system.matrix = solver::BlockMatrix(static_cast<Index>(x.size()), {});
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.linearise(x, rate, lag_at_start(contacts, x), f, system);
+  contacts.linearise(x, rate, states_at_start(contacts, x), f, system);
   EXPECT_EQ(f, linear_forces_of(contacts, x));
   return system;
 }
@@ -311,7 +311,7 @@ TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
 /// A vertex that slips on a face. Slips are relative to the stick slip ε.
 struct Slipping : VertexOnFace {
   ContactSet contacts;
-  ContactLag lag;
+  ContactStates states;
   Vec3 along = contact.normal.unitOrthogonal(), across = contact.normal.cross(along);
 
   explicit Slipping(bool on_obstacle = true) : VertexOnFace(0.4) {
@@ -326,20 +326,20 @@ struct Slipping : VertexOnFace {
   }
   /// Updates the lagged values at the result of an iteration.
   Slipping& update(double slip, double sideways = 0) {
-    contacts.update(slipped(slip, sideways), lag);
+    contacts.update(slipped(slip, sideways), states);
     return *this;
   }
   /// Friction in the linear system, relative to the normal force.
   Vec3 friction(double slip, double sideways = 0) const {
     std::vector<Vec3> f(x.size(), Vec3::Zero());
-    contacts.add_linear_forces(slipped(slip, sideways), lag, f);
+    contacts.add_linear_forces(slipped(slip, sideways), states, f);
     return (f[0] - contact.normal.dot(f[0]) * contact.normal) / normal_force_at(0.6);
   }
   Mat3 stiffness(double slip) const {
     solver::LinearSystem system;
     system.matrix = solver::BlockMatrix(static_cast<Index>(x.size()), {});
     std::vector<Vec3> f(x.size(), Vec3::Zero());
-    contacts.linearise(slipped(slip), 1, lag, f, system);
+    contacts.linearise(slipped(slip), 1, states, f, system);
     return assembled(system).topLeftCorner<3, 3>();
   }
 };
@@ -368,8 +368,8 @@ TEST(ContactSet, FrictionThatSticksFollowsItsTangentToTheLaw) {
   for (int k = 0; k < 6; ++k) pair.update(0.6);
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -law(0.6), 1e-12);
   EXPECT_NEAR(pair.along.dot(pair.stiffness(0.6) * pair.along),
-              pair.lag.normal_forces[0] * 0.4 * (2 - 2 * 0.6) / (numerics.contact.stick_velocity * kSlidingStep),
-              1e-9 * pair.lag.normal_forces[0] * 1e6);
+              pair.states.normal_forces[0] * 0.4 * (2 - 2 * 0.6) / (numerics.contact.stick_velocity * kSlidingStep),
+              1e-9 * pair.states.normal_forces[0] * 1e6);
 }
 
 TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFriction) {
@@ -377,7 +377,7 @@ TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFrictio
   pair.contact.static_friction = 0.6;
   pair.contacts = pair.set();
   pair.update(0.5).update(0.5).update(1.5, 1);
-  const FrictionLag& friction = pair.lag.frictions[0];
+  const FrictionState& friction = pair.states.frictions[0];
   EXPECT_FALSE(friction.sticks);
   // 0.6 times (0.75 + 1.0 · 1.0, 1.5 · 1.0), limited to static friction.
   EXPECT_LT((friction.relative_friction - 0.6 * (1.75 * pair.along + 1.5 * pair.across).normalized()).norm(), 1e-12);
@@ -387,43 +387,43 @@ TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFrictio
 TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
   Slipping pair;
   pair.update(3).update(4);
-  EXPECT_FALSE(pair.lag.frictions[0].sticks);
+  EXPECT_FALSE(pair.states.frictions[0].sticks);
   double slip = 4;
   for (int turn = 0; turn < 3; ++turn) {
     slip = -slip;
     pair.update(slip);
     const bool sticks = turn < numerics.contact.max_resticks;
-    EXPECT_EQ(pair.lag.frictions[0].sticks, sticks) << turn;
+    EXPECT_EQ(pair.states.frictions[0].sticks, sticks) << turn;
     // Friction follows the tangent at zero slip while it sticks; otherwise it has its full size.
     EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
     pair.update(slip);
-    EXPECT_FALSE(pair.lag.frictions[0].sticks) << turn;
+    EXPECT_FALSE(pair.states.frictions[0].sticks) << turn;
   }
   // In the next step, friction can stick again.
-  pair.lag = {};
+  pair.states = {};
   pair.update(4).update(-4);
-  EXPECT_TRUE(pair.lag.frictions[0].sticks);
+  EXPECT_TRUE(pair.states.frictions[0].sticks);
 }
 
 TEST(ContactSet, FrictionThatIsNotFoundInManyUpdatesSlidesOn) {
   Slipping pair;
   pair.update(0);
   for (int k = 1; k < numerics.newton.slow_after; ++k) pair.update(0.5 + 0.01 * k);
-  EXPECT_TRUE(pair.lag.frictions[0].sticks);
-  const Vec3 relative_friction = pair.lag.frictions[0].relative_friction;
+  EXPECT_TRUE(pair.states.frictions[0].sticks);
+  const Vec3 relative_friction = pair.states.frictions[0].relative_friction;
   pair.update(0.2).update(0.3);
-  EXPECT_FALSE(pair.lag.frictions[0].sticks);
-  EXPECT_EQ(pair.lag.frictions[0].relative_friction, relative_friction);
+  EXPECT_FALSE(pair.states.frictions[0].sticks);
+  EXPECT_EQ(pair.states.frictions[0].relative_friction, relative_friction);
   EXPECT_NEAR(pair.friction(0.3).dot(pair.along), -0.4 * 0.3 * (2 - 0.3), 1e-12);  // the law itself
 }
 
 TEST(ContactSet, ClothOnClothKeepsTheFrictionOfUnchangedVelocity) {
   Slipping pair(false);
   pair.update(0.5);
-  const Vec3 relative_friction = pair.lag.frictions[0].relative_friction;
+  const Vec3 relative_friction = pair.states.frictions[0].relative_friction;
   pair.update(0.6).update(-0.6);
-  EXPECT_FALSE(pair.lag.frictions[0].sticks);
-  EXPECT_EQ(pair.lag.frictions[0].relative_friction, relative_friction);
+  EXPECT_FALSE(pair.states.frictions[0].sticks);
+  EXPECT_EQ(pair.states.frictions[0].relative_friction, relative_friction);
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -0.4 * 0.6 * (2 - 0.6), 1e-12);  // the law itself
 }
 
@@ -432,9 +432,9 @@ TEST(ContactSet, WhatIsFoundLaterSlidesUntilItIsSeenToHold) {
   pair.update(0);
   pair.contacts.add(pair.contact);
   pair.update(0.5);
-  EXPECT_FALSE(pair.lag.frictions[1].sticks);
-  EXPECT_EQ(pair.lag.frictions[1].relative_friction, Vec3::Zero());
-  EXPECT_TRUE(pair.update(0.5).lag.frictions[1].sticks);
+  EXPECT_FALSE(pair.states.frictions[1].sticks);
+  EXPECT_EQ(pair.states.frictions[1].relative_friction, Vec3::Zero());
+  EXPECT_TRUE(pair.update(0.5).states.frictions[1].sticks);
 }
 
 TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
@@ -466,32 +466,32 @@ TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
 TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   const VertexOnFace pair(0);
   const ContactSet contacts = pair.set();
-  ContactLag lag = lag_at_start(contacts, pair.x);
-  EXPECT_NEAR(lag.depths[0], 0.6 * kRange, 1e-15);
+  ContactStates states = states_at_start(contacts, pair.x);
+  EXPECT_NEAR(states.depths[0], 0.6 * kRange, 1e-15);
   // The vertex is pressed: the force follows the tangent, below the law, until the depth of linearisation is the actual
   // depth.
   std::vector<Vec3> x = pair.x;
   x[0] -= 0.3 * kRange * pair.contact.normal;
   std::vector<Vec3> f(4, Vec3::Zero());
-  contacts.add_linear_forces(x, lag, f);
+  contacts.add_linear_forces(x, states, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
   EXPECT_LT(f[0].norm(), normal_force_at(0.9));
   // The next tangent is taken at the depth at which the law gives that force, not at the iterate.
-  contacts.update(x, lag);
-  EXPECT_LT(lag.depths[0], 0.89 * kRange);
-  EXPECT_NEAR(normal_force_at(lag.depths[0] / kRange), f[0].norm(),
+  contacts.update(x, states);
+  EXPECT_LT(states.depths[0], 0.89 * kRange);
+  EXPECT_NEAR(normal_force_at(states.depths[0] / kRange), f[0].norm(),
               1e-8 * f[0].norm());  // accuracy of the depth search
   // Finally, both depths agree to rounding; otherwise a step would satisfy the tangents, but not the laws.
-  for (int k = 0; k < 8; ++k) contacts.update(x, lag);
-  EXPECT_NEAR(lag.depths[0], 0.9 * kRange, 1e-8 * kRange);
+  for (int k = 0; k < 8; ++k) contacts.update(x, states);
+  EXPECT_NEAR(states.depths[0], 0.9 * kRange, 1e-8 * kRange);
   std::fill(f.begin(), f.end(), Vec3::Zero());
-  contacts.add_linear_forces(x, lag, f);
+  contacts.add_linear_forces(x, states, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.9), 1e-14 * normal_force_at(0.9));
   // The vertex is lifted off: no contact pulls, and the next contact starts with the minimum slope.
   x[0] += kRange * pair.contact.normal;
-  contacts.update(x, lag);
-  EXPECT_EQ(lag.depths[0], 0);
-  EXPECT_EQ(lag.normal_forces[0], 0);
+  contacts.update(x, states);
+  EXPECT_EQ(states.depths[0], 0);
+  EXPECT_EQ(states.normal_forces[0], 0);
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ TEST(FrictionTangent, IsZeroIfSlidingHasNoFriction) {
   contacts.add(contact);
   const std::vector<Vec3> x{Vec3(0.01, 0, 0.001)};
   std::vector<Vec3> force{Vec3::Zero()};
-  ContactLag lag;
+  ContactStates lag;
   contacts.update(x, lag);
   solver::LinearSystem system;
   system.matrix = solver::BlockMatrix(1, {});

@@ -124,16 +124,16 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   pinched_.note_origins(broad_phase_, x_);
   for (const double z : {0.0, 0.1}) {  // inside it, on its face
     move_cloth_to(z);
-    pinched_.renew(scene_.triangles, broad_phase_, x_);
+    pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), 1U) << z;
   }
   // The tested corner is outside again; the other corners are not.
   move_cloth_to(0.11);
   x_[1][2] = x_[2][2] = 0.05;
-  pinched_.renew(scene_.triangles, broad_phase_, x_);
+  pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
   EXPECT_EQ(pinched_.size(), 1U);
   move_cloth_to(0.102);
-  pinched_.renew(scene_.triangles, broad_phase_, x_);
+  pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
   EXPECT_TRUE(pinched_.empty());
 }
 
@@ -150,7 +150,7 @@ TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
   pinched_.note_origins(broad_phase_, x_);
   for (const auto& [z, pinched] : {std::pair(0.0, 2U), std::pair(0.11, 0U)}) {  // inside the box, outside again
     move_cloth_to(z);
-    pinched_.renew(cloth, broad_phase_, x_);
+    pinched_.update_exempted(cloth, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), pinched) << z;
   }
 }
@@ -164,13 +164,13 @@ TEST_F(PinchedTriangle, TakesNothingInBesideACornerThatIsOnItsSide) {
   for (const Index corner : {0, 1, 2}) EXPECT_TRUE(pinched_.exempts({{corner, corner, corner}, face})) << corner;
   move_cloth_to(0.09);
   x_[0].z() = 0.11;
-  pinched_.renew(scene_.triangles, broad_phase_, x_);
+  pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
   EXPECT_TRUE(pinched_.exempts({scene_.triangles[0], face}));
   EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
   for (const Index corner : {1, 2}) EXPECT_TRUE(pinched_.exempts({{corner, corner, corner}, face})) << corner;
-  pinched_.renew(scene_.triangles, broad_phase_, x_, true);  // the step was rejected
+  pinched_.update_exempted(scene_.triangles, broad_phase_, x_, true);  // the step was rejected
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
-  pinched_.renew(scene_.triangles, broad_phase_, x_);
+  pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
   EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
   pinched_.add(with(1));  // the pair had no clearance in this step either
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
@@ -198,7 +198,7 @@ TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
   PinchedPairs pinched(4, body_of, limb_of);
   const Triangle top = nearest_point(Vec3(0, 0, 0.1), surfaces[1].triangles, x).face;
   pinched.add(PinchedPairs::Key{cloth[0], 1, 0}, {1, {top}});
-  pinched.renew(scene.triangles, broad_phase, x);
+  pinched.update_exempted(scene.triangles, broad_phase, x);
   ASSERT_EQ(pinched.size(), 2U);
   EXPECT_EQ(pinched.origins().at({cloth[0], 1, 0}).faces, std::vector<Triangle>{top});
   for (const Triangle& face : pinched.origins().at({cloth[1], 1, 0}).faces)
@@ -242,7 +242,7 @@ TEST(PinchedByAnOpenLimb, IsOnItsSideBeyondTheBorderButNotInTheBody) {
     std::vector<Vec3> moved = x;
     for (std::size_t v = 0; v < 3; ++v) moved[v].x() += shift;
     for (std::size_t b = 0; b < 2; ++b) broad_phase.refit(b, moved, moved, 0.001);
-    pinched.renew(cloth, broad_phase, moved);
+    pinched.update_exempted(cloth, broad_phase, moved);
     EXPECT_EQ(!pinched.empty(), is_pinched) << shift;
   }
 }

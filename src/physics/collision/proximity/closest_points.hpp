@@ -38,16 +38,16 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
 /// point. For parallel segments, returns one of the closest pairs, the same one for the same input.
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1);
 
-/// Fast test before closest_vertex_face: true only if the distance certainly exceeds √reach_sq. The
+/// Fast test before closest_vertex_face: true only if the distance certainly exceeds √max_distance_sq. The
 /// test uses two lower bounds of the distance. One is the distance of p from the plane of the
 /// triangle. If p lies beyond an edge, the other is the distance of p from the plane through this
 /// edge perpendicular to the triangle.
-inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2, double reach_sq) {
+inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2, double max_distance_sq) {
   constexpr double kSafety = 1 + 1e-6;  // far above the rounding of the products
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
   const Vec3 n = e1.cross(e2);
   const double n_sq = n.squaredNorm(), height = w.dot(n);
-  const double limit = kSafety * reach_sq * n_sq;
+  const double limit = kSafety * max_distance_sq * n_sq;
   if (height * height > limit) return true;
   const double b1 = w.cross(e2).dot(n), b2 = e1.cross(w).dot(n), b0 = n_sq - b1 - b2;
   const auto beyond = [&](double b, double edge_sq) { return b < 0 && b * b > limit * edge_sq; };
@@ -56,26 +56,28 @@ inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, con
 
 /// As is_surely_farther, but for two edges. The lower bound is the distance of the two lines. False
 /// for nearly parallel edges.
-inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
+inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1,
+                                     double max_distance_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0;
   const Vec3 n = d.cross(e);
   const double n_sq = n.squaredNorm(), height = (q0 - p0).dot(n);
   return n_sq > kNearlyParallelSq * kSafety * d.squaredNorm() * e.squaredNorm() &&
-         height * height > kSafety * reach_sq * n_sq;
+         height * height > kSafety * max_distance_sq * n_sq;
 }
 
 /// Fast test before closest_edge_edge: true only if one of the closest points of the two lines is
-/// certainly outside its edge, or these points are certainly farther apart than √reach_sq. False
+/// certainly outside its edge, or these points are certainly farther apart than √max_distance_sq. False
 /// for nearly parallel edges.
-inline bool is_surely_not_interior(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
+inline bool is_surely_not_interior(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1,
+                                   double max_distance_sq) {
   constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;
   const Vec3 n = d.cross(e);
   const double n_sq = n.squaredNorm(), height = w.dot(n);
   if (n_sq <= kNearlyParallelSq * kSafety * d.squaredNorm() * e.squaredNorm()) return false;
   const double s_n = w.cross(e).dot(n), t_n = w.cross(d).dot(n);
-  return std::min({s_n, n_sq - s_n, t_n, n_sq - t_n}) < 0 || height * height > kSafety * reach_sq * n_sq;
+  return std::min({s_n, n_sq - s_n, t_n, n_sq - t_n}) < 0 || height * height > kSafety * max_distance_sq * n_sq;
 }
 
 }  // namespace weft::collision

@@ -11,12 +11,12 @@
 
 namespace weft::collision {
 
-/// Motion of a body that keeps its shape over one step. A point moves from x to turn · x + shift.
+/// Motion of a body that keeps its shape over one step. A point moves from x to rotation · x + translation.
 struct RigidMotion {
-  Mat3 turn = Mat3::Identity();
-  Vec3 shift = Vec3::Zero();  ///< [m]
-  bool turns() const { return turn != Mat3::Identity(); }
-  bool moves() const { return turns() || shift != Vec3::Zero(); }
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();  ///< [m]
+  bool rotates() const { return rotation != Mat3::Identity(); }
+  bool moves() const { return rotates() || translation != Vec3::Zero(); }
 };
 
 /// The vertices of an obstacle that turns move on arcs, but separating planes are found for straight trajectories (see
@@ -46,9 +46,9 @@ class CarriedStarts {
 
   /// Start positions for testing a pair: carried by the obstacle of the pair if this obstacle turns, else `x_t0`.
   std::span<const Vec3> of(const CornerPair& pair, std::span<const Vec3> x_t0) const {
-    if (!any_turns_ || !has_obstacle(pair)) return x_t0;
+    if (!any_rotates_ || !has_obstacle(pair)) return x_t0;
     const std::size_t body = obstacle_of(pair);
-    return motions_[body].turns() ? by(body) : x_t0;
+    return motions_[body].rotates() ? by(body) : x_t0;
   }
 
   bool has_obstacle(const CornerPair& pair) const {
@@ -60,7 +60,7 @@ class CarriedStarts {
   Index first_obstacle_ = 0;
   std::span<const std::size_t> body_of_;
   std::vector<RigidMotion> motions_;
-  bool any_turns_ = false;
+  bool any_rotates_ = false;
   std::span<const Vec3> x_t0_, x_t1_;
   mutable std::vector<std::vector<Vec3>> starts_;  // by body, computed on first use
 };

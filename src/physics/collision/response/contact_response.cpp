@@ -69,27 +69,28 @@ void ContactResponse::accept() {
   if (walls_) walls_->accept();
 }
 
-void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
-  springs_.add_forces(x_end, lag, force);
+void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactStates& states,
+                                 std::span<Vec3> force) const {
+  springs_.add_forces(x_end, states, force);
   if (walls_) walls_->add_forces(x_end, force);
 }
 
-void ContactResponse::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+void ContactResponse::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states,
                                                      std::span<Vec3> push, std::span<Vec3> friction,
                                                      std::span<double> limit) const {
-  springs_.add_normal_and_friction_forces(x_end, lag, push, friction, limit);
+  springs_.add_normal_and_friction_forces(x_end, states, push, friction, limit);
   if (walls_) walls_->add_normal_and_friction_forces(x_end, push, friction, limit);
 }
 
-void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states,
                                         std::span<Vec3> force) const {
-  springs_.add_linear_forces(x_end, lag, force);
+  springs_.add_linear_forces(x_end, states, force);
   if (walls_) walls_->add_forces(x_end, force);
 }
 
-void ContactResponse::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag,
+void ContactResponse::linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states,
                                 std::span<Vec3> force, solver::LinearSystem& system) const {
-  springs_.linearise(x_end, end_rate, lag, force, system);
+  springs_.linearise(x_end, end_rate, states, force, system);
   if (walls_) walls_->linearise(x_end, end_rate, force, system);
 }
 

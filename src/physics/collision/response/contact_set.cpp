@@ -150,23 +150,23 @@ void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, s
 }
 
 // Updates the friction of a contact, as update() describes. `slip`: in units of the stick slip.
-void update_friction(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
-  const bool turned = slip.dot(lag.slip) < 0;
-  lag.slip = slip;
-  if (lag.sticks) {
-    const Vec3 held_at = sticking_slip(contact, lag.relative_friction);
-    lag.relative_friction += friction_slope(contact, held_at, lag.relative_friction) * (slip - held_at);
-    const double ratio = lag.relative_friction.norm() / contact.static_friction;
+void update_friction(const Contact& contact, const Vec3& slip, FrictionState& state) {
+  const bool turned = slip.dot(state.slip) < 0;
+  state.slip = slip;
+  if (state.sticks) {
+    const Vec3 held_at = sticking_slip(contact, state.relative_friction);
+    state.relative_friction += friction_slope(contact, held_at, state.relative_friction) * (slip - held_at);
+    const double ratio = state.relative_friction.norm() / contact.static_friction;
     if (ratio < 1) return;
-    lag.relative_friction /= ratio;
-    lag.sticks = false;
-    ++lag.slide_starts;
+    state.relative_friction /= ratio;
+    state.sticks = false;
+    ++state.slide_starts;
   } else if (slip.squaredNorm() < 1) {
-    lag.relative_friction = friction_over_normal_force(contact, slip);
-    lag.sticks = true;
-  } else if (turned && lag.slide_starts < numerics.contact.max_resticks) {
-    lag.relative_friction = Vec3::Zero();
-    lag.sticks = true;
+    state.relative_friction = friction_over_normal_force(contact, slip);
+    state.sticks = true;
+  } else if (turned && state.slide_starts < numerics.contact.max_resticks) {
+    state.relative_friction = Vec3::Zero();
+    state.sticks = true;
   }
 }
 
@@ -185,37 +185,37 @@ void ContactSet::add(const Contact& contact) {
   contacts_.back().static_friction = std::max(contact.friction, contact.static_friction);
 }
 
-void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
+void ContactSet::update(std::span<const Vec3> x_end, ContactStates& states) const {
   const auto update_contact = [&](std::size_t c) {
     const Contact& contact = contacts_[c];
     const Vec3 relative = relative_end(contact, x_end);
     const double depth = contact.range - contact.normal.dot(relative);
-    const double force = tangent_force(normal_force_at(contact, lag.depths[c]), lag.depths[c], depth);
-    lag.depths[c] = depth_for_force(contact, force, std::max(depth, lag.depths[c]));
-    if (lag.updates < numerics.newton.slow_after) lag.normal_forces[c] = force;
+    const double force = tangent_force(normal_force_at(contact, states.depths[c]), states.depths[c], depth);
+    states.depths[c] = depth_for_force(contact, force, std::max(depth, states.depths[c]));
+    if (states.updates < numerics.newton.slow_after) states.normal_forces[c] = force;
     if (!contact.against_obstacle || contact.static_friction == 0) return;
-    if (lag.updates < numerics.newton.slow_after)
-      update_friction(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
+    if (states.updates < numerics.newton.slow_after)
+      update_friction(contact, slip_of(contact, relative) / stick_slip_, states.frictions[c]);
     else
-      lag.frictions[c].sticks = false;
+      states.frictions[c].sticks = false;
   };
-  parallel_for(lag.updates > 0 ? lag.depths.size() : 0, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+  parallel_for(states.updates > 0 ? states.depths.size() : 0, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) update_contact(c);
   });
-  for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
-    lag.depths.push_back(std::max(0.0, contacts_[c].depth));
-    lag.normal_forces.push_back(normal_force_at(contacts_[c], lag.depths.back()).force);
-    lag.frictions.emplace_back();
-    if (lag.updates > 0) continue;  // for contacts found later, the first iterate means nothing
-    FrictionLag& friction = lag.frictions.back();
+  for (std::size_t c = states.depths.size(); c < contacts_.size(); ++c) {
+    states.depths.push_back(std::max(0.0, contacts_[c].depth));
+    states.normal_forces.push_back(normal_force_at(contacts_[c], states.depths.back()).force);
+    states.frictions.emplace_back();
+    if (states.updates > 0) continue;  // for contacts found later, the first iterate means nothing
+    FrictionState& friction = states.frictions.back();
     friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
     friction.relative_friction = friction_over_normal_force(contacts_[c], friction.slip);
   }
-  ++lag.updates;
+  ++states.updates;
 }
 
 ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<const Vec3> x_end,
-                                         const ContactLag& lag) const {
+                                         const ContactStates& states) const {
   const Contact& contact = contacts_[index];
   const Vec3 relative = relative_end(contact, x_end);
   const double depth = contact.range - contact.normal.dot(relative);
@@ -223,18 +223,18 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   if (depth <= 0) return response;
 
   response.active = true;
-  NormalForce normal_force = normal_force_at(contact, law == Law::exact ? depth : lag.depths[index]);
+  NormalForce normal_force = normal_force_at(contact, law == Law::exact ? depth : states.depths[index]);
   if (law == Law::tangent) {
-    normal_force.force = tangent_force(normal_force, lag.depths[index], depth);
+    normal_force.force = tangent_force(normal_force, states.depths[index], depth);
     if (normal_force.force == 0) normal_force.slope = 0;
   }
   response.slope = normal_force.slope;
   response.force = normal_force.force * contact.normal;
-  const bool follows = law == Law::exact && lag.updates < numerics.newton.slow_after;
-  const double friction_normal_force = follows ? normal_force.force : lag.normal_forces[index];
+  const bool follows = law == Law::exact && states.updates < numerics.newton.slow_after;
+  const double friction_normal_force = follows ? normal_force.force : states.normal_forces[index];
   if (contact.static_friction == 0 || friction_normal_force == 0) return response;
 
-  const FrictionLag& friction = lag.frictions[index];
+  const FrictionState& friction = states.frictions[index];
   const Vec3 slip = slip_of(contact, relative) / stick_slip_;
   const bool sticks = law == Law::tangent && friction.sticks;
   response.slip = sticks ? sticking_slip(contact, friction.relative_friction) : slip;
@@ -245,15 +245,17 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   return response;
 }
 
-void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
-  add_forces(Law::exact, x_end, lag, force);
+void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const {
+  add_forces(Law::exact, x_end, states, force);
 }
 
-void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
-  add_forces(Law::tangent, x_end, lag, force);
+void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states,
+                                   std::span<Vec3> force) const {
+  add_forces(Law::tangent, x_end, states, force);
 }
 
-void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
+void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactStates& states,
+                            std::span<Vec3> force) const {
   struct Push {
     const Contact* contact;
     Vec3 force;
@@ -261,19 +263,19 @@ void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactL
   std::vector<Push> pushes;
   parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t c = begin; c < end; ++c)
-      if (const Response response = respond(c, law, x_end, lag); response.active)
+      if (const Response response = respond(c, law, x_end, states); response.active)
         list.push_back({&contacts_[c], response.force});
   });
   for (const auto& [contact, push] : pushes)
     for (int k = 0; k < 4; ++k) force[contact->particles[k]] += contact->weights[k] * push;
 }
 
-void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states,
                                                 std::span<Vec3> push, std::span<Vec3> friction,
                                                 std::span<double> limit) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(c, Law::exact, x_end, lag);
+    const Response response = respond(c, Law::exact, x_end, states);
     if (!response.active) continue;
     const Vec3 normal_part = contact.normal.dot(response.force) * contact.normal;
     const double max_friction = contact.static_friction * stick_slip_ * response.friction_per_slip;
@@ -286,8 +288,8 @@ void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, con
   }
 }
 
-void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
-                           solver::LinearSystem& system) const {
+void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states,
+                           std::span<Vec3> force, solver::LinearSystem& system) const {
   struct Push {
     const Contact* contact;
     Vec3 force;
@@ -297,19 +299,19 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
   parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = contacts_[c];
-      const Response response = respond(c, Law::tangent, x_end, lag);
+      const Response response = respond(c, Law::tangent, x_end, states);
       if (!response.active) continue;
       Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
       if (response.friction_per_slip > 0)
         stiffness +=
-            response.friction_per_slip * friction_slope(contact, response.slip, lag.frictions[c].relative_friction);
+            response.friction_per_slip * friction_slope(contact, response.slip, states.frictions[c].relative_friction);
       list.push_back({&contact, response.force, end_rate * stiffness});
     }
   });
   for (const auto& [contact, push, stiffness] : pushes) add_term(*contact, push, stiffness, force, system);
 }
 
-bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactStates& states, const StepStart& start,
                              std::span<Vec3> right_side, solver::LinearSystem& system) const {
   struct Active {
     const Contact* contact;
@@ -318,7 +320,7 @@ bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag,
   std::vector<Active> active;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(c, Law::tangent, x_end, lag);
+    const Response response = respond(c, Law::tangent, x_end, states);
     if (response.active && response.slope > 0)
       active.push_back({&contact, impact_fraction(contact, start), contact.normal.dot(response.force), response.slope});
   }

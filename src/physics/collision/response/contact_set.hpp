@@ -31,7 +31,7 @@ struct Contact {
 };
 
 /// State of the friction of a contact between iterations.
-struct FrictionLag {
+struct FrictionState {
   Vec3 relative_friction = Vec3::Zero();  ///< w = −friction / normal force, an unknown in addition to the positions
   Vec3 slip = Vec3::Zero();               ///< at the last update, divided by the stick slip ε (see ContactSet)
   bool sticks = false;   ///< true: linearise friction at the slip that w corresponds to; false: at that of the iterate
@@ -39,11 +39,11 @@ struct FrictionLag {
 };
 
 /// State of the contacts of a step between Newton iterations, with one entry per contact.
-struct ContactLag {
+struct ContactStates {
   std::vector<double> depths;  ///< f⁻¹(λ): depths at which the normal forces f (see ContactSet) are linearised [m]
-  std::vector<double> normal_forces;   ///< λ: normal forces that limit friction [N]; constant between updates
-  std::vector<FrictionLag> frictions;  ///< start value: from the first iterate; zero for contacts found later
-  int updates = 0;                     ///< number of calls of ContactSet::update() in this step
+  std::vector<double> normal_forces;     ///< λ: normal forces that limit friction [N]; constant between updates
+  std::vector<FrictionState> frictions;  ///< start value: from the first iterate; zero for contacts found later
+  int updates = 0;                       ///< number of calls of ContactSet::update() in this step
 };
 
 /// Matrix for the tangent of friction. Friction at the slip u is −λ q, with the normal force λ and q = u / ψ(‖u‖).
@@ -79,26 +79,26 @@ class ContactSet {
   /// The λ that limits friction is constant within an iteration, so that friction, too, has a potential. After
   /// Numerics::Newton::slow_after updates, it is constant until the end of the step.
   ///
-  /// In the first `slow_after` updates, update() also moves w (FrictionLag::relative_friction) of a sticking contact
+  /// In the first `slow_after` updates, update() also moves w (FrictionState::relative_friction) of a sticking contact
   /// with an obstacle along the tangent of w. The contact starts to slide if w then exceeds static friction. It sticks
   /// again if the slip is less than the stick slip. It also sticks again if the slip has reversed, unless it has
   /// already started to slide Numerics::Contact::max_resticks times in this step. After `slow_after` updates, no
   /// contact sticks. Contacts without an obstacle have a constant w and never count as sticking, because moving w saves
   /// no iterations for them.
-  void update(std::span<const Vec3> x_end, ContactLag& lag) const;
+  void update(std::span<const Vec3> x_end, ContactStates& states) const;
 
   /// Adds contact forces to `force` [N], with the particles at x_end. Before the Numerics::Newton::slow_after-th
   /// update(), friction uses the normal forces at x_end, so that the residual contains the error of the constant normal
   /// forces of the linear system. From then on, friction uses these constant normal forces, so that a sheet that lands
   /// on an incline keeps the friction of the impact.
-  void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  void add_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
   /// As add_forces, but with the tangents of normal force and friction that linearise() uses, instead of their exact
   /// values.
-  void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  void add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
 
   /// As add_forces, but adds normal forces to `push` and friction to `friction`. Adds the maximum friction to `limit`
   /// [N].
-  void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+  void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> push,
                                       std::span<Vec3> friction, std::span<double> limit) const;
 
   /// Adds the contacts to the linear system whose unknowns are the velocity jumps due to impacts in a step that ends at
@@ -113,7 +113,7 @@ class ContactSet {
   /// would change it completely; instead, a stiff term keeps the tangential velocity jump that the step has found.
   /// Contacts without an impact transmit the velocity jumps by their stiffness. With it, a ball that falls on cloth on
   /// a floor throws the cloth up by 1.5 mm; without it, by 9 to 105 mm.
-  bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+  bool add_impacts(std::span<const Vec3> x_end, const ContactStates& states, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
   /// As add_linear_forces; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change of the unknown. The
@@ -124,7 +124,7 @@ class ContactSet {
   /// contact keeps sliding in one direction, the matrix is then the exact tangent; otherwise it is closer to the secant
   /// (friction over slip), or stiffer. Cloth that slides on an incline takes 1.05 iterations per step (2.3 with secants
   /// only).
-  void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
+  void linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
   /// Number of contacts with a positive depth, with the particles at x_end.
@@ -139,8 +139,8 @@ class ContactSet {
     Vec3 slip;                     // at which friction is linearised, divided by the stick slip
   };
   enum class Law { exact, tangent };
-  Response respond(std::size_t index, Law law, std::span<const Vec3> x_end, const ContactLag& lag) const;
-  void add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  Response respond(std::size_t index, Law law, std::span<const Vec3> x_end, const ContactStates& states) const;
+  void add_forces(Law law, std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
 
   std::vector<Contact> contacts_;
   double stick_slip_ = 1e-6;  // ε: slip at which friction is fully developed [m]

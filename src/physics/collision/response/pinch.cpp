@@ -107,8 +107,8 @@ void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3
   list_particles();
 }
 
-void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
-                         bool is_repeated) {
+void PinchedPairs::update_exempted(std::span<const Triangle> triangles, const BroadPhase& surfaces,
+                                   std::span<const Vec3> x, bool is_repeated) {
   std::map<Key, Origin> around = origins_;
   for (const Triangle& cloth : triangles) {
     if (cloth[0] >= first_obstacle_) break;
@@ -123,7 +123,7 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
     return is_apart(key, surfaces, x) && is_on_its_side({key.cloth[0], key.body, key.limb}, origin, surfaces, x);
   });
   for (auto& [key, origin] : around)
-    if (!origins_.contains(key)) origin.faces = faces_reaching(key, origin, surfaces, x);
+    if (!origins_.contains(key)) origin.faces = find_origin_faces(key, origin, surfaces, x);
   origins_ = std::move(around);
   list_particles();
   returned_.clear();
@@ -136,8 +136,8 @@ void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& 
 // normals are within 60° of the exit direction of `beside`, the Origin of the exempted triangle beside it. Without such
 // faces, returns those of `beside`. Thus each neighbour on a round limb has its own exit direction. Example: faces in
 // an armpit, which met the first triangle, are far from the chest and point in another direction.
-std::vector<Triangle> PinchedPairs::faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
-                                                   std::span<const Vec3> x) const {
+std::vector<Triangle> PinchedPairs::find_origin_faces(const Key& key, const Origin& beside, const BroadPhase& surfaces,
+                                                      std::span<const Vec3> x) const {
   const auto& [a, b, c] = key.cloth;
   const Vec3 out = outward((x[a] + x[b] + x[c]) / 3, beside.faces, x);
   std::vector<Triangle> faces = faces_near(key, surfaces, x);

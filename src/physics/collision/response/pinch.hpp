@@ -19,14 +19,14 @@
 namespace weft::collision {
 
 /// The exempted cloth triangles, each with the limb of an obstacle from which it is exempt. (An obstacle without limbs
-/// counts as one limb.) The triangle may intersect this limb: no separating plane is required. renew() removes a
-/// triangle from the set if it is apart from the limb and back on its original side of the limb. Neighbours of a
-/// triangle of the set (triangles that share a particle with it) are exempt from its limb, too, so that a limb that
-/// moves along the cloth does not drag the cloth with it. Exception: if the common particle is on its original side of
-/// the limb, the neighbour is not exempt, so that a limb that approaches does not exempt more and more of the cloth
-/// around it. renew() adds a neighbour to the set if it meets the limb or is on the wrong side of it. If two limbs
-/// overlap, the cloth is exempt from the limb that first met it, and rests on the other limb. If the first limb
-/// retreats, the cloth returns to its original side of that limb.
+/// counts as one limb.) The triangle may intersect this limb: no separating plane is required. update_exempted()
+/// removes a triangle from the set if it is apart from the limb and back on its original side of the limb. Neighbours
+/// of a triangle of the set (triangles that share a particle with it) are exempt from its limb, too, so that a limb
+/// that moves along the cloth does not drag the cloth with it. Exception: if the common particle is on its original
+/// side of the limb, the neighbour is not exempt, so that a limb that approaches does not exempt more and more of the
+/// cloth around it. update_exempted() adds a neighbour to the set if it meets the limb or is on the wrong side of it.
+/// If two limbs overlap, the cloth is exempt from the limb that first met it, and rests on the other limb. If the first
+/// limb retreats, the cloth returns to its original side of that limb.
 class PinchedPairs {
  public:
   struct Key {
@@ -90,8 +90,8 @@ class PinchedPairs {
   /// original side. `triangles`: of all surfaces, cloth first. `is_repeated`: whether the step was rejected before. In
   /// this case, neighbours are exempt on whichever side their common particle is, because keeping them apart may have
   /// stretched the cloth.
-  void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
-             bool is_repeated = false);
+  void update_exempted(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
+                       bool is_repeated = false);
 
   /// Finds how to push pinched cloth at x [m] back to its original side. Pairs each corner of an exempted triangle
   /// whose height is below `max_height` [m] with the nearest point of the limb. (Height: signed distance from the limb,
@@ -132,8 +132,8 @@ class PinchedPairs {
   bool is_on_its_side(const Corner& corner, const Origin& origin, const BroadPhase& surfaces,
                       std::span<const Vec3> x) const;
   std::vector<Triangle> faces_near(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
-  std::vector<Triangle> faces_reaching(const Key& key, const Origin& beside, const BroadPhase& surfaces,
-                                       std::span<const Vec3> x) const;
+  std::vector<Triangle> find_origin_faces(const Key& key, const Origin& beside, const BroadPhase& surfaces,
+                                          std::span<const Vec3> x) const;
   bool is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const;
   bool is_exit_clear(const Vec3& place, const Vec3& outward, const Corner& corner, int side, const BroadPhase& surfaces,
                      std::span<const Vec3> x) const;
@@ -143,7 +143,7 @@ class PinchedPairs {
   std::span<const Index> limb_of_;
   std::map<Key, Origin> origins_;
   std::map<Corner, Origin> particles_;  // corners of the exempted triangles
-  std::set<Corner> returned_;           // those on their original side at the last renew()
+  std::set<Corner> returned_;           // those on their original side at the last update_exempted()
 };
 
 }  // namespace weft::collision

@@ -66,7 +66,7 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
 
   Lanes8 best_gap{};
   Points8 best_n{};
-  const auto consider = [&](const Points8& direction, bool initial) {
+  const auto try_direction = [&](const Points8& direction, bool initial) {
     const Lanes8 length_sq = dot(direction, direction);
     Lanes8 length;
     for (int l = 0; l < 8; ++l) length[l] = std::sqrt(length_sq[l]);
@@ -87,9 +87,9 @@ void Planes::find_planes_for_eight(std::size_t first, std::size_t count) {
   for (int axis = 0; axis < 3; ++axis)
     centres.axis[axis] = a.corner[1].axis[axis] + a.corner[2].axis[axis] - b.corner[0].axis[axis] -
                          b.corner[1].axis[axis] - b.corner[2].axis[axis];
-  consider(centres, true);
-  consider(cross(a.corner[1], a.corner[2]), false);
-  consider(cross(minus(b.corner[1], b.corner[0]), minus(b.corner[2], b.corner[0])), false);
+  try_direction(centres, true);
+  try_direction(cross(a.corner[1], a.corner[2]), false);
+  try_direction(cross(minus(b.corner[1], b.corner[0]), minus(b.corner[2], b.corner[0])), false);
   for (std::size_t l = 0; l < count; ++l)
     planes_[first + l] = {{best_n.axis[0][l], best_n.axis[1][l], best_n.axis[2][l]}, best_gap[l] - rounding[l]};
 }
@@ -182,10 +182,10 @@ template <class Archive>
 void Planes::serialize(Archive& archive, std::span<const Vec3> reference) {
   std::vector<std::uint32_t> changed;
   if constexpr (!Archive::kReads) {
-    Planes fresh(triangles_, obstacles_from_);
-    fresh.watch(pairs_.view(), reference);
+    Planes rebuilt(triangles_, obstacles_from_);
+    rebuilt.watch(pairs_.view(), reference);
     for (std::size_t p = 0; p < planes_.size(); ++p)
-      if (planes_[p] != fresh.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));
+      if (planes_[p] != rebuilt.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));
   }
   serialize_plain(archive, changed);
   for (std::uint32_t p : changed) {

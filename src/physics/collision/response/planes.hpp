@@ -39,10 +39,10 @@ class Planes {
   /// Sets the watched pairs, makes x [m] the reference, and seeks a direction that separates each
   /// pair there.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
-  /// As above, for the pairs received by exchange().
+  /// As above, for the pairs received by swap_pairs().
   void watch(std::span<const Vec3> x);
   /// Swaps the list of watched pairs with `pairs`, so that no list is copied. Call watch(x) afterwards.
-  void exchange(PairList& pairs) { std::swap(pairs_, pairs); }
+  void swap_pairs(PairList& pairs) { std::swap(pairs_, pairs); }
 
   /// Number of watched pairs.
   std::size_t size() const { return pairs_.size(); }

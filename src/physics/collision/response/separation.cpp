@@ -347,7 +347,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   // With r = `rounds`: rounds 1 to r push pairs apart. Later rounds backtrack failing pairs, up to
   // round 1.5 r by halves, then entirely. From round 2.5 r on, all free vertices are backtracked
   // entirely.
-  const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
+  const int rounds = numerics.separation.max_rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
     bool changed = round_ >= by_halves + rounds && backtrack_all(step);
     const bool is_final = round_ > by_halves;

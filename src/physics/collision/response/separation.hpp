@@ -49,7 +49,7 @@ struct RigidGroup {
 ///   1. It pushes the two triangles apart along a direction n, so that a gap remains. n is the
 ///      direction between the closest points at the start. If the push along the normal of a face
 ///      that does not move is shorter, n is this normal. It then tests again and pushes the pairs
-///      that fail, in up to Numerics::Separation::rounds rounds. It never pushes fixed vertices,
+///      that fail, in up to Numerics::Separation::max_rounds rounds. It never pushes fixed vertices,
 ///      and pinned ones only if there is no other way.
 ///   2. It backtracks the particles of pairs that still fail: moves them back towards their start,
 ///      finally all the way. If the pair has an obstacle that moves rigidly, the particles go to
@@ -76,10 +76,10 @@ class Separation {
   /// reference from which motion is measured, also for the vertex stars. The pairs must include all that can meet. If a
   /// vertex moves out of the bounds for which the pairs were collected, collect the pairs and call watch() again.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
-  /// As above, for the pairs received by exchange().
+  /// As above, for the pairs received by swap_pairs().
   void watch(std::span<const Vec3> x);
-  /// As Planes::exchange().
-  void exchange(PairList& pairs) { planes_.exchange(pairs); }
+  /// As Planes::swap_pairs().
+  void swap_pairs(PairList& pairs) { planes_.swap_pairs(pairs); }
 
   /// Number of watched pairs.
   std::size_t pair_count() const { return planes_.size(); }

@@ -27,7 +27,7 @@ struct HalfSpace {
   int wall;
 };
 
-bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
+bool is_feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
   return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
 }
 
@@ -39,27 +39,27 @@ double friction_over_slip(double slip) {
 }  // namespace
 
 VelocityConstraints::VelocityConstraints(std::vector<double> masses)
-    : masses_(std::move(masses)), touched_of_(masses_.size(), -1), memory_(masses_.size()) {}
+    : masses_(std::move(masses)), touching_index_(masses_.size(), -1), memory_(masses_.size()) {}
 
 void VelocityConstraints::begin_step(double h) {
   step_ = h;
-  for (const TouchingParticle& particle : touched_) touched_of_[particle.particle] = -1;
-  touched_.clear();
+  for (const TouchingParticle& particle : touching_particles_) touching_index_[particle.particle] = -1;
+  touching_particles_.clear();
   walls_.clear();
   prescribed_.clear();
 }
 
 void VelocityConstraints::add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion,
                               double friction, double static_friction) {
-  int& place = touched_of_[particle];
+  int& place = touching_index_[particle];
   if (place < 0) {
-    place = static_cast<int>(touched_.size());
-    touched_.push_back({particle, -1, {}, {}});
+    place = static_cast<int>(touching_particles_.size());
+    touching_particles_.push_back({particle, -1, {}, {}});
   }
-  TouchingParticle& touched = touched_[place];
+  TouchingParticle& touching = touching_particles_[place];
   const double gamma_d_min = distance >= d_min ? d_min : distance + numerics.walls.correction * (d_min - distance);
   const double bound = gamma_d_min - distance + normal.dot(motion);
-  for (int w = touched.first_wall; w >= 0; w = walls_[w].next) {
+  for (int w = touching.first_wall; w >= 0; w = walls_[w].next) {
     Wall& wall = walls_[w];
     if (wall.normal.dot(normal) < kMinSameWallCosine) continue;
     if (bound > wall.bound + kRoundoff)
@@ -68,8 +68,8 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
       wall.bound = std::max(wall.bound, bound);
     return;
   }
-  walls_.push_back({normal, bound, motion, friction, std::max(friction, static_friction), touched.first_wall});
-  touched.first_wall = static_cast<int>(walls_.size()) - 1;
+  walls_.push_back({normal, bound, motion, friction, std::max(friction, static_friction), touching.first_wall});
+  touching.first_wall = static_cast<int>(walls_.size()) - 1;
 }
 
 // The displacement closest to u that passes no wall of the particle. `held`: the walls that limit
@@ -87,7 +87,7 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
     if (of_force && std::find(holding.begin(), holding.end(), w) == holding.end()) continue;
     all.push_back({wall.normal, of_force ? 0 : wall.bound, w});
   }
-  if (feasible(all, u, kRoundoff)) return u;
+  if (is_feasible(all, u, kRoundoff)) return u;
   const auto missing = [&](const HalfSpace& h) { return h.bound - h.normal.dot(u); };
   if (std::ssize(all) > numerics.walls.max_walls) {
     std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) > missing(b); });
@@ -98,7 +98,7 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
   for (std::size_t i = 0; i < n; ++i) {
     const double multiplier = missing(all[i]);
     Vec3 moved = u + multiplier * all[i].normal;
-    if (multiplier <= 0 || !feasible(all, moved, kRoundoff)) continue;
+    if (multiplier <= 0 || !is_feasible(all, moved, kRoundoff)) continue;
     held = {{all[i].wall, -1, -1}, {multiplier, 0, 0}, 1};
     return moved;
   }
@@ -109,7 +109,7 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
       const double a = missing(all[i]), b = missing(all[j]);
       const double multiplier_i = (a - c * b) / determinant, multiplier_j = (b - c * a) / determinant;
       Vec3 moved = u + multiplier_i * all[i].normal + multiplier_j * all[j].normal;
-      if (multiplier_i < 0 || multiplier_j < 0 || !feasible(all, moved, kRoundoff)) continue;
+      if (multiplier_i < 0 || multiplier_j < 0 || !is_feasible(all, moved, kRoundoff)) continue;
       held = {{all[i].wall, all[j].wall, -1}, {multiplier_i, multiplier_j, 0}, 2};
       return moved;
     }
@@ -122,7 +122,7 @@ Vec3 VelocityConstraints::project(const TouchingParticle& particle, const Vec3& 
         const Mat3 gram = normals.transpose() * normals;
         const Vec3 multipliers = gram.inverse() * Vec3(missing(all[i]), missing(all[j]), missing(all[k]));
         Vec3 moved = u + normals * multipliers;
-        if (multipliers.minCoeff() < 0 || !feasible(all, moved, kRoundoff)) continue;
+        if (multipliers.minCoeff() < 0 || !is_feasible(all, moved, kRoundoff)) continue;
         held = {{all[i].wall, all[j].wall, all[k].wall}, {multipliers[0], multipliers[1], multipliers[2]}, 3};
         return moved;
       }
@@ -141,7 +141,7 @@ int VelocityConstraints::main_wall(const TouchingParticle& particle) const {
 
 // Makes these walls hold the particle. `u`: displacement that passes none of them. A sticking particle moves with its
 // main wall (the one with the largest multiplier), at the distance that this wall prescribes.
-void VelocityConstraints::hold(TouchingParticle& particle, const Vec3& u, ActiveWalls held) {
+void VelocityConstraints::activate_walls(TouchingParticle& particle, const Vec3& u, ActiveWalls held) {
   particle.held = held;
   particle.u_held = u;
   const Wall& wall = walls_[main_wall(particle)];
@@ -157,8 +157,8 @@ void VelocityConstraints::hold(TouchingParticle& particle, const Vec3& u, Active
 bool VelocityConstraints::predict_wall_contacts(std::span<const Vec3> x_t1, double by,
                                                 std::vector<Vec3>& predicted) const {
   bool any = false;
-  for (Index particle : remembered_) {
-    if (touched_of_[particle] >= 0) continue;
+  for (Index particle : previously_held_) {
+    if (touching_index_[particle] >= 0) continue;
     if (!any) predicted.assign(x_t1.begin(), x_t1.end());
     any = true;
     predicted[particle] -= by * memory_[particle].push.normalized();
@@ -167,7 +167,7 @@ bool VelocityConstraints::predict_wall_contacts(std::span<const Vec3> x_t1, doub
 }
 
 void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  for (TouchingParticle& particle : touched_) {
+  for (TouchingParticle& particle : touching_particles_) {
     const Index i = particle.particle;
     particle.x_t0 = x_t0[i];
     particle.memory = memory_[i];
@@ -180,17 +180,17 @@ void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Ve
       particle.memory = {};
       continue;
     }
-    hold(particle, u, held);
+    activate_walls(particle, u, held);
     particle.friction_normal_force = particle.memory.normal_force;
     const Vec3 slips = slip(particle, x_t1[i]) / (numerics.contact.stick_velocity * step_);
-    particle.drag = friction_over_slip(slips.norm()) * slips;
+    particle.relative_friction = friction_over_slip(slips.norm()) * slips;
   }
   prescribe();
 }
 
 int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on) {
   int changed = 0;
-  for (TouchingParticle& particle : touched_) {
+  for (TouchingParticle& particle : touching_particles_) {
     const Index i = particle.particle;
     particle.x_t0 = x_t0[i];
     Vec3 force = Vec3::Zero();
@@ -209,7 +209,7 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
 
 // Decides which walls hold the particle. `force`: that of its walls in the last solve [N]. Returns
 // whether the solve must be repeated: false if the change is negligible, or if the constraint has
-// already changed Numerics::Walls::flips times in this step.
+// already changed Numerics::Walls::max_constraint_changes times in this step.
 bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
@@ -218,24 +218,25 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
   if (memory.state == State::away) {
     const Vec3 held_at = project(particle, u, false, next);
     if (next.multiplier_sum() < tolerated_penetration()) return false;
-    hold(particle, held_at, next);
-    return particle.constraint_changes++ < numerics.walls.flips;
+    activate_walls(particle, held_at, next);
+    return particle.constraint_changes++ < numerics.walls.max_constraint_changes;
   }
 
-  // Split the force into components along the normals of the walls and the rest (`left`), a tangential force or a pull.
+  // Split the force into components along the normals of the walls and the rest (`rest`), a tangential force or a pull.
   ActiveWalls pushing;
   const double size = force.norm();
-  const Vec3 left = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
-  memory.push = force - left;
+  const Vec3 rest = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
+  memory.push = force - rest;
   memory.normal_force = size * pushing.multiplier_sum();
   const double push = memory.push.norm();
   const Vec3 held_at = project(particle, push > 0 ? Vec3(u - probe_distance() / push * memory.push) : u, false, next);
   if (next.count == 0) {
-    if (left.norm() > negligible && particle.constraint_changes++ >= numerics.walls.flips) return false;
+    if (rest.norm() > negligible && particle.constraint_changes++ >= numerics.walls.max_constraint_changes)
+      return false;
     memory = {};
     particle.held = {};
     particle.friction_normal_force = 0;
-    return left.norm() > negligible;
+    return rest.norm() > negligible;
   }
 
   ActiveWalls passed;
@@ -243,14 +244,14 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
   const Wall& wall = walls_[main_wall(particle)];
   const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.normal_force;
   if (memory.state == State::sticking) {
-    const bool slips = left.norm() > limit, passes = passed.multiplier_sum() >= tolerated_penetration();
-    if (!(slips || passes) || particle.constraint_changes++ >= numerics.walls.flips) return false;
+    const bool slips = rest.norm() > limit, passes = passed.multiplier_sum() >= tolerated_penetration();
+    if (!(slips || passes) || particle.constraint_changes++ >= numerics.walls.max_constraint_changes) return false;
     if (slips) {
       memory.state = State::sliding;
       particle.friction_normal_force = memory.normal_force;
-      particle.overloaded = left.norm() - limit > negligible;
+      particle.is_overloaded = rest.norm() - limit > negligible;
     }
-    hold(particle, held_at, next);
+    activate_walls(particle, held_at, next);
     return passes;  // if it only slips, no further solve: too much friction in one step is harmless
   }
 
@@ -259,11 +260,11 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
   const bool other_load = change > negligible && change > numerics.walls.negligible_change * limit;
   const bool fast = slip(particle, x_end).norm() >= numerics.contact.stick_velocity * step_;
   particle.may_stick = limit > 0 && !other_load && !other_walls && !fast;
-  hold(particle, held_at, next);
+  activate_walls(particle, held_at, next);
   particle.friction_normal_force = memory.normal_force;
   const bool matters =
-      other_load || (other_walls && (passed.multiplier_sum() >= tolerated_penetration() || left.norm() > negligible));
-  return matters && particle.constraint_changes++ < numerics.walls.flips;
+      other_load || (other_walls && (passed.multiplier_sum() >= tolerated_penetration() || rest.norm() > negligible));
+  return matters && particle.constraint_changes++ < numerics.walls.max_constraint_changes;
 }
 
 void VelocityConstraints::accept() {
@@ -271,14 +272,14 @@ void VelocityConstraints::accept() {
   // neighbours. Without this rule, two halves of touching cloth could stick in turn and so hold all of it on any
   // incline.
   const bool any_overloaded =
-      std::ranges::any_of(touched_, [](const TouchingParticle& particle) { return particle.overloaded; });
-  for (Index particle : remembered_) memory_[particle] = {};
-  remembered_.clear();
-  for (const TouchingParticle& particle : touched_) {
+      std::ranges::any_of(touching_particles_, [](const TouchingParticle& particle) { return particle.is_overloaded; });
+  for (Index particle : previously_held_) memory_[particle] = {};
+  previously_held_.clear();
+  for (const TouchingParticle& particle : touching_particles_) {
     if (particle.memory.state == State::away) continue;
     Memory& memory = memory_[particle.particle] = particle.memory;
     if (particle.may_stick && !any_overloaded) memory.state = State::sticking;
-    remembered_.push_back(particle.particle);
+    previously_held_.push_back(particle.particle);
   }
 }
 
@@ -318,7 +319,7 @@ PrescribedParticle VelocityConstraints::prescription(const TouchingParticle& par
 
 void VelocityConstraints::prescribe() {
   prescribed_.clear();
-  for (const TouchingParticle& particle : touched_)
+  for (const TouchingParticle& particle : touching_particles_)
     if (particle.memory.state != State::away) prescribed_.push_back(prescription(particle));
 }
 
@@ -337,11 +338,12 @@ VelocityConstraints::Friction VelocityConstraints::friction(const TouchingPartic
   const Mat3 free = free_directions(particle);
   // Derivative of slip / friction with respect to the slip.
   const double growth = size < 1 ? 1 / ((2 - size) * (2 - size)) : 1;
-  return {-sliding * slips, sliding / stick_slip * friction_tangent(free, slips, growth * (free * particle.drag))};
+  return {-sliding * slips,
+          sliding / stick_slip * friction_tangent(free, slips, growth * (free * particle.relative_friction))};
 }
 
 void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
-  for (const TouchingParticle& particle : touched_) {
+  for (const TouchingParticle& particle : touching_particles_) {
     const Index i = particle.particle;
     if (particle.memory.state == State::sliding && particle.friction_normal_force > 0)
       force[i] += friction(particle, x_end[i]).force;
@@ -350,7 +352,7 @@ void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3
 
 void VelocityConstraints::add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
                                                          std::span<Vec3> friction, std::span<double> limit) const {
-  for (const TouchingParticle& particle : touched_) {
+  for (const TouchingParticle& particle : touching_particles_) {
     if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Index i = particle.particle;
     const Wall& wall = walls_[main_wall(particle)];
@@ -362,7 +364,7 @@ void VelocityConstraints::add_normal_and_friction_forces(std::span<const Vec3> x
 
 void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                                     solver::LinearSystem& system) const {
-  for (const TouchingParticle& particle : touched_) {
+  for (const TouchingParticle& particle : touching_particles_) {
     const Index i = particle.particle;
     if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Friction sliding = friction(particle, x_end[i]);
@@ -374,8 +376,8 @@ void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate
 template <class Archive>
 void VelocityConstraints::serialize(Archive& archive) {
   if constexpr (Archive::kReads)
-    for (Index particle : remembered_) memory_[particle] = {};
-  serialize_each(archive, remembered_, [&](Index& particle) {
+    for (Index particle : previously_held_) memory_[particle] = {};
+  serialize_each(archive, previously_held_, [&](Index& particle) {
     archive.value(particle);
     if constexpr (Archive::kReads)
       require(particle >= 0 && static_cast<std::size_t>(particle) < masses_.size(), "particles of the scene");

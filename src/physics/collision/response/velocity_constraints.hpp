@@ -78,7 +78,7 @@ class VelocityConstraints {
 
   /// Updates the walls after a solve that led to x_end. Walls that a particle has passed hold it
   /// from now on, walls that would pull release it, and sticking particles start to slide if static
-  /// friction is exceeded. A particle whose constraint has changed Numerics::Walls::flips times in
+  /// friction is exceeded. A particle whose constraint has changed Numerics::Walls::max_constraint_changes times in
   /// this step needs no further solve. Returns how many particles need another solve; 0: the solve
   /// is final.
   int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on);
@@ -138,16 +138,16 @@ class VelocityConstraints {
     Memory memory;
     ActiveWalls held;
     Vec3 x_t0 = Vec3::Zero();
-    Vec3 u_held = Vec3::Zero();        // displacement prescribed in the constrained directions [m]
-    double friction_normal_force = 0;  // normal force that limits friction in this solve [N]
-    Vec3 drag = Vec3::Zero();          // −friction / maximum friction at the expected end x_t1
-    int constraint_changes = 0;        // number of changes of its constraint in this step
-    bool may_stick = false;            // slides so slowly that it may stick from the next step on
-    bool overloaded = false;           // began to slide, because sticking needs noticeably more than static friction
+    Vec3 u_held = Vec3::Zero();             // displacement prescribed in the constrained directions [m]
+    double friction_normal_force = 0;       // normal force that limits friction in this solve [N]
+    Vec3 relative_friction = Vec3::Zero();  // −friction / maximum friction at the expected end x_t1
+    int constraint_changes = 0;             // number of changes of its constraint in this step
+    bool may_stick = false;                 // slides so slowly that it may stick from the next step on
+    bool is_overloaded = false;  // began to slide, because sticking needs noticeably more than static friction
   };
 
   Vec3 project(const TouchingParticle& particle, const Vec3& u, bool of_force, ActiveWalls& held) const;
-  void hold(TouchingParticle& particle, const Vec3& u, ActiveWalls held);
+  void activate_walls(TouchingParticle& particle, const Vec3& u, ActiveWalls held);
   bool revise(TouchingParticle& particle, const Vec3& x_end, const Vec3& force);
   int main_wall(const TouchingParticle& particle) const;
   Mat3 free_directions(const TouchingParticle& particle) const;
@@ -163,10 +163,10 @@ class VelocityConstraints {
   std::vector<double> masses_;
   double step_ = 0;  // h [s]
   std::vector<Wall> walls_;
-  std::vector<TouchingParticle> touched_;
-  std::vector<int> touched_of_;    // per particle: index in touched_, or −1
-  std::vector<Memory> memory_;     // per particle, from the last accepted step
-  std::vector<Index> remembered_;  // particles that walls held at the end of the last step
+  std::vector<TouchingParticle> touching_particles_;
+  std::vector<int> touching_index_;     // per particle: index in touching_particles_, or −1
+  std::vector<Memory> memory_;          // per particle, from the last accepted step
+  std::vector<Index> previously_held_;  // particles that walls held at the end of the last step
   std::vector<PrescribedParticle> prescribed_;
 };
 

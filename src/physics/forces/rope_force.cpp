@@ -1,4 +1,4 @@
-#include "physics/forces/cord.hpp"
+#include "physics/forces/rope_force.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +37,7 @@ solver::PackedBlock packed_block(const Mat3& m) {
 
 }  // namespace
 
-Cord::Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters)
+RopeForce::RopeForce(std::span<const double> lengths, bool closed, Index first, const RopeForceParameters& parameters)
     : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.bend_viscosity, 0}) {
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
@@ -50,7 +50,7 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
   set_length_ratio(1);
 }
 
-void Cord::compute_weights(BendElement& bend) const {
+void RopeForce::compute_weights(BendElement& bend) const {
   bend.length = length_ratio_ * bend.initial_length;
   const double one = 1 / (length_ratio_ * bend.before * bend.length),
                other = 1 / (length_ratio_ * bend.after * bend.length);
@@ -59,7 +59,7 @@ void Cord::compute_weights(BendElement& bend) const {
 
 // At a clamp (the middle particle and exactly one end are held), the second difference covers only the half piece on
 // the free side; see Bend.
-void Cord::set_held(std::span<const char> held) {
+void RopeForce::set_held(std::span<const char> held) {
   for (BendElement& bend : bends_) {
     const auto is_held = [&](std::size_t k) { return held[slot(bend.particles[k])] != 0; };
     bend.initial_length = 0.5 * (bend.before + bend.after);
@@ -68,7 +68,7 @@ void Cord::set_held(std::span<const char> held) {
   }
 }
 
-bool Cord::set_length_ratio(double ratio) {
+bool RopeForce::set_length_ratio(double ratio) {
   if (ratio == length_ratio_) return false;
   length_ratio_ = ratio;
   for (Piece& piece : pieces_) {
@@ -80,13 +80,13 @@ bool Cord::set_length_ratio(double ratio) {
   return !bends_.empty();
 }
 
-void Cord::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
+void RopeForce::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
   for (const BendElement& bend : bends_)
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(bend.particles[k], bend.particles[(k + 1) % 3]);
 }
 
-void Cord::attach(const solver::Assembly& assembly) {
+void RopeForce::attach(const solver::Assembly& assembly) {
   const auto block = [&](Index a, Index b) { return assembly.block(std::min(a, b), std::max(a, b)); };
   for (Piece& piece : pieces_) piece.block = block(piece.particles[0], piece.particles[1]);
   for (BendElement& bend : bends_)
@@ -97,7 +97,7 @@ void Cord::attach(const solver::Assembly& assembly) {
     }
 }
 
-void Cord::add(const Evaluation& at) const {
+void RopeForce::add(const Evaluation& at) const {
   const bool has_air = parameters_.air_density > 0 && parameters_.drag > 0;
   for (const Piece& piece : pieces_) {
     add_stretch(piece, at);
@@ -106,7 +106,7 @@ void Cord::add(const Evaluation& at) const {
   for (const BendElement& bend : bends_) add_bend(bend, at);
 }
 
-void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
+void RopeForce::add_stretch(const Piece& piece, const Evaluation& at) const {
   const Index a = piece.particles[0], b = piece.particles[1];
   const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
   const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
@@ -126,7 +126,7 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));
 }
 
-void Cord::add_air(const Piece& piece, const Evaluation& at) const {
+void RopeForce::add_air(const Piece& piece, const Evaluation& at) const {
   const auto [a, b] = piece.particles;
   const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
   const double length = d.norm();
@@ -150,7 +150,7 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   at.assembly.add_to_own_block(b, damping);
 }
 
-void Cord::add_bend(const BendElement& bend, const Evaluation& at) const {
+void RopeForce::add_bend(const BendElement& bend, const Evaluation& at) const {
   const Vec3 curvature = second_difference(bend, at.x);
   Vec3 moment = parameters_.bend * curvature;
   if (damping_.is_active()) {
@@ -167,15 +167,15 @@ void Cord::add_bend(const BendElement& bend, const Evaluation& at) const {
     at.force.subtract(bend.particles[k], solver::padded<double>(bend.length * bend.weights[k] * moment));
 }
 
-void Cord::add_constant_stiffness(solver::Assembly& assembly) const {
+void RopeForce::add_constant_stiffness(solver::Assembly& assembly) const {
   for (const BendElement& bend : bends_)
     for (std::size_t k = 0; k < 3; ++k)
       assembly.add_scalar(bend.scalars[k],
                           parameters_.bend * bend.length * bend.weights[k] * bend.weights[(k + 1) % 3]);
 }
 
-void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
-                        solver::BlockMatrix& jacobian) const {
+void RopeForce::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                             solver::BlockMatrix& jacobian) const {
   const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
@@ -200,7 +200,7 @@ void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double
   }
 }
 
-double Cord::energy(std::span<const Vec3> x) const {
+double RopeForce::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Piece& piece : pieces_) {
     const double extension = piece_length(x, piece.particles) - piece.rest;
@@ -211,14 +211,14 @@ double Cord::energy(std::span<const Vec3> x) const {
   return sum;
 }
 
-double Cord::max_strain(std::span<const Vec3> x) const {
+double RopeForce::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
   for (const Piece& piece : pieces_)
     largest = std::max(largest, std::abs(piece_length(x, piece.particles) / piece.rest - 1));
   return largest;
 }
 
-void Cord::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
+void RopeForce::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
   for (const Piece& piece : pieces_) {
     const auto strain = static_cast<float>(std::abs(piece_length(x, piece.particles) / piece.rest - 1));
     for (const Index p : piece.particles) strains[slot(p - first_)] = std::max(strains[slot(p - first_)], strain);

@@ -1,4 +1,4 @@
-// Ropes and cords: chains of particles with stretch and bending stiffness and air drag.
+// Ropes: chains of particles with stretch and bending stiffness and air drag.
 #pragma once
 
 #include <array>
@@ -8,29 +8,29 @@
 
 namespace weft::forces {
 
-struct CordParameters {
+struct RopeForceParameters {
   double stretch = 0;            ///< force per strain, EA [N]
   double stretch_viscosity = 0;  ///< η, force per rate of strain [N·s]
   double bend = 0;               ///< bending stiffness, EI [N·m²]
   double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
   double air_density = 0;        ///< ρ [kg/m³]; 0: no air
   Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], if Evaluation::air_velocity is empty
-  double drag = 0;               ///< c, drag coefficient across the cord
+  double drag = 0;               ///< c, drag coefficient across the rope
   double diameter = 0;           ///< d, for drag [m]
 };
 
-/// The forces on one rope or cord: a chain of particles. A piece is the part between two consecutive particles.
+/// The forces on one rope: a chain of particles. A piece is the part between two consecutive particles.
 ///
 /// Stretch: a piece of length l and rest length r has the energy ½ EA r (l/r − 1)² and the viscous tension η d(l/r)/dt.
 /// Bending: each particle between two pieces has the energy ½ EI L ‖s''‖². s'' is the second difference of the
 /// positions with the rest lengths as spacings, and L is the mean of both rest lengths. At clamps, L is half of the
-/// rest length on the free side, as in Bend. The cord is straight at rest. For the viscosity of bending
+/// rest length on the free side, as in Bend. The rope is straight at rest. For the viscosity of bending
 /// see BendDamping. Air: the drag on a piece is −½ ρ c d l ‖v_n‖ v_n; each end gets half of it. v_n
 /// is the mean velocity of both ends relative to the air, without its component along the piece.
-class Cord final : public Membrane {
+class RopeForce final : public Membrane {
  public:
   /// `lengths`: rest lengths of the pieces [m]; `closed`: the last piece connects the last particle to the first.
-  Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters);
+  RopeForce(std::span<const double> lengths, bool closed, Index first, const RopeForceParameters& parameters);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
@@ -72,7 +72,7 @@ class Cord final : public Membrane {
   void compute_weights(BendElement& bend) const;
 
   Index first_;
-  CordParameters parameters_;
+  RopeForceParameters parameters_;
   BendDamping damping_;
   double length_ratio_ = 0;  // of current to initial rest lengths; 0: not set yet
   std::vector<Piece> pieces_;
@@ -80,7 +80,7 @@ class Cord final : public Membrane {
 };
 
 /// Lumped masses [kg]: each end of a piece gets half of the mass of the piece. `lengths`, `closed`:
-/// as in Cord. `mass`: per length [kg/m].
+/// as in RopeForce. `mass`: per length [kg/m].
 std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass);
 
 }  // namespace weft::forces
