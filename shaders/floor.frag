@@ -57,8 +57,9 @@ void main() {
 #ifdef REFLECTING
   // Schlick's approximation of Fresnel's equations; a rough floor reflects less at grazing angles (Lagarde 2011).
   float roughness = frame.center_world.w, edge = 1.0 - max(-dot(normalize(ray_world), n), 0.0);
-  float share = 0.04 + max(0.96 - roughness, 0.0) * edge * edge * edge * edge * edge;
-  share *= 1.0 - away_from_subjects(position_world);
-  color.rgb = srgb(reflect_in_floor(color.rgb, gl_FragCoord.xy * frame.viewport.zw, distance_view, roughness, share));
+  float reflectance = 0.04 + max(0.96 - roughness, 0.0) * edge * edge * edge * edge * edge;
+  reflectance *= 1.0 - away_from_subjects(position_world);
+  color.rgb = srgb(reflect_in_floor(color.rgb, gl_FragCoord.xy * frame.viewport.zw, distance_view, roughness,
+                                    reflectance));
 #endif
 }

@@ -20,7 +20,7 @@ layout(location = 2) out vec2 distance_surface;  // see "Surface numbers" in fra
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, premultiplied
 #endif
-uniform int laid;         // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 with holes
+uniform int paint_mode;   // 0: not painted, 1: colour, 2: picture times colour, 3: picture over colour, 4: 2 with holes
 uniform vec3 color;       // linear
 uniform vec4 back_color;  // used if w < 0; else the back has the colour of the front, paler by w
 layout(location = 3) out vec4 paint;
@@ -57,7 +57,7 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy) + (gl_FrontFacing ? 0 : 2) * ivec2(1, 1);
   if (texel.a < (2.0 * kOrder[4 * (pixel.y & 3) + (pixel.x & 3)] + 1.0) / 32.0) discard;
 #endif
-  if (laid == 3) {
+  if (paint_mode == 3) {
     front = color * (1.0 - texel.a) + texel.rgb;
     covered = 0.6 + 0.4 * texel.a;
   } else {
@@ -66,7 +66,7 @@ void main() {
 #endif
   vec3 root = sqrt(front);
   if (!gl_FrontFacing) root = back_color.w < 0.0 ? sqrt(back_color.rgb) : mix(root, vec3(1.0), back_color.w);
-  paint = laid == 0 ? vec4(0.0) : vec4(root, covered);
+  paint = paint_mode == 0 ? vec4(0.0) : vec4(root, covered);
 #endif
   vec3 n = normalize(surface_normal_world);
   float side = gl_FrontFacing ? 1.0 : -1.0;

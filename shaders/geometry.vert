@@ -14,7 +14,7 @@ layout(location = 5) in vec3 vertex_trim_distances;
 layout(location = 6) in vec3 vertex_trim_places;
 out vec3 trim_distances, trim_places;
 #endif
-uniform float nearer;  // depth offset towards the viewer [m]
+uniform float depth_offset;  // depth offset towards the viewer [m]
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
@@ -45,8 +45,8 @@ void main() {
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
 #endif
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
-  if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
+  if (depth_offset > 0.0 && gl_Position.w > frame.frustum.z) {
     float near = frame.frustum.z;
-    gl_Position.z = near * gl_Position.w / max(gl_Position.w - nearer, near);
+    gl_Position.z = near * gl_Position.w / max(gl_Position.w - depth_offset, near);
   }
 }

@@ -6,9 +6,9 @@ const int kMirrorTaps = 8;  // number of texture samples per pixel
 // sRGB to linear light, with an error below 0.5/255 (a cubic fitted to IEC 61966-2-1).
 vec3 decode(vec3 srgb) { return srgb * (srgb * (srgb * 0.305306011 + 0.682171111) + 0.012522878); }
 
-// Blends the reflection with the weight `share` over the floor's colour (sRGB); returns linear light. `distance_view`:
+// Blends the reflection by `weight` over the floor's colour (sRGB); returns linear light. `distance_view`:
 // distance of the floor along the view axis [m].
-vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float share) {
+vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float weight) {
   vec2 at = vec2(uv.x, 1.0 - uv.y);
   // A rough floor scatters light into a cone (`cone`: tangent of its half angle), so that the blur radius grows with
   // the distance from the floor to the reflected surface. This distance is that of the nearest surface in the pixels
@@ -31,5 +31,5 @@ vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness,
     sum += decode(textureLod(mirror, at + offset, max(level - 1.0, 0.0)).rgb);
     direction = next_direction(direction);
   }
-  return mix(decode(color), sum / float(kMirrorTaps), share);
+  return mix(decode(color), sum / float(kMirrorTaps), weight);
 }

@@ -60,7 +60,7 @@ const float kThreadShine = 0.14;  // reflectance factor of threads with full glo
 // tuned by eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
 const vec3 kScattered = vec3(0.50, 0.17, 0.06);
 const vec3 kPastTerminator = vec3(0.20, 0.11, 0.07);  // light emerges down to this cosine of normal and light, negated
-vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(share * (2.0 - share)), skin * kScattered); }
+vec3 scattered(float lit, float skin) { return mix(vec3(lit), vec3(lit * (2.0 - lit)), skin * kScattered); }
 // The clamped cosine max(cosine, 0), rounded at the terminator.
 vec3 scattered_cosine(float cosine, float skin) {
   vec3 width = skin * kPastTerminator, rounded = clamp(cosine + width, vec3(0.0), 2.0 * width);
@@ -160,7 +160,7 @@ void main() {
 #ifdef TRIMMED
   Trimmed trimmed = trim(pixel, distance_view * 2.0 * frame.frustum.y * frame.viewport.w, rest_uv, heat_trim.yzw, front, threads, woven, at.n);
   at.n = trimmed.normal_world;
-  albedo = mix(albedo * trimmed.tone, kJeans, trimmed.thread);
+  albedo = mix(albedo * trimmed.tone, kDenimThreadColor, trimmed.thread);
   if (trimmed.layers > 1.0) at.finish.w = mix(at.finish.w, at.finish.w * at.finish.w, trimmed.layers - 1.0);
 #endif
   at.weft = normalize(woven.weft_world - dot(woven.weft_world, at.n) * at.n + 1e-6);
@@ -219,12 +219,12 @@ void main() {
   vec4 near_by = texelFetch(mirrored_surfaces, pixel, 0);
   // Only metal and coats have mirror rays; other surfaces use the uncovered fraction of all surroundings.
   float past = at.finish.x + at.finish.y > 0.0 ? 1.0 - near_by.w : open;
-  vec3 share = at.colored_f0 + (1.0 - at.colored_f0) * rim * (1.0 - roughness);
+  vec3 reflectance = at.colored_f0 + (1.0 - at.colored_f0) * rim * (1.0 - roughness);
   vec3 around = surroundings(mirrored, at.alpha) * past, above = surroundings(mirrored, kCoatAlpha) * past;
   around = max(around + near_by.rgb, 0.1 * around);
   above = max(above + near_by.rgb, 0.1 * above);
   float coat = at.finish.x * (kCoat + (1.0 - kCoat) * rim * edge);
-  vec3 base = albedo * light.diffuse * (1.0 - at.finish.y) * (1.0 - share) + around * share;
+  vec3 base = albedo * light.diffuse * (1.0 - at.finish.y) * (1.0 - reflectance) + around * reflectance;
   vec3 linear = mix(base, above, coat) + light.gloss;
 #else
 #ifdef SKIN

@@ -16,8 +16,8 @@ vec3 surroundings(vec3 toward, float alpha) {
   vec3 sum = mix(frame.ground.rgb, above, smoothstep(-blur, blur, height));
   float own = 2.0 / (alpha * alpha + 1e-4);
   for (int i = 0; i < 3; ++i) {
-    float share = own / (frame.box_axes[i].w + own);
-    sum += frame.box_lights[i].rgb * (share * exp(share * frame.box_axes[i].w * (dot(frame.box_axes[i].xyz, toward) - 1.0)));
+    float ratio = own / (frame.box_axes[i].w + own);
+    sum += frame.box_lights[i].rgb * (ratio * exp(ratio * frame.box_axes[i].w * (dot(frame.box_axes[i].xyz, toward) - 1.0)));
   }
   return sum;
 }

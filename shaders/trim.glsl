@@ -8,9 +8,9 @@ const float kStitchFromFold = 0.002;  // distance of a hem's stitches from its i
 const float kGroove = 0.0011, kThread = 0.00028;  // half widths
 const float kStitch = 0.0032;  // distance from stitch to stitch
 const float kOnTop = 0.78;     // visible fraction of a stitch's thread
-const float kTwin = 0.005;     // distance of both rows of stitches in knits and denim, which are sewn with two needles
-const vec3 kJeans = vec3(0.60, 0.27, 0.05);  // linear colour of the thread in denim
-const float kValley = 0.0013;  // half width of the groove along a seam
+const float kRowDistance = 0.005;  // between both rows of stitches in knits and denim, sewn with two needles
+const vec3 kDenimThreadColor = vec3(0.60, 0.27, 0.05);  // linear colour of the thread in denim
+const float kSeamGrooveHalfWidth = 0.0013;  // half width of the groove along a seam
 
 // Fraction of a pixel, of width `width` around `at`, that a band of half width `half_width` around `center` covers [m].
 float band(float at, float width, float center, float half_width) {
@@ -81,20 +81,20 @@ Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front
   if (hem > 0.0) {
     float line = hem - kStitchFromFold, side = front ? 0.25 : 1.0;
     rise += groove(at.x, width.x, line) - side * 0.7 * band(at.x, width.x, hem, 0.5 * thickness + 1e-4);
-    Rows sewn = rows(at.x, width.x, line, -kTwin, shown, threads);
+    Rows sewn = rows(at.x, width.x, line, -kRowDistance, shown, threads);
     tone = sewn.tone * (1.0 - 0.3 * side * band(at.x, width.x, hem + thickness, thickness));
     thread = sewn.thread;
   }
-  float valley = band(at.y, width.y, 0.0, kValley);
-  // If the groove along a seam (`valley`) is only a few pixels wide, derivatives across the seam are invalid. Then its
-  // slopes darken the colour instead of tilting the normal.
+  float seam_groove = band(at.y, width.y, 0.0, kSeamGrooveHalfWidth);
+  // If the groove along a seam (`seam_groove`) is only a few pixels wide, derivatives across the seam are invalid.
+  // Then its slopes darken the colour instead of tilting the normal.
   const float kSlope = 0.7;
-  float sloped = woven.at_outline ? 0.0 : 1.0 - smoothstep(0.3, 0.6, width.y / kValley);
-  float fall = kSlope * sloped * valley;
-  tone *= 1.0 - valley * (1.0 - sloped) * (1.0 - inversesqrt(1.0 + kSlope * kSlope));
-  tone *= 1.0 - 0.22 * valley - band(at.y, width.y, 0.0, 0.0004) * mix(0.5, 0.1, shown);
+  float sloped = woven.at_outline ? 0.0 : 1.0 - smoothstep(0.3, 0.6, width.y / kSeamGrooveHalfWidth);
+  float fall = kSlope * sloped * seam_groove;
+  tone *= 1.0 - seam_groove * (1.0 - sloped) * (1.0 - inversesqrt(1.0 + kSlope * kSlope));
+  tone *= 1.0 - 0.22 * seam_groove - band(at.y, width.y, 0.0, 0.0004) * mix(0.5, 0.1, shown);
   if (look.z > 0.0) {
-    Rows sewn = rows(at.y, width.y, look.z, kTwin, shown, threads);
+    Rows sewn = rows(at.y, width.y, look.z, kRowDistance, shown, threads);
     tone *= sewn.tone;
     thread += sewn.thread;
     fall += groove(at.y, width.y, look.z);

@@ -13,7 +13,7 @@ float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 float thread_noise(float thread) { return noise(thread + 1.0) - noise(thread); }
 
 // Random value from -0.5 to 0.5 for each cell.
-float speck(ivec2 cell) {
+float cell_noise(ivec2 cell) {
   uint mixed = uint(cell.x) * 0x9E3779B1u ^ uint(cell.y) * 0x85EBCA77u;
   mixed = (mixed ^ (mixed >> 15)) * 0x2C1B3C6Du;
   return float((mixed ^ (mixed >> 13)) & 0xFFFFu) / 65535.0 - 0.5;
@@ -24,8 +24,8 @@ float unevenness(vec2 at) {
   vec2 whole = floor(at), f = at - whole;
   f = f * f * (3.0 - 2.0 * f);
   ivec2 cell = ivec2(whole);
-  return mix(mix(speck(cell), speck(cell + ivec2(1, 0)), f.x),
-             mix(speck(cell + ivec2(0, 1)), speck(cell + ivec2(1, 1)), f.x), f.y);
+  return mix(mix(cell_noise(cell), cell_noise(cell + ivec2(1, 0)), f.x),
+             mix(cell_noise(cell + ivec2(0, 1)), cell_noise(cell + ivec2(1, 1)), f.x), f.y);
 }
 
 struct Weave {
@@ -41,7 +41,7 @@ struct Weave {
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
 // The yarn on top at one point.
-struct Top {
+struct TopYarn {
   float height;  // relative to its mean
   vec2 tilt;     // tilt of the normal along weft and warp
   float yarn;    // random seed, different for each thread
@@ -50,32 +50,32 @@ struct Top {
 
 // Plain weave of round yarns: the height of a yarn falls across it, and along it toward the yarns that cross above it.
 // `thread`: position [threads].
-Top plain_top(vec2 thread) {
+TopYarn plain_top(vec2 thread) {
   vec2 cell = floor(thread), local = fract(thread) - 0.5;
   bool weft_over = mod(cell.x + cell.y, 2.0) < 1.0;
   vec2 at = weft_over ? local : local.yx, bend = vec2(0.9 * at.x, 1.5 * at.y);
   float height = 1.0 - 1.6 * at.y * at.y - 1.1 * at.x * at.x;
-  return Top(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
+  return TopYarn(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
 }
 
 // 3/1 twill: each warp thread passes over three weft threads and under one, offset by one for the next warp thread.
-Top twill_top(vec2 thread) {
+TopYarn twill_top(vec2 thread) {
   vec2 cell = floor(thread), local = fract(thread) - 0.5;
   float place = mod(cell.y - cell.x, 4.0);
   bool weft_over = place < 0.5;
   vec2 at = weft_over ? local : vec2((place - 2.0 + local.y) / 3.0, local.x);
   float height = 1.0 - 1.6 * at.y * at.y - 1.1 * at.x * at.x;
   vec2 bend = vec2(0.9 * at.x, 1.5 * at.y);
-  return Top(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
+  return TopYarn(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
 }
 
 // Jersey: columns of stitches, each stitch with two legs that diverge upward.
-Top knit_top(vec2 thread) {
+TopYarn knit_top(vec2 thread) {
   float column = fract(thread.x) - 0.5, side = column < 0.0 ? -1.0 : 1.0, off = abs(column) - 0.25;
   float course = fract(1.25 * thread.y - 1.4 * abs(column)) - 0.5;
   float height = 1.0 - 8.0 * off * off - 1.4 * course * course;
   vec2 tilt = vec2(side * (4.0 * off - 0.9 * course), 0.8 * course);
-  return Top(height - 0.717, tilt, floor(thread.x) + 37.0, false);
+  return TopYarn(height - 0.717, tilt, floor(thread.x) + 37.0, false);
 }
 
 // Tone variation of yarns, in patches of three sizes: 3, 9 and 27 threads wide and eight times as long (without
@@ -83,18 +83,18 @@ Top knit_top(vec2 thread) {
 // protruding fibres vary in tone. `footprint`: size of the pixel along weft and along warp [threads]; both are needed,
 // because at oblique view only the yarns of one direction may be visible.
 float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
-  vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
-  float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
+  vec2 strength = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
+  float aspect = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
   float uneven = kUneven / 0.7;
   for (float size = 3.0; size < 30.0; size *= 3.0) {
-    vec2 seen = vec2(visible_feature(max(footprint.y, length_share * footprint.x), size),
-                     visible_feature(max(footprint.x, length_share * footprint.y), size));
+    vec2 seen = vec2(visible_feature(max(footprint.y, aspect * footprint.x), size),
+                     visible_feature(max(footprint.x, aspect * footprint.y), size));
     uneven *= 0.7;
     if (max(seen.x, seen.y) == 0.0) continue;
     vec2 at = thread / size;
     tone *= 1.0 + uneven * (1.0 + fibres) *
-                      (seen.x * share.x * unevenness(at * vec2(length_share, 1.0)) +
-                       seen.y * share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
+                      (seen.x * strength.x * unevenness(at * vec2(aspect, 1.0)) +
+                       seen.y * strength.y * unevenness(at.yx * vec2(aspect, 1.0) + 71.0));
   }
   float seen = visible_feature(max(footprint.x, footprint.y), 1.0) * fibres;
   // Fibres of felt have all directions, spun fibres that of their yarns.
@@ -143,7 +143,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   }
   float fine = visible_feature(footprint, 1.0);
   if (fine > 0.0 && threads != kNone) {
-    Top top = threads == kPlain ? plain_top(thread) : threads == kKnit ? knit_top(thread) : twill_top(thread);
+    TopYarn top = threads == kPlain ? plain_top(thread) : threads == kKnit ? knit_top(thread) : twill_top(thread);
     result.normal_world = normalize(n_world + 0.75 * fine * (top.tilt.x * weft + top.tilt.y * warp));
     // top.height has the mean 0, so that the mean tone does not change when threads fade.
     result.tone *= 1.0 + fine * (0.85 * top.height + 0.07 * thread_noise(top.yarn));

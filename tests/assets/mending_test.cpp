@@ -81,8 +81,8 @@ TEST(MendedSheet, FacesAsMostOfItsAreaDoes) {
     std::swap(loaded.mesh.topology.triangles[t][0], loaded.mesh.topology.triangles[t][1]);
   paint(loaded);
   const MendingReport mended = mend_sheet(loaded, kFlattest);
-  EXPECT_EQ(mended.turned, 4U);
-  EXPECT_EQ(mended.cut, 0U);
+  EXPECT_EQ(mended.flipped, 4U);
+  EXPECT_EQ(mended.cut_edges, 0U);
   ASSERT_TRUE(manifold(loaded));
   for (const mesh::Triangle& t : loaded.mesh.topology.triangles) EXPECT_GT(normal(loaded, t).z(), 0);
   expect_uv_of_places(loaded);
@@ -96,7 +96,7 @@ TEST(MendedSheet, HasOneOfTwoTrianglesThatLieOnEachOther) {
     loaded.mesh.topology.triangles.push_back({c, b, a});
   }
   paint(loaded);
-  EXPECT_EQ(mend_sheet(loaded, kFlattest).doubled, 6U);
+  EXPECT_EQ(mend_sheet(loaded, kFlattest).duplicates, 6U);
   EXPECT_TRUE(manifold(loaded));
   EXPECT_EQ(loaded.mesh.topology.triangles.size(), 6U);
   expect_uv_of_places(loaded);
@@ -119,7 +119,7 @@ TEST(MendedSheet, LosesASmallFlap) {
   LoadedMesh loaded = with_flap(1);
   loaded.mesh.positions.back() = {3, 0.5, 0.1};
   const MendingReport mended = mend_sheet(loaded, kFlattest);
-  EXPECT_EQ(mended.cut, 1U);
+  EXPECT_EQ(mended.cut_edges, 1U);
   EXPECT_EQ(mended.pieces, 1U);
   EXPECT_NEAR(mended.left_out, 0.05 / 8.05, 1e-12);
   EXPECT_TRUE(manifold(loaded));
@@ -130,7 +130,7 @@ TEST(MendedSheet, LosesASmallFlap) {
 TEST(MendedSheet, KeepsALargeFlapALittleBeforeTheEdge) {
   LoadedMesh loaded = with_flap(2);
   const MendingReport mended = mend_sheet(loaded, kFlattest);
-  EXPECT_EQ(mended.cut, 1U);
+  EXPECT_EQ(mended.cut_edges, 1U);
   EXPECT_EQ(mended.pieces, 0U);
   ASSERT_TRUE(manifold(loaded));
   EXPECT_EQ(loaded.mesh.topology.triangles.size(), 18U);
@@ -162,7 +162,7 @@ TEST(MendedSheet, CannotFaceAlikeAllAroundAMoebiusStrip) {
   loaded.groups["all"].resize(16);
   EXPECT_FALSE(manifold(loaded));
   const MendingReport mended = mend_sheet(loaded, kFlattest);
-  EXPECT_EQ(mended.cut, 1U);
+  EXPECT_EQ(mended.cut_edges, 1U);
   EXPECT_TRUE(manifold(loaded));
 }
 

@@ -101,11 +101,11 @@ TEST(Dressing, BonesOfTheMannequinAreInsideOfIt) {
 }
 
 TEST(Dressing, GrowsFromATenthToAllWithoutAJerk) {
-  EXPECT_NEAR(grown(-1, 2), 0.1, 1e-15);
-  EXPECT_NEAR(grown(0, 2), 0.1, 1e-15);
-  EXPECT_NEAR(grown(1, 2), 0.55, 1e-15);
-  EXPECT_NEAR(grown(2, 2), 1, 1e-15);
-  EXPECT_NEAR((grown(1e-4, 2) - grown(0, 2)) / 1e-4, 0, 1e-3);
+  EXPECT_NEAR(growth_fraction(-1, 2), 0.1, 1e-15);
+  EXPECT_NEAR(growth_fraction(0, 2), 0.1, 1e-15);
+  EXPECT_NEAR(growth_fraction(1, 2), 0.55, 1e-15);
+  EXPECT_NEAR(growth_fraction(2, 2), 1, 1e-15);
+  EXPECT_NEAR((growth_fraction(1e-4, 2) - growth_fraction(0, 2)) / 1e-4, 0, 1e-3);
 }
 
 constexpr double kRoom = 0.008;
@@ -170,7 +170,7 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   pose.nodes[thigh].rotation = (turn * pose.nodes[thigh].rotation).normalized();
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
-  const Moved moved = clearance({}, 0.016).move_skin(pose, after);
+  const LargestDisplacement moved = clearance({}, 0.016).move_skin(pose, after);
   EXPECT_GT(crossings(before), 10u);
   EXPECT_LE(crossings(after), crossings(before));
   EXPECT_GT(moved.distance, 0);
@@ -205,7 +205,7 @@ TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   for (std::size_t v = 0; v < before.size(); ++v) near_cloth[v] = limbs[v] == Limb::trunk && before[v].x() > 0 ? 1 : 0;
   std::vector<Vec3> after = before;
   const LimbClearance dressed({body_, joints_}, VertexMask(before.size(), 1), near_cloth, kRoom, {});
-  const Moved moved = dressed.move_skin(pose, after);
+  const LargestDisplacement moved = dressed.move_skin(pose, after);
   double left = 0, right = 0, most = 0;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double distance = (after[v] - before[v]).norm();
@@ -260,7 +260,8 @@ TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
   skin(body, pose, x);
   std::vector<float> near_cloth(x.size(), 0);
   std::fill_n(near_cloth.begin() + 4, 6, 1.0F);
-  const Moved moved = LimbClearance({body, joints}, VertexMask(x.size(), 1), near_cloth, 0.01, {}).move_skin(pose, x);
+  const LargestDisplacement moved =
+      LimbClearance({body, joints}, VertexMask(x.size(), 1), near_cloth, 0.01, {}).move_skin(pose, x);
   EXPECT_EQ(moved.vertex, 3);
   EXPECT_EQ(moved.limb, "left upper leg");
   EXPECT_EQ(moved.away_from, "trunk");
@@ -278,7 +279,7 @@ TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   }
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
-  const Moved moved = clearance({}, 0.016).move_skin(pose, after);
+  const LargestDisplacement moved = clearance({}, 0.016).move_skin(pose, after);
   EXPECT_GT(crossings(before), 100u);
   EXPECT_GT(moved.distance, 0.01);
   EXPECT_LT(moved.distance, 0.08) << "half of a trunk that is 0.3 m wide";

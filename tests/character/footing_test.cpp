@@ -85,14 +85,14 @@ TEST(Footing, ReachBringsTheAnkleThereAndBendsTheKneeForward) {
   straight.ankle = Vec3(0, 0, -0.8);
   for (const Leg& leg : {leg_at(Vec3::Zero()), straight})
     for (const Vec3& ankle : {Vec3(0.1, -0.2, -0.6), Vec3(0, 0.3, -0.5), Vec3(-0.1, 0, -0.4)}) {
-      const LegTurns turns = reach(leg, ankle);
+      const LegTurns turns = solve_two_bone_ik(leg, ankle);
       const Vec3 thigh = turns.upper * (leg.knee - leg.hip), shin = turns.lower * (leg.ankle - leg.knee);
       // Tolerance 1e-9, above rounding errors, because an arc cosine inverts the law of cosines.
       EXPECT_LT((leg.hip + thigh + shin - ankle).norm(), 1e-9);
       EXPECT_GT(thigh.cross(shin).x(), 0);
     }
   // If the target is out of reach, the leg points toward it.
-  const LegTurns turns = reach(straight, Vec3(0, -2, 0));
+  const LegTurns turns = solve_two_bone_ik(straight, Vec3(0, -2, 0));
   EXPECT_LT((turns.lower * Vec3(0, 0, -1) - Vec3(0, -1, 0)).norm(), 1e-6);
 }
 

@@ -39,7 +39,7 @@ Clip make_stride(const Character& body, double speed) {
   const StepPlan adjusted = plan_walk(physique, walk);
   walk.distance *= pace.step_length / (adjusted.speed * adjusted.key_time * adjusted.step_keys);
   const StepPlan plan = plan_walk(physique, walk);
-  const auto first = static_cast<std::ptrdiff_t>(plan.plants[0][6].strike);
+  const auto first = static_cast<std::ptrdiff_t>(plan.footholds[0][6].strike);
   const auto cut = [&](auto& curve) {
     if (curve.times.empty()) return;
     const double start = curve.times[first];

@@ -47,7 +47,7 @@ class Travel : public testing::Test {
 };
 
 TEST_F(Travel, OfNoneLeavesTheBodyWhereItIs) {
-  const Clip clip = in_place(rig_, walk_, kUp);
+  const Clip clip = remove_travel(rig_, walk_, kUp);
   ASSERT_GT((hips(walk_, walk_.duration) - hips(walk_, 0)).norm(), 0.9 * kWay);
   EXPECT_LT((hips(clip, walk_.duration) - hips(clip, 0)).norm(),
             1e-5);  // the last key is 2 µs before the end of the clip
@@ -59,10 +59,10 @@ TEST_F(Travel, OfNoneLeavesTheBodyWhereItIs) {
 }
 
 TEST_F(Travel, AtTheSpeedOfTheFeetMakesThemStand) {
-  const Clip still = in_place(rig_, walk_, kUp);
+  const Clip still = remove_travel(rig_, walk_, kUp);
   ASSERT_GT(slip(still), 0.5);
   const double mean = kWay / walk_.duration;
-  const TravelResult traveled = at_speed(rig_, still, mean, kUp);
+  const TravelResult traveled = set_travel_speed(rig_, still, mean, kUp);
   // The ball of the foot rolls before and after it stands: measured 6 %.
   EXPECT_NEAR(traveled.feet, mean, 0.1 * mean);
   EXPECT_NEAR((hips(traveled.clip, walk_.duration) - hips(traveled.clip, 0)).norm(), kWay, 0.02 * kWay);
@@ -71,8 +71,8 @@ TEST_F(Travel, AtTheSpeedOfTheFeetMakesThemStand) {
 }
 
 TEST_F(Travel, TakesTheWayOfTheClipOutFirst) {
-  const TravelResult once = at_speed(rig_, in_place(rig_, walk_, kUp), 0.5, kUp),
-                     twice = at_speed(rig_, walk_, 0.5, kUp);
+  const TravelResult once = set_travel_speed(rig_, remove_travel(rig_, walk_, kUp), 0.5, kUp),
+                     twice = set_travel_speed(rig_, walk_, 0.5, kUp);
   for (const double t : {0.5, 1.5, walk_.duration})
     EXPECT_LT((hips(once.clip, t) - hips(twice.clip, t)).norm(), 0.05) << t;
 }
@@ -90,7 +90,7 @@ TEST_F(Travel, TakesAlongWhatTravelsBesideTheHips) {
   ASSERT_FALSE(beside.position.times.empty());
   walk.channels.push_back(beside);
   const Rig rig{body, joints_};
-  for (const Clip& clip : {in_place(rig, walk, kUp), at_speed(rig, walk, 0.5, kUp).clip})
+  for (const Clip& clip : {remove_travel(rig, walk, kUp), set_travel_speed(rig, walk, 0.5, kUp).clip})
     for (const double t : {0.0, 1.5, walk.duration}) {
       const Pose pose = pose_at(body, clip, t);
       EXPECT_LT((pose.nodes.back().position - pose.nodes[hip_node].position).norm(), 1e-9) << t;
@@ -108,7 +108,7 @@ TEST_F(Travel, MovesTheHipsIfOnlyNodesBelowThemTravel) {
   const Vec3 neck = body_.nodes[head].local.translation();
   for (Channel& channel : standing_clip.channels)
     if (channel.node == head) channel.position = {{0, standing_clip.duration}, {neck, neck + Vec3(0, 0, 0.01)}};
-  const Clip clip = at_speed(rig_, standing_clip, 0.5, kUp).clip;
+  const Clip clip = set_travel_speed(rig_, standing_clip, 0.5, kUp).clip;
   EXPECT_NEAR((hips(clip, standing_clip.duration) - hips(clip, 0)).norm(), 0.5 * standing_clip.duration, 1e-3);
 }
 
@@ -118,7 +118,7 @@ TEST_F(Travel, GoesAheadWhereNoFeetTell) {
     for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
     for (Vec3& place : channel.position.values) place = channel.position.values.front();
   }
-  const TravelResult traveled = at_speed(rig_, standing_clip, 0.5, kUp);
+  const TravelResult traveled = set_travel_speed(rig_, standing_clip, 0.5, kUp);
   EXPECT_EQ(traveled.feet, 0);
   const Vec3 displacement = hips(traveled.clip, standing_clip.duration) - hips(traveled.clip, 0);
   EXPECT_LT((displacement - 0.5 * standing_clip.duration * -Vec3::UnitY()).norm(),

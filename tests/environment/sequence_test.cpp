@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::environment {

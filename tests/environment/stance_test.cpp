@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 #include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 

@@ -23,7 +23,7 @@
 #include "core/nesting.hpp"
 #include "core/toml.hpp"
 #include "film/assets/character_reader.hpp"
-#include "film/assets/soup.hpp"
+#include "film/assets/raw_mesh.hpp"
 #include "film/cache/codec.hpp"
 #include "film/cache/container.hpp"
 #include "film/cache/manifest.hpp"

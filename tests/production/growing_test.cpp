@@ -46,9 +46,9 @@ std::vector<std::string> notes_of(const Action& action) {
 // At the start, the arms hang through the wall of the skirt.
 TEST(Growing, ArmsThatCrossASkirtAreHeldOffIt) {
   const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", pattern("skirt.toml"));
-  const auto posed = environment::with_arms_in_sleeves(scene, environment::Environment(scene));
+  const auto posed = environment::pose_arms_for_sleeves(scene, environment::Environment(scene));
   ASSERT_TRUE(posed);
-  EXPECT_EQ(scene::acting_of(posed->characters[0])->stance_arms.value_or(0), 45);
+  EXPECT_EQ(scene::skeleton_motion_of(posed->characters[0])->stance_arms.value_or(0), 45);
   EXPECT_EQ(crossing_pairs(*production::view_start(*posed).snapshot), 0U);
 }
 
@@ -57,9 +57,9 @@ TEST(Growing, ArmsThatCrossAShirtAndASkirtAreInTheSleeves) {
   const std::string shirt = pattern("tshirt.toml"), skirt = "[[cloth]]\nname = \"skirt\"\n" + pattern("skirt.toml");
   for (const std::string& cloths : {shirt + skirt, pattern("skirt.toml") + "[[cloth]]\nname = \"shirt\"\n" + shirt}) {
     const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", cloths);
-    const auto posed = environment::with_arms_in_sleeves(scene, environment::Environment(scene));
+    const auto posed = environment::pose_arms_for_sleeves(scene, environment::Environment(scene));
     ASSERT_TRUE(posed);
-    EXPECT_NEAR(scene::acting_of(posed->characters[0])->stance_arms.value_or(0), 57, 10) << cloths;
+    EXPECT_NEAR(scene::skeleton_motion_of(posed->characters[0])->stance_arms.value_or(0), 57, 10) << cloths;
   }
 }
 
@@ -79,10 +79,10 @@ TEST(Growing, ABodyThatAGarmentCannotBeMovedOutOfGrowsIntoIt) {
 TEST(Growing, AWearerGrowsWithItsArmsInTheSleeves) {
   const scene::Scene scene = dressed_mannequin("dressing = 0.2\nblend = 0.1\nwalk = 1\n", pattern("tshirt.toml"));
   std::vector<std::string> notes;
-  const auto growing = environment::with_growing_wearers(scene, environment::Environment(scene), notes);
+  const auto growing = environment::let_wearers_grow(scene, environment::Environment(scene), notes);
   ASSERT_TRUE(growing);
   EXPECT_EQ(growing->characters[0].grow, 0.1);
-  EXPECT_NEAR(scene::acting_of(growing->characters[0])->stance_arms.value_or(0), 57, 10);
+  EXPECT_NEAR(scene::skeleton_motion_of(growing->characters[0])->stance_arms.value_or(0), 57, 10);
 }
 
 // The wearer and its garment are valid; a second cloth touches a ball.
@@ -102,7 +102,7 @@ TEST(Growing, IsNotSaidIfOtherClothIsRefused) {
 TEST(Growing, NoWearerGrowsWithoutTimeForIt) {
   const scene::Scene scene = dressed_mannequin("walk = 1\n", pattern("tshirt.toml"));
   std::vector<std::string> notes;
-  EXPECT_FALSE(environment::with_growing_wearers(scene, environment::Environment(scene), notes));
+  EXPECT_FALSE(environment::let_wearers_grow(scene, environment::Environment(scene), notes));
 }
 
 TEST(Growing, AGarmentThatIsFittedStartsWhereItsWearerStands) {

@@ -70,7 +70,7 @@ TEST(Instants, NothingIsBlurredUnasked) {
   const frame::FrameSnapshot now = square_at(0.1), before = square_at(-0.1);
   Renderer renderer(small_settings());
   EXPECT_EQ(renderer.draw(now, &before).rgb, renderer.draw(now).rgb);
-  EXPECT_TRUE(instants(0, false, 16).empty());
+  EXPECT_TRUE(make_instants(0, false, 16).empty());
 }
 
 // For an object at twice the focus distance, the blur of an edge has half the width of the aperture, measured in the

@@ -53,11 +53,11 @@ struct Scene {
       }
     }
   }
-  void smooth(const std::optional<Floor>& floor = std::nullopt) {
+  void antialias(const std::optional<Floor>& floor = std::nullopt) {
     std::vector<DrawnMesh> meshes;
     for (const Thing& thing : things) meshes.push_back({thing.positions, thing.triangles});
     Outlines(kOutlinedWidth, kOutlinedHeight)
-        .smooth(seen, meshes, floor, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight}, picture);
+        .antialias(seen, meshes, floor, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight}, picture);
   }
   int red(int x, int y) const { return static_cast<int>((picture[y * kOutlinedWidth + x] & 0xFFFF) / 257); }
 };
@@ -77,7 +77,7 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
     Scene scene;
     scene.add(quad(10, 10, edge, 50, 2, kWhite), 2,
               [&](double x, double y) { return x > 10 && x < edge && y > 10 && y < 50; });
-    scene.smooth();
+    scene.antialias();
     double sum = 0;
     for (int x = 0; x < kOutlinedWidth; ++x) sum += scene.red(x, 30) / 255.0;
     EXPECT_NEAR(sum, edge - 10, 1.0 / 32 + 0.01) << edge;
@@ -98,7 +98,7 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
                     kQuad,
                     kWhite};
   scene.add(sheet, 2, [&](double x, double y) { return y < border(x); });
-  scene.smooth();
+  scene.antialias();
   // The column is covered up to the border at its middle. Each sample counts as 1/16.
   for (int x = 8; x < 88; ++x) {
     double covered = 0;
@@ -123,7 +123,7 @@ TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
       scene.picture[y * kOutlinedWidth + x] = kBlack;
     }
   }
-  scene.smooth();
+  scene.antialias();
   EXPECT_NEAR(scene.red(40, 30), 128, 1);
   EXPECT_EQ(scene.red(39, 30), 255);
   EXPECT_EQ(scene.red(41, 30), 0);
@@ -145,7 +145,7 @@ TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
     // would show.
     scene.seen[32 * kOutlinedWidth + 49] = {100, kNothing};
     scene.picture[32 * kOutlinedWidth + 49] = kBlack;
-    scene.smooth();
+    scene.antialias();
     EXPECT_EQ(scene.red(48, 32), 255) << i;
   }
 }
@@ -164,7 +164,7 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
     if (near_first) near();
     far();
     if (!near_first) near();
-    scene.smooth();
+    scene.antialias();
     EXPECT_NEAR(scene.red(40, 30), 64 + 191 / 4, 1) << near_first;
     EXPECT_EQ(scene.red(39, 30), 255);
     EXPECT_EQ(scene.red(41, 30), 64);
@@ -191,7 +191,7 @@ TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
         if (center > edge) scene.picture[y * kOutlinedWidth + x] = 0x404040404040;
       }
     }
-    scene.smooth();
+    scene.antialias();
     EXPECT_EQ(scene.red(39, 30), 255) << edge;
     EXPECT_NEAR(scene.red(40, 30), 64 + 191 * white_samples / 16, 1) << edge;
     EXPECT_EQ(scene.red(41, 30), 64) << edge;
@@ -211,7 +211,7 @@ TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
     }
   }
   scene.things.push_back(strip);
-  scene.smooth();
+  scene.antialias();
   for (int x = 0; x < kOutlinedWidth; ++x) {
     EXPECT_EQ(scene.red(x, 16), 255);
     EXPECT_EQ(scene.red(x, 17), 0);
@@ -230,7 +230,7 @@ TEST(Outlines, FloorFillsWhatLiesBehind) {
   }
   scene.add(quad(10, 4, 40.75, 20, 1, kWhite), 1,
             [](double x, double y) { return x > 10 && x < 40.75 && y > 4 && y < 20; });
-  scene.smooth(floor);
+  scene.antialias(floor);
   EXPECT_NEAR(scene.red(40, 10), (3 * 0xFF + 0x60) / 4, 1);
 }
 
@@ -240,8 +240,8 @@ TEST(Outlines, APictureOfOneFlatThingIsLeftAlone) {
             [](double, double) { return true; });
   Outlines outlines(kOutlinedWidth, kOutlinedHeight);
   const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
-  outlines.smooth(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
-                  scene.picture);
+  outlines.antialias(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
+                     scene.picture);
   EXPECT_EQ(outlines.count(), 0u);
 }
 
@@ -251,14 +251,14 @@ TEST(Outlines, APictureWithoutSurfacesKeepsNothingOfTheOneBefore) {
             [](double x, double y) { return x > 10 && x < 30 && y > 10 && y < 50; });
   Outlines outlines(kOutlinedWidth, kOutlinedHeight);
   const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
-  outlines.smooth(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
-                  scene.picture);
+  outlines.antialias(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
+                     scene.picture);
   EXPECT_GT(outlines.count(), 0u);
   Scene empty;
-  outlines.smooth(empty.seen, {}, std::nullopt, test_view(), {}, empty.picture);
+  outlines.antialias(empty.seen, {}, std::nullopt, test_view(), {}, empty.picture);
   EXPECT_EQ(outlines.count(), 0u);
   std::vector<Eigen::Vector4f> surfaces;
-  outlines.cut_out(empty.seen, empty.picture, surfaces);
+  outlines.extract_surfaces(empty.seen, empty.picture, surfaces);
   for (const Eigen::Vector4f& pixel : surfaces) ASSERT_EQ(pixel, Eigen::Vector4f(Eigen::Vector4f::Zero()));
 }
 

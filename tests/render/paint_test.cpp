@@ -190,7 +190,7 @@ TEST(Paint, VerticesAreSplitWhereCornersLieElsewhereAndTrianglesSortedByPart) {
   surface.paint_uv = {
       {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(5, 0), Vec2(6, 1), Vec2(5, 1)}, {Vec2(1, 0), Vec2(2, 0), Vec2(1, 1)}};
   const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}};
-  ShadedMesh mesh = shade(surface.triangles, CornerMap(surface.triangles, 5), positions, 180);
+  ShadedMesh mesh = make_shaded_mesh(surface.triangles, CornerMap(surface.triangles, 5), positions, 180);
   const PaintedMesh painted = make_painted_mesh(surface, mesh);
   ASSERT_EQ(painted.ranges.size(), 2u);
   EXPECT_EQ(painted.ranges[0].look, &surface.parts[0].appearance);

@@ -15,7 +15,7 @@ namespace {
 ShadedMesh shade_all(const frame::FrameSnapshot& snapshot, double crease_angle) {
   const auto& triangles = snapshot.surfaces[0]->triangles;
   const auto& positions = snapshot.states[0].positions;
-  return shade(triangles, CornerMap(triangles, positions.size()), positions, crease_angle);
+  return make_shaded_mesh(triangles, CornerMap(triangles, positions.size()), positions, crease_angle);
 }
 
 double worst_sphere_normal(int n) {

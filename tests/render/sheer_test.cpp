@@ -128,7 +128,7 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   view.far = 100;
   view.view_from_world = look_along(view.eye, view.axes);
   view.clip_from_world = perspective(0.5, 0.3, 0.1) * view.view_from_world;
-  const View below = mirrored(view, floor);
+  const View below = mirror_view(view, floor);
   // A point and its mirror image are in the same column, in rows counted from opposite sides, at the same distance.
   for (const Vec3& p : {Vec3(0.1, 0.2, 0.5), Vec3(-0.4, 1, 0.3)}) {
     const Vec3 image(p.x(), p.y(), 0.4 - p.z());

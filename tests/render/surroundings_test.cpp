@@ -21,7 +21,7 @@ Surroundings surroundings_of(Look look, const Vec3& ground) {
   stage.sky_color = Vec3(0.9, 0.8, 1.0);
   frame::Light key;
   key.direction = Vec3(-0.4, -0.5, -1);
-  return surround(style_of(stage), stage, Vec3::UnitZ(), {&key, 1}, ground);
+  return make_surroundings(style_of(stage), stage, Vec3::UnitZ(), {&key, 1}, ground);
 }
 
 /// Light that a matte white surface with normal n receives, summed over the sphere.
@@ -47,9 +47,9 @@ TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
     const Irradiance irradiance = irradiance_of(around);
     for (const Vec3& n : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0, 0.8),
                           Vec3(-0.48, 0.6, 0.64), Vec3(0.36, 0.48, -0.8)})
-      EXPECT_LT((at(irradiance, n) - summed(around, n)).cwiseAbs().maxCoeff(), 0.04)
-          << static_cast<int>(look) << " " << n.transpose() << ": " << at(irradiance, n).transpose() << " and "
-          << summed(around, n).transpose();
+      EXPECT_LT((evaluate_irradiance(irradiance, n) - summed(around, n)).cwiseAbs().maxCoeff(), 0.04)
+          << static_cast<int>(look) << " " << n.transpose() << ": " << evaluate_irradiance(irradiance, n).transpose()
+          << " and " << summed(around, n).transpose();
   }
 }
 
@@ -62,7 +62,8 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
       stage.look = look;
       stage.sky_color = Vec3(0.9, 0.8, 1.0);
       const Style style = style_of(stage);
-      const Vec3 flat = at(irradiance_of(surroundings_of(look, Vec3::Constant(ground))), Vec3::UnitZ());
+      const Vec3 flat =
+          evaluate_irradiance(irradiance_of(surroundings_of(look, Vec3::Constant(ground))), Vec3::UnitZ());
       EXPECT_LT((flat - style.sky_intensity * style.sky_color).cwiseAbs().maxCoeff(), 2e-3)
           << static_cast<int>(look) << ": " << flat.transpose();
     }

@@ -257,7 +257,7 @@ TEST(ReflectedLight, PictureThatLiesOnceHidesTheColorOnlyWhereItLies) {
   frame::Appearance& look = surface.appearance;
   look.color = Vec3(0, 0, 1);
   look.paint.texture = std::make_shared<const frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
-  ShadedMesh mesh = shade(surface.triangles, CornerMap(surface.triangles, positions.size()), positions, 180);
+  ShadedMesh mesh = make_shaded_mesh(surface.triangles, CornerMap(surface.triangles, positions.size()), positions, 180);
   const PaintedMesh painted = make_painted_mesh(surface, mesh);
   ASSERT_EQ(painted.ranges.size(), 1u);
   const auto color = [&] {

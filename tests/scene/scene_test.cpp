@@ -180,7 +180,7 @@ TEST_F(EveryKey, OfACharacterFillsItsMember) {
   EXPECT_EQ(character.dressing, 1.25);
   EXPECT_EQ(character.blend, 0.55);
   EXPECT_EQ(character.grow, 0.75);
-  EXPECT_EQ(character.room, 0.009);
+  EXPECT_EQ(character.clearance, 0.009);
   EXPECT_EQ(file.stance_arms, 85);
   EXPECT_EQ(character.start, 0.35);
   EXPECT_EQ(character.speed, 1.15);

@@ -28,13 +28,13 @@ constexpr double kMaxShotLength = 3600;
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// Value of a channel at the time `ticks` [ticks]. Constant before the first and after the last key.
-template <class Key, class Between>
-auto value_at(std::span<const Key> keys, double ticks, const Between& between) {
+template <class Key, class Interpolate>
+auto value_at(std::span<const Key> keys, double ticks, const Interpolate& interpolate) {
   const auto next = std::ranges::find_if(keys, [&](const Key& key) { return key.mTime > ticks; });
   if (next == keys.begin()) return keys.front().mValue;
   if (next == keys.end()) return keys.back().mValue;
   const Key &a = *(next - 1), &b = *next;
-  return between(a.mValue, b.mValue, static_cast<ai_real>((ticks - a.mTime) / (b.mTime - a.mTime)));
+  return interpolate(a.mValue, b.mValue, static_cast<ai_real>((ticks - a.mTime) / (b.mTime - a.mTime)));
 }
 
 aiVector3D vector_at(const aiVectorKey* keys, unsigned count, double ticks) {

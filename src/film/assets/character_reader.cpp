@@ -15,7 +15,7 @@
 #include "film/assets/clip_reader.hpp"
 #include "film/assets/import.hpp"
 #include "film/assets/material_reader.hpp"
-#include "film/assets/soup.hpp"
+#include "film/assets/raw_mesh.hpp"
 #include "physics/mesh/polygon.hpp"
 
 namespace weft::assets {
@@ -100,7 +100,7 @@ class CharacterReader {
         if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str())) read_mesh(mesh, static_cast<Index>(n));
       }
     check_choice(names);
-    const Soup unjoined = soup_;
+    const RawMesh unjoined = raw_mesh_;
     join_vertices();
     make_faces();
     color_faces(unjoined);
@@ -154,7 +154,7 @@ class CharacterReader {
     if (!faces) return;
     // Reads a skinned mesh only once, even if several nodes refer to it, because its bones determine its position.
     if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
-    const std::size_t base = soup_.positions.size();
+    const std::size_t base = raw_mesh_.positions.size();
     if (base + mesh.mNumVertices > kMaxVertices)
       throw std::runtime_error(fmt::format("mesh \"{}\": expected at most {} vertices in all", name, kMaxVertices));
 
@@ -162,8 +162,8 @@ class CharacterReader {
     std::vector<Weights> weights = read_weights(mesh, node, placing);
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D& x = mesh.mVertices[v];
-      soup_.positions.push_back(placing * Vec3(x.x, x.y, x.z));
-      if (!soup_.positions.back().allFinite())
+      raw_mesh_.positions.push_back(placing * Vec3(x.x, x.y, x.z));
+      if (!raw_mesh_.positions.back().allFinite())
         throw std::runtime_error(fmt::format("mesh \"{}\": vertex {} {}", name, v, kNotFinite));
       materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
       uv_.push_back(uv_of(mesh, v));
@@ -257,8 +257,8 @@ class CharacterReader {
   /// Scales the weights of each vertex to a sum of 1. Binds vertices without weights to the node of the mesh.
   void normalise_weights(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
     std::size_t unweighted = 0;
-    double furthest = 1;
-    std::size_t furthest_vertex = 0;
+    double worst_sum = 1;
+    std::size_t worst_sum_vertex = 0;
     Index own = -1;
     for (std::size_t v = 0; v < weights.size(); ++v) {
       double sum = 0;
@@ -272,17 +272,17 @@ class CharacterReader {
         weights[v] = {{own, 1}};
         continue;
       }
-      if (std::abs(sum - 1) > std::abs(furthest - 1)) {
-        furthest = sum;
-        furthest_vertex = v;
+      if (std::abs(sum - 1) > std::abs(worst_sum - 1)) {
+        worst_sum = sum;
+        worst_sum_vertex = v;
       }
       for (character::Influence& influence : weights[v]) influence.weight /= sum;
     }
-    if (std::abs(furthest - 1) > kWeightSlack)
+    if (std::abs(worst_sum - 1) > kWeightSlack)
       read_.warnings.push_back(
           fmt::format("mesh \"{}\": weights of a vertex should add up to 1; they were scaled, those "
                       "of vertex {} from {:g}",
-                      mesh.mName.C_Str(), furthest_vertex, furthest));
+                      mesh.mName.C_Str(), worst_sum_vertex, worst_sum));
     if (unweighted > 0 && mesh.mNumBones > 0)
       read_.warnings.push_back(fmt::format("mesh \"{}\": {} of {} vertices have no bone; they go with node \"{}\"",
                                            mesh.mName.C_Str(), unweighted, weights.size(),
@@ -302,7 +302,7 @@ class CharacterReader {
       }
       // If the transform mirrors, faces would point inward. Reverses the order of their corners.
       if (mirrored) std::reverse(corners.begin(), corners.end());
-      append_face(soup_, corners);
+      append_face(raw_mesh_, corners);
     }
   }
 
@@ -335,7 +335,7 @@ class CharacterReader {
   /// several vertices for one point, which would separate the surface there. Removes vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
-    std::vector<Index> renamed(soup_.positions.size(), -1);
+    std::vector<Index> renamed(raw_mesh_.positions.size(), -1);
     std::vector<std::size_t> kept;
     std::string key;
     const auto rename = [&](Index& v) {
@@ -348,12 +348,12 @@ class CharacterReader {
       }
       v = renamed[old];
     };
-    for (auto& q : soup_.quads) std::for_each(q.begin(), q.end(), rename);
-    for (auto& t : soup_.triangles) std::for_each(t.begin(), t.end(), rename);
+    for (auto& q : raw_mesh_.quads) std::for_each(q.begin(), q.end(), rename);
+    for (auto& t : raw_mesh_.triangles) std::for_each(t.begin(), t.end(), rename);
 
     std::vector<Vec3> positions;
     for (const std::size_t old : kept) {
-      positions.push_back(soup_.positions[old]);
+      positions.push_back(raw_mesh_.positions[old]);
       character_.material_of_vertex.push_back(materials_[old]);
       character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
       character_.influences.insert(character_.influences.end(), weights_[old].begin(), weights_[old].end());
@@ -364,7 +364,7 @@ class CharacterReader {
       for (const std::size_t old : kept) displacements.push_back(morph.at(old));
       character_.morphs.push_back({std::move(morph.name), std::move(displacements), morph.weight});
     }
-    soup_.positions = std::move(positions);
+    raw_mesh_.positions = std::move(positions);
   }
 
   /// Writes all data that determine the position of a vertex over time to `key`, as bytes.
@@ -374,7 +374,7 @@ class CharacterReader {
       key.append(reinterpret_cast<const char*>(&number), sizeof number);
     };
     key.clear();
-    for (const double x : soup_.positions[v]) append_number(x);
+    for (const double x : raw_mesh_.positions[v]) append_number(x);
     for (const character::Influence& influence : weights_[v]) {
       append_number(influence.bone);
       append_number(influence.weight);
@@ -385,8 +385,8 @@ class CharacterReader {
 
   void make_faces() {
     std::size_t flat = 0;
-    character_.mesh.topology = make_topology(soup_, flat);
-    character_.mesh.positions = std::move(soup_.positions);
+    character_.mesh.topology = make_topology(raw_mesh_, flat);
+    character_.mesh.positions = std::move(raw_mesh_.positions);
     if (flat > 0)
       read_.warnings.push_back(fmt::format("{} triangle{} without area left out", flat, flat == 1 ? "" : "s"));
   }
@@ -402,9 +402,9 @@ class CharacterReader {
     return placed.allFinite() ? placed : Vec2(Vec2::Zero());
   }
 
-  /// Copies materials and texture coordinates of each triangle. `unjoined`: the soup before its vertices were merged,
-  /// with the same list of triangles.
-  void color_faces(const Soup& unjoined) {
+  /// Copies materials and texture coordinates of each triangle. `unjoined`: the raw mesh before its vertices were
+  /// merged, with the same list of triangles.
+  void color_faces(const RawMesh& unjoined) {
     if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
     character::Coloring& coloring = character_.coloring;
     coloring.materials = read_materials(scene_, file_, read_.warnings);
@@ -434,7 +434,7 @@ class CharacterReader {
   struct Morph {
     std::string name;
     double weight = 0;
-    std::size_t first = 0;  // index of the first vertex of the mesh in the soup
+    std::size_t first = 0;  // index of the first vertex of the mesh in the raw mesh
     std::vector<Vec3> displacements;
 
     Vec3 at(std::size_t v) const {
@@ -449,10 +449,10 @@ class CharacterReader {
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
   std::vector<Affine> globals_;  // per node: transform to world in the rest pose
-  Soup soup_;
-  std::vector<Weights> weights_;  // per vertex of the soup
-  std::vector<Index> materials_;  // per vertex of the soup; −1: no material
-  std::vector<Vec2> uv_;          // per vertex of the soup
+  RawMesh raw_mesh_;
+  std::vector<Weights> weights_;  // per vertex of the raw mesh
+  std::vector<Index> materials_;  // per vertex of the raw mesh; −1: no material
+  std::vector<Vec2> uv_;          // per vertex of the raw mesh
   std::vector<Morph> morphs_;
   std::set<const aiMesh*> skinned_;  // skinned meshes that have been read
   ClipTargets targets_;

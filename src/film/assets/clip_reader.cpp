@@ -35,10 +35,11 @@ bool is_usable(const Vec3& v) {
 bool is_usable(const Quat& q) {
   return q.coeffs().allFinite() && q.norm() > 1e-6;
 }
-Vec3 tidy(const Vec3& v) {
+/// Makes a rotation a unit quaternion. Returns vectors unchanged.
+Vec3 normalise_if_rotation(const Vec3& v) {
   return v;
 }
-Quat tidy(const Quat& q) {
+Quat normalise_if_rotation(const Quat& q) {
   return q.normalized();
 }
 
@@ -86,7 +87,7 @@ struct ClipReader {
       const Value value = to_value(key.mValue);
       const double t = to_seconds(key.mTime, channel);
       if (!is_usable(value)) fail(channel, fmt::format("the key at {:g} s {}", t, kNotFinite));
-      append(curve, t, tidy(value), channel);
+      append(curve, t, normalise_if_rotation(value), channel);
     }
     return curve;
   }

@@ -379,7 +379,7 @@ class Rewriter {
     else if (uri.starts_with("data:") && inside != std::string::npos)
       known->second = base64_decoded(std::string_view(uri).substr(uri.find(',') + 1));
     else
-      known->second = read_bytes(file_.parent_path() / percent_decoded(uri), kMaxMeshFileBytes);
+      known->second = read_bytes(file_.parent_path() / percent_decode(uri), kMaxMeshFileBytes);
     return known->second;
   }
 

@@ -46,7 +46,7 @@ class RegularFiles : public Assimp::DefaultIOSystem {
  private:
   static std::string find(const std::string& file) {
     std::error_code ignored;
-    for (const std::string& name : {file, percent_decoded(file)})
+    for (const std::string& name : {file, percent_decode(file)})
       if (std::filesystem::is_regular_file(name, ignored)) return name;
     return {};
   }
@@ -68,7 +68,7 @@ std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path&
 
 }  // namespace
 
-std::string percent_decoded(const std::string& name) {
+std::string percent_decode(const std::string& name) {
   std::string decoded;
   for (std::size_t i = 0; i < name.size(); ++i) {
     unsigned char byte = 0;
@@ -125,8 +125,8 @@ std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scen
   if (format == nullptr) return std::nullopt;
   const std::string_view endings = format->mFileExtensions;
   constexpr int kY = 1;
-  for (const char* says_y : {"gltf", "dae"})
-    if (endings.find(says_y) != std::string_view::npos) return kY;
+  for (const char* y_up_format : {"gltf", "dae"})
+    if (endings.find(y_up_format) != std::string_view::npos) return kY;
   return std::nullopt;
 }
 

@@ -22,7 +22,7 @@ inline constexpr const char* kNotFinite = "has infinite or undefined numbers; ex
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps);
 
 /// Decodes escapes such as %20 (RFC 3986), which glTF and Collada use in names of files.
-std::string percent_decoded(const std::string& name);
+std::string percent_decode(const std::string& name);
 
 /// The unit that an FBX file states [m]; nullopt if the number is not finite or not positive. Also nullopt for other
 /// formats: assimp converts them to metres if it finds their unit.

@@ -74,7 +74,7 @@ std::optional<fs::path> find_file(const std::string& texture_path, const fs::pat
   std::string plain = texture_path.starts_with("file://") ? texture_path.substr(7) : texture_path;
   std::ranges::replace(plain, '\\', '/');
   const fs::path folder = file.parent_path();
-  for (const fs::path path : {plain, percent_decoded(plain)}) {
+  for (const fs::path path : {plain, percent_decode(plain)}) {
     std::vector<fs::path> places{folder / path, folder / path.filename()};
     for (const fs::path& each : picture_folders(file)) places.push_back(each / path.filename());
     for (const fs::path& at : places) {

@@ -76,7 +76,7 @@ void keep_vertices(LoadedMesh& loaded, const std::vector<Index>& from) {
   loaded.groups = std::move(result.groups);
 }
 
-std::size_t drop_doubles(LoadedMesh& loaded) {
+std::size_t remove_duplicates(LoadedMesh& loaded) {
   std::set<Triangle> seen;
   std::vector<std::uint8_t> kept;
   for (Triangle t : loaded.mesh.topology.triangles) {
@@ -142,7 +142,7 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
     next[joint.t].emplace_back(joint.u, same_way);
     next[joint.u].emplace_back(joint.t, same_way);
   }
-  std::size_t turned = 0;
+  std::size_t flipped = 0;
   std::vector<int> orientation(triangles.size(), 0);
   for (std::size_t first = 0; first < triangles.size(); ++first) {
     if (orientation[first] != 0) continue;
@@ -161,20 +161,20 @@ std::size_t orient_pieces(LoadedMesh& loaded, const std::vector<Joint>& joints) 
       if (orientation[t] * balance >= 0) continue;
       std::swap(triangles[t][1], triangles[t][2]);
       if (!loaded.uv.empty()) std::swap(loaded.uv[t][1], loaded.uv[t][2]);
-      ++turned;
+      ++flipped;
     }
   }
-  return turned;
+  return flipped;
 }
 
 /// Repairs each edge that more than two triangles share, or two triangles of opposite orientation: detaches the
 /// triangles that `joints` do not join, or join with opposite orientations. Detached triangles get vertices of their
 /// own, which are moved away from the edge. Removes small detached pieces.
-void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
+void cut_non_manifold_edges(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& mended) {
   std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   const mesh::TopologyReport report = mesh::inspect(triangles, loaded.mesh.positions.size());
-  mended.cut = report.non_manifold.size() + report.misoriented.size();
-  if (mended.cut == 0) return;
+  mended.cut_edges = report.non_manifold.size() + report.misoriented.size();
+  if (mended.cut_edges == 0) return;
   std::vector<std::uint8_t> at_cut(loaded.mesh.positions.size(), 0);
   for (const auto& edges : {report.non_manifold, report.misoriented})
     for (const auto& edge : edges) at_cut[at(edge[0])] = at_cut[at(edge[1])] = 1;
@@ -243,9 +243,9 @@ void cut(LoadedMesh& loaded, const std::vector<Joint>& joints, MendingReport& me
   keep_vertices(loaded, from);
 }
 
-/// Repairs edges that cut() could not repair because other triangles connect both sides: keeps only the most nearly
-/// coplanar pair of triangles of the same orientation, and removes the others.
-void drop_third_triangles(LoadedMesh& loaded, MendingReport& mended) {
+/// Repairs edges that cut_non_manifold_edges() could not repair because other triangles connect both sides: keeps only
+/// the most nearly coplanar pair of triangles of the same orientation, and removes the others.
+void remove_surplus_triangles(LoadedMesh& loaded, MendingReport& mended) {
   const std::vector<Triangle>& triangles = loaded.mesh.topology.triangles;
   double whole = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) whole += area(loaded, t);
@@ -427,9 +427,9 @@ std::string MendingReport::describe() const {
   const auto append = [&](std::size_t count, const std::string& what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
-  append(doubled, "duplicate triangles left out");
-  append(turned, "triangles flipped to match their neighbours");
-  append(cut, "edges of more than two triangles, or that face both ways, cut open");
+  append(duplicates, "duplicate triangles left out");
+  append(flipped, "triangles flipped to match their neighbours");
+  append(cut_edges, "edges of more than two triangles, or that face both ways, cut open");
   if (pieces > 0)
     text += fmt::format(" and {} small pieces there left out, {:.2g} % of the area", pieces, 100 * left_out);
   append(collapsed, "edges of flat triangles collapsed or turned");
@@ -440,11 +440,11 @@ MendingReport mend_sheet(LoadedMesh& loaded, double flattest) {
   MendingReport mended;
   const bool is_sheet = mesh::inspect(loaded.mesh.topology.triangles, loaded.mesh.positions.size()).manifold();
   if (!is_sheet) {
-    mended.doubled = drop_doubles(loaded);
+    mended.duplicates = remove_duplicates(loaded);
     const std::vector<Joint> joints = joints_of(loaded);
-    mended.turned = orient_pieces(loaded, joints);
-    cut(loaded, joints, mended);
-    drop_third_triangles(loaded, mended);
+    mended.flipped = orient_pieces(loaded, joints);
+    cut_non_manifold_edges(loaded, joints, mended);
+    remove_surplus_triangles(loaded, mended);
   }
   if (!is_sheet || loaded.lost_vertices > 0) {
     std::vector<Index> from(loaded.mesh.positions.size());

@@ -10,14 +10,14 @@ namespace weft::assets {
 
 /// Counts of the repairs by mend_sheet().
 struct MendingReport {
-  std::size_t doubled = 0;    ///< removed triangles that have the same corners as another triangle
-  std::size_t turned = 0;     ///< triangles flipped to match those around them
-  std::size_t cut = 0;        ///< edges cut open: non-manifold or between opposite orientations
-  std::size_t pieces = 0;     ///< removed small pieces, and removed triangles that could not be detached
-  double left_out = 0;        ///< area of `pieces` / area of the surface
-  std::size_t collapsed = 0;  ///< collapsed or flipped edges of flat triangles
+  std::size_t duplicates = 0;  ///< removed triangles that have the same corners as another triangle
+  std::size_t flipped = 0;     ///< triangles flipped to match those around them
+  std::size_t cut_edges = 0;   ///< edges cut open: non-manifold or between opposite orientations
+  std::size_t pieces = 0;      ///< removed small pieces, and removed triangles that could not be detached
+  double left_out = 0;         ///< area of `pieces` / area of the surface
+  std::size_t collapsed = 0;   ///< collapsed or flipped edges of flat triangles
 
-  bool any() const { return doubled + turned + cut + collapsed > 0; }
+  bool any() const { return duplicates + flipped + cut_edges + collapsed > 0; }
   /// Text such as "12 triangles flipped to match their neighbours, 3 edges of more than two triangles, or that face
   /// both ways, cut open".
   std::string describe() const;

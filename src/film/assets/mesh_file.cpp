@@ -14,7 +14,7 @@
 
 #include "core/disjoint_sets.hpp"
 #include "film/assets/character_file.hpp"
-#include "film/assets/soup.hpp"
+#include "film/assets/raw_mesh.hpp"
 #include "physics/mesh/topology.hpp"
 
 namespace weft::assets {
@@ -41,21 +41,21 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
 /// Merges vertices at exactly the same position (0 and −0 are equal), removes vertices that no face uses, and orders
 /// the others by their first use in faces. Adds the number of merged copies to `joined`. Returns the new index of each
 /// vertex; −1: removed.
-std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
-  const std::vector<Index> first = first_at_same_place(soup.positions);
+std::vector<Index> join_vertices(RawMesh& raw, std::size_t& joined) {
+  const std::vector<Index> first = first_at_same_place(raw.positions);
   std::vector<Index> renamed(first.size(), -1);
   std::vector<Vec3> kept;
   const auto rename = [&](Index& v) {
     const auto representative = static_cast<std::size_t>(first[v]);
     if (renamed[representative] < 0) {
       renamed[representative] = static_cast<Index>(kept.size());
-      kept.push_back(soup.positions[representative]);
+      kept.push_back(raw.positions[representative]);
     }
     v = renamed[representative];
   };
-  for (auto& q : soup.quads) std::for_each(q.begin(), q.end(), rename);
-  for (auto& t : soup.triangles) std::for_each(t.begin(), t.end(), rename);
-  soup.positions = std::move(kept);
+  for (auto& q : raw.quads) std::for_each(q.begin(), q.end(), rename);
+  for (auto& t : raw.triangles) std::for_each(t.begin(), t.end(), rename);
+  raw.positions = std::move(kept);
   for (std::size_t v = 0; v < first.size(); ++v) {
     joined += first[v] == static_cast<Index>(v) ? 0 : 1;
     renamed[v] = renamed[static_cast<std::size_t>(first[v])];
@@ -64,32 +64,32 @@ std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
 }
 
 /// Copies colours and groups of vertices. `renamed`: new index of each vertex; −1: removed.
-void copy_vertex_data(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
+void copy_vertex_data(const RawMesh& raw, const std::vector<Index>& renamed, LoadedMesh& result) {
   const std::size_t count = result.mesh.positions.size();
   for (std::size_t v = 0; v < renamed.size(); ++v) {
-    if (renamed[v] < 0 || !soup.colors[v].allFinite()) continue;
+    if (renamed[v] < 0 || !raw.colors[v].allFinite()) continue;
     if (result.colors.empty()) result.colors.assign(count, Vec3::Zero());
     Vec3& color = result.colors[static_cast<std::size_t>(renamed[v])];
-    color = color.cwiseMax(soup.colors[v]).cwiseMin(1);
+    color = color.cwiseMax(raw.colors[v]).cwiseMin(1);
   }
-  for (const Soup::Weight& weight : soup.weights) {
+  for (const RawMesh::Weight& weight : raw.weights) {
     const Index vertex = renamed[static_cast<std::size_t>(weight.vertex)];
     if (vertex < 0 || !(weight.weight > 0)) continue;
-    std::vector<double>& group = result.groups[soup.group_names[static_cast<std::size_t>(weight.group)]];
+    std::vector<double>& group = result.groups[raw.group_names[static_cast<std::size_t>(weight.group)]];
     group.resize(count);
     double& most = group[static_cast<std::size_t>(vertex)];
     most = std::min(1.0, std::max(most, weight.weight));
   }
 }
 
-/// UVs of the triangles of make_topology(). `soup`: the soup before its vertices are merged, with the same list of
+/// UVs of the triangles of make_topology(). `raw`: the raw mesh before its vertices are merged, with the same list of
 /// triangles.
-std::vector<std::array<Vec2, 3>> uv_of_corners(const Soup& soup) {
+std::vector<std::array<Vec2, 3>> uv_of_corners(const RawMesh& raw) {
   std::vector<std::array<Vec2, 3>> corners;
-  if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
+  if (std::ranges::none_of(raw.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
   std::size_t removed = 0;
-  for (const mesh::Triangle& t : make_topology(soup, removed).triangles)
-    corners.push_back({soup.uv[t[0]], soup.uv[t[1]], soup.uv[t[2]]});
+  for (const mesh::Triangle& t : make_topology(raw, removed).triangles)
+    corners.push_back({raw.uv[t[0]], raw.uv[t[1]], raw.uv[t[2]]});
   return corners;
 }
 
@@ -167,14 +167,14 @@ Welded weld_borders(LoadedMesh& loaded, double ratio) {
 namespace {
 
 LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& object) {
-  Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(source.file, object)); }));
-  if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
+  RawMesh raw = from_bytes(source.read([&] { return to_bytes(read_raw_mesh(source.file, object)); }));
+  if (raw.triangles.empty() && raw.quads.empty()) source.fail("expected faces, got none");
   scene::FileUp up = axes.up;
   if (up == scene::FileUp::as_file)
-    up = soup.up.empty() ? axes.default_up : static_cast<scene::FileUp>(soup.up.front() + 1);
+    up = raw.up.empty() ? axes.default_up : static_cast<scene::FileUp>(raw.up.front() + 1);
   Mat3 turn = Mat3::Identity();
   if (up != scene::FileUp::as_file) turn = rotation_to_scene_axes(static_cast<int>(up) - 1, axes.scene_up);
-  for (Vec3& x : soup.positions) {
+  for (Vec3& x : raw.positions) {
     x = axes.scale * (turn * x);
     // The limit also ensures that products of squared lengths are finite.
     if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
@@ -183,16 +183,16 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   }
 
   LoadedMesh result;
-  result.uv = uv_of_corners(soup);
-  const std::vector<Index> renamed = join_vertices(soup, result.joined_vertices);
-  result.mesh.topology = make_topology(soup, result.removed_triangles);
+  result.uv = uv_of_corners(raw);
+  const std::vector<Index> renamed = join_vertices(raw, result.joined_vertices);
+  result.mesh.topology = make_topology(raw, result.removed_triangles);
   if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");
-  result.mesh.positions = std::move(soup.positions);
+  result.mesh.positions = std::move(raw.positions);
   std::vector<std::uint8_t> used(result.mesh.positions.size(), 0);
   for (const mesh::Triangle& t : result.mesh.topology.triangles)
     for (const Index v : t) used[at(v)] = 1;
   result.lost_vertices = static_cast<std::size_t>(std::ranges::count(used, 0));
-  copy_vertex_data(soup, renamed, result);
+  copy_vertex_data(raw, renamed, result);
   return result;
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/input_file.hpp"
-#include "film/assets/soup.hpp"
+#include "film/assets/raw_mesh.hpp"
 #include "film/assets/source.hpp"
 
 namespace weft::assets {
@@ -34,8 +34,8 @@ std::string face_numbers(const std::filesystem::path& file) {
   return numbers;
 }
 
-void check_same_faces(const Source& source, const std::filesystem::path& first_file, const Soup& first,
-                      const Soup& other) {
+void check_same_faces(const Source& source, const std::filesystem::path& first_file, const RawMesh& first,
+                      const RawMesh& other) {
   const auto fail = [&](const char* what, std::size_t expected, std::size_t got) {
     source.fail(fmt::format("expected {} {}, as in the first file of the sequence, got {}", expected, what, got));
   };
@@ -71,34 +71,35 @@ std::vector<Vec3> kept_of(const std::vector<Vec3>& positions, const std::vector<
 
 LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const FileAxes& axes,
                              const std::string& where) {
-  Soup first;
+  RawMesh first;
   std::vector<Index> groups;
   LoadedSequence loaded;
   for (const std::filesystem::path& file : files) {
     const Source source{file, where, "mesh"};
-    Soup soup = source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_soup(file)); })); });
+    RawMesh raw =
+        source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_raw_mesh(file)); })); });
     constexpr int kUsualUp = 1;  // y
-    const int stated_up = soup.up.empty() ? kUsualUp : soup.up.front();
+    const int stated_up = raw.up.empty() ? kUsualUp : raw.up.front();
     const int up = axes.up == scene::FileUp::as_file ? stated_up : static_cast<int>(axes.up) - 1;
     const Mat3 turn = axes.scale.value_or(1) * rotation_to_scene_axes(up, axes.scene_up);
-    for (Vec3& x : soup.positions) {
+    for (Vec3& x : raw.positions) {
       x = turn * x;
       if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
         source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(),
                                 x.y(), x.z()));
     }
     if (loaded.positions.empty()) {
-      if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
-      if (soup.positions.size() * sizeof(Vec3) * files.size() > kMaxBytes)
+      if (raw.triangles.empty() && raw.quads.empty()) source.fail("expected faces, got none");
+      if (raw.positions.size() * sizeof(Vec3) * files.size() > kMaxBytes)
         source.fail(fmt::format("expected at most {} bytes of key frames, got {} of {} vertices", kMaxBytes,
-                                files.size(), soup.positions.size()));
-      first = soup;
-      groups.assign(soup.positions.size(), 0);
+                                files.size(), raw.positions.size()));
+      first = raw;
+      groups.assign(raw.positions.size(), 0);
     } else {
-      check_same_faces(source, files.front(), first, soup);
+      check_same_faces(source, files.front(), first, raw);
     }
-    split_groups(soup.positions, groups);
-    loaded.positions.push_back(std::move(soup.positions));
+    split_groups(raw.positions, groups);
+    loaded.positions.push_back(std::move(raw.positions));
   }
 
   // Groups become vertices, in the order of their first use in faces.

@@ -28,7 +28,7 @@ bool is_cache(const fs::path& folder) {
   return fs::is_regular_file(folder / kManifestFile, ignored);
 }
 
-Reader::Reader(fs::path folder, Looks looks) : folder_(std::move(folder)), looks_(looks) {
+Reader::Reader(fs::path folder, AcceptedLooks looks) : folder_(std::move(folder)), looks_(looks) {
   if (!is_cache(folder_))
     throw Error(ExitCode::asset_unreadable, "{}: expected a frame cache, a folder with a {}; weft simulate makes one",
                 folder_.string(), kManifestFile);
@@ -59,7 +59,7 @@ void Reader::check_scene(std::uint64_t hash) const {
   if (std::find(former.begin(), former.end(), hash) == former.end())
     throw std::runtime_error(
         fmt::format("expected a file of scene {:016x}, got one of {:016x}", manifest_.scene_hash, hash));
-  if (looks_ == Looks::of_scene)
+  if (looks_ == AcceptedLooks::of_scene)
     throw std::runtime_error(
         "it has the look from before the scene was changed; weft simulate --resume continues the cache");
 }

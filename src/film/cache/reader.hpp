@@ -21,7 +21,7 @@ struct SolverState {
 /// Which files the reader accepts. of_scene: only files with the looks (colours, cameras, lights) of the present scene.
 /// any: also files with the looks of earlier versions of the scene (Manifest::former_hashes), which exist until a run
 /// with --resume replaces them.
-enum class Looks { of_scene, any };
+enum class AcceptedLooks { of_scene, any };
 
 /// All functions are thread-safe. Functions that read files throw Error(asset_unreadable) with the file name and the
 /// defect; folder(), manifest() and has() do not throw.
@@ -29,7 +29,7 @@ class Reader {
  public:
   /// Reads the data that all frames share. A cache without frames is valid, but read() of this Reader then always
   /// throws, even if frames are added later.
-  explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
+  explicit Reader(std::filesystem::path folder, AcceptedLooks looks = AcceptedLooks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }
   const Manifest& manifest() const { return manifest_; }
@@ -56,7 +56,7 @@ class Reader {
   void check_scene(std::uint64_t hash) const;
 
   std::filesystem::path folder_;
-  Looks looks_;
+  AcceptedLooks looks_;
   Manifest manifest_;
   std::optional<Surfaces> surfaces_;  // absent if their file did not exist yet; it is written with frame 0
 };

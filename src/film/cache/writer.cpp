@@ -50,7 +50,7 @@ bool begins_as_written(const fs::path& file) {
 /// cache, or of a temporary file for such a file. The name of a temporary file suffices. Other files must be regular
 /// files that are empty or begin as Weft writes them. The scene file has no fixed first bytes. It belongs to the cache
 /// if the manifest or the surfaces file beside it begins as Weft writes it.
-bool is_ours(const fs::path& folder, const std::string& name) {
+bool belongs_to_cache(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);
   const fs::path file = folder / name;
@@ -77,7 +77,7 @@ void make_folder(const fs::path& folder) {
     throw Error(ExitCode::output_failed, "{}: cannot make the folder: {}", folder.string(),
                 error ? error.message() : "there is a file of this name");
   for (const std::string& name : names_in(folder))
-    if (!is_ours(folder, name))
+    if (!belongs_to_cache(folder, name))
       throw Error(ExitCode::output_failed, "{}: holds {}, which is no part of a frame cache; give another folder",
                   folder.string(), name);
 }
@@ -122,12 +122,12 @@ bool Lock::empty() const {
 }
 
 void Lock::clear() const {
-  // Removes the scene file first, because is_ours() recognises it by the files beside it. Then removes the manifest,
-  // because the other files are no cache without it.
+  // Removes the scene file first, because belongs_to_cache() recognises it by the files beside it. Then removes the
+  // manifest, because the other files are no cache without it.
   for (const char* name : {kSceneFile, kManifestFile})
-    if (is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
+    if (belongs_to_cache(folder_, name)) ::unlink((folder_ / name).c_str());
   for (const std::string& name : names_in(folder_))
-    if (name != kLockFile && is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
+    if (name != kLockFile && belongs_to_cache(folder_, name)) ::unlink((folder_ / name).c_str());
 }
 
 void Lock::remove() const {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "film/character/nameless.hpp"
+#include "film/character/structural_joints.hpp"
 
 namespace weft::character {
 namespace {

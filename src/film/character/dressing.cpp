@@ -166,7 +166,7 @@ std::vector<Vec3> growth_start_positions(const Character& character, const Pose&
   return inside;
 }
 
-double grown(double t, double duration) {
+double growth_fraction(double t, double duration) {
   return kInitialGrowth + (1 - kInitialGrowth) * ease(t / duration);
 }
 

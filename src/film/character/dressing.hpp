@@ -24,6 +24,6 @@ std::vector<Vec3> growth_start_positions(const Character& character, const Pose&
 /// Distance of the skin of a growing body from its bones, as a fraction of the final distance. `t`: time since the
 /// start of growth [s]; `duration`: of the growth, > 0 [s]. The fraction increases smoothly from 0.1, at which an arm
 /// fits into a sleeve with clearance, to 1 at `duration`.
-double grown(double t, double duration);
+double growth_fraction(double t, double duration);
 
 }  // namespace weft::character

@@ -13,16 +13,16 @@ namespace {
 
 // All positions in this file are in cm, for a body of the height kTableHeight.
 
-/// A colour (sRGB, 0 to 1) with the opacity `fraction`.
-struct Ink {
+/// A colour (sRGB, 0 to 1) and its opacity.
+struct TranslucentColor {
   Vec3 color = Vec3::Zero();
-  double fraction = 0;
+  double opacity = 0;
 
   /// Paints the colour `over` with the opacity `by` on top.
   void add(const Vec3& over, double by) {
-    const double sum = by + fraction * (1 - by);
-    if (sum > 0) color = (by * over + fraction * (1 - by) * color) / sum;
-    fraction = sum;
+    const double sum = by + opacity * (1 - by);
+    if (sum > 0) color = (by * over + opacity * (1 - by) * color) / sum;
+    opacity = sum;
   }
 };
 
@@ -45,25 +45,26 @@ double height(std::span<const Vec2> line, double at) {
   return line.back().y();
 }
 
-const Vec3 kHair(0.20, 0.135, 0.095), kShoe(0.13, 0.12, 0.125), kSole(0.07, 0.065, 0.065), kLip(0.62, 0.27, 0.25),
-    kBlush(0.74, 0.40, 0.33), kShade(0.30, 0.17, 0.13), kLash(0.10, 0.07, 0.055), kWhite(0.80, 0.77, 0.73),
-    kIris(0.27, 0.19, 0.13), kPupil(0.05, 0.04, 0.035);
+const Vec3 kHairColor(0.20, 0.135, 0.095), kShoeColor(0.13, 0.12, 0.125), kSoleColor(0.07, 0.065, 0.065),
+    kLipColor(0.62, 0.27, 0.25), kBlushColor(0.74, 0.40, 0.33), kShadowColor(0.30, 0.17, 0.13),
+    kLashColor(0.10, 0.07, 0.055), kEyeWhiteColor(0.80, 0.77, 0.73), kIrisColor(0.27, 0.19, 0.13),
+    kPupilColor(0.05, 0.04, 0.035);
 
 /// Shoes, seen from the side; y grows from front to back.
-Ink body_ink(double y, double z) {
+TranslucentColor body_color_at(double y, double z) {
   // Upper edge of the shoe as (y, z), from the toes over the instep to the heel.
   static const Vec2 kShoeline[] = {{-11.5, 9.0}, {-9.2, 3.6}, {-4, 2.8}, {1, 3.8}, {5, 5.6}, {7, 6.2}};
-  Ink ink;
+  TranslucentColor pixel;
   const double shoe = inside(height(kShoeline, y) - z, 0.15) * inside(10 - z, 0.2);
-  ink.add(kShoe, shoe);
-  ink.add(kSole, shoe * inside(0.9 - z, 0.15));
-  return ink;
+  pixel.add(kShoeColor, shoe);
+  pixel.add(kSoleColor, shoe * inside(0.9 - z, 0.15));
+  return pixel;
 }
 
 /// Hair, seen from the side, with strands toward the knot and around it; and ears, slightly redder than the skin.
-Ink head_ink(double y, double z) {
-  Ink ink;
-  ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
+TranslucentColor head_color_at(double y, double z) {
+  TranslucentColor pixel;
+  pixel.add(kBlushColor, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
   const double back = y - kKnot.x(), up = z - kKnot.y(), r = std::hypot(back, up), angle = std::atan2(up, back);
   // Strands fade toward the knot, because they would be finer than the pixels of the picture there.
   const double fine = 0.5 * std::sin(31 * angle + 1) * std::sin(13 * angle + 0.3 * r) +
@@ -71,46 +72,46 @@ Ink head_ink(double y, double z) {
   const double coiled = 0.8 * std::sin(3 * angle + 4.6 * r) * std::sin(2 * angle + 1.3 * r + 1);
   const double on_head = inside(r - kKnotRadius, 1.0);
   const double strands = on_head * std::min(1.0, r / 5) * fine + (1 - on_head) * coiled;
-  ink.add(kHair * (1 + 0.45 * strands), inside(-hairline_distance(y, z), 0.35));
-  return ink;
+  pixel.add(kHairColor * (1 + 0.45 * strands), inside(-hairline_distance(y, z), 0.35));
+  return pixel;
 }
 
 /// Brows, eyes, nostrils and lips, seen from the front; symmetric.
-Ink face_ink(double x, double z) {
-  Ink ink;
+TranslucentColor face_color_at(double x, double z) {
+  TranslucentColor pixel;
   const double side = std::abs(x), from_eye = side - 3.05;
   const auto ellipse = [](double across, double up, double wide, double high) {
     return 1 - std::hypot(across / wide, up / high);
   };
   // Cheeks, and the shade of the eye sockets.
-  ink.add(kBlush, 0.14 * inside(ellipse(side - 3.7, z - 160.6, 2.0, 1.7), 1.2));
-  ink.add(kShade, 0.16 * inside(ellipse(from_eye, z - 164.3, 2.3, 1.2), 1.0));
+  pixel.add(kBlushColor, 0.14 * inside(ellipse(side - 3.7, z - 160.6, 2.0, 1.7), 1.2));
+  pixel.add(kShadowColor, 0.16 * inside(ellipse(from_eye, z - 164.3, 2.3, 1.2), 1.0));
   // Almond-shaped opening between the lids with the eye in it, and lashes along the upper lid.
   const double t = from_eye / 1.35, arc = std::max(1 - t * t, 0.0);
   const double low = 163.62 - 0.30 * arc + 0.05 * t, high = 163.62 + 0.42 * arc + 0.05 * t;
   const double open = inside(std::min(z - low, high - z), 0.10) * inside(1.3 - std::abs(from_eye), 0.2);
   const double from_iris = std::hypot(from_eye, z - 163.70);
-  ink.add(kWhite, open);
-  ink.add(kIris, open * inside(0.46 - from_iris, 0.10));
-  ink.add(kPupil, open * inside(0.20 - from_iris, 0.10));
-  ink.add(kLash, 0.45 * open * inside(z - high + 0.16, 0.2));
-  ink.add(kLash, 0.9 * inside(0.075 - std::abs(z - high), 0.10) * inside(1.45 - std::abs(from_eye), 0.3));
-  ink.add(kShade, 0.45 * inside(0.05 - std::abs(z - low), 0.12) * inside(1.3 - std::abs(from_eye), 0.5));
+  pixel.add(kEyeWhiteColor, open);
+  pixel.add(kIrisColor, open * inside(0.46 - from_iris, 0.10));
+  pixel.add(kPupilColor, open * inside(0.20 - from_iris, 0.10));
+  pixel.add(kLashColor, 0.45 * open * inside(z - high + 0.16, 0.2));
+  pixel.add(kLashColor, 0.9 * inside(0.075 - std::abs(z - high), 0.10) * inside(1.45 - std::abs(from_eye), 0.3));
+  pixel.add(kShadowColor, 0.45 * inside(0.05 - std::abs(z - low), 0.12) * inside(1.3 - std::abs(from_eye), 0.5));
   const double brow = 165.85 + 0.10 * from_eye - 0.10 * from_eye * from_eye;
   const double thick = 0.27 - 0.06 * from_eye;
-  ink.add(kHair, 0.62 * inside(thick - std::abs(z - brow), 0.3) * inside(1.9 - std::abs(from_eye), 0.9));
-  ink.add(kShade * 0.5, 0.8 * inside(ellipse(side - 0.58, z - 159.35, 0.36, 0.22), 0.6));
+  pixel.add(kHairColor, 0.62 * inside(thick - std::abs(z - brow), 0.3) * inside(1.9 - std::abs(from_eye), 0.9));
+  pixel.add(kShadowColor * 0.5, 0.8 * inside(ellipse(side - 0.58, z - 159.35, 0.36, 0.22), 0.6));
   // Lips with a dark line between them. The upper edge of the upper lip is curved ("bow").
   const double bow = 0.16 * std::cos(2.2 * side), end = inside(2.35 - side, 0.5);
   const double wide = std::max(1 - side * side / (2.45 * 2.45), 0.0);
   const double mouth = 157.2 + 0.25 * bow;
   const double top = mouth + (0.62 + 0.8 * bow) * std::sqrt(wide), bottom = mouth - 0.95 * wide;
-  ink.add(kLip, 0.62 * end * inside(std::min(z - bottom, top - z), 0.22));
-  ink.add(kShade * 0.7, 0.65 * inside(0.06 - std::abs(z - mouth), 0.12) * inside(2.2 - side, 0.5));
-  return ink;
+  pixel.add(kLipColor, 0.62 * end * inside(std::min(z - bottom, top - z), 0.22));
+  pixel.add(kShadowColor * 0.7, 0.65 * inside(0.06 - std::abs(z - mouth), 0.12) * inside(2.2 - side, 0.5));
+  return pixel;
 }
 
-using Painter = std::function<Ink(double, double)>;
+using Painter = std::function<TranslucentColor(double, double)>;
 
 /// Paints a picture of the area between `low` and `high` [cm].
 Material paint(std::string name, const Vec2& low, const Vec2& high, int width, int height, const Painter& painter) {
@@ -123,10 +124,10 @@ Material paint(std::string name, const Vec2& low, const Vec2& high, int width, i
     for (int column = 0; column < width; ++column) {
       const Vec2 fraction((column + 0.5) / width, (row + 0.5) / height);
       const Vec2 at = low + fraction.cwiseProduct(high - low);
-      const Ink ink = painter(at.x(), at.y());
+      const TranslucentColor pixel = painter(at.x(), at.y());
       for (int k = 0; k < 3; ++k)
-        material.pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(ink.color[k], 0.0, 1.0))));
-      material.pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(ink.fraction, 0.0, 1.0))));
+        material.pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(pixel.color[k], 0.0, 1.0))));
+      material.pixels.push_back(static_cast<std::uint8_t>(std::lround(255 * std::clamp(pixel.opacity, 0.0, 1.0))));
     }
   }
   return material;
@@ -147,9 +148,9 @@ Coloring paint_figure(const mesh::Mesh& mesh, const MannequinBuild& build) {
   enum : Index { body, face, head };
   Coloring coloring;
   coloring.covers_look = true;
-  coloring.materials = {paint("body", kBody.low, kBody.high, 192, 896, body_ink),
-                        paint("face", kFace.low, kFace.high, 288, 384, face_ink),
-                        paint("head", kHead.low, kHead.high, 512, 512, head_ink)};
+  coloring.materials = {paint("body", kBody.low, kBody.high, 192, 896, body_color_at),
+                        paint("face", kFace.low, kFace.high, 288, 384, face_color_at),
+                        paint("head", kHead.low, kHead.high, 512, 512, head_color_at)};
   for (const auto& t : mesh.topology.triangles) {
     std::array<Vec3, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.positions[t[k]] / cm;

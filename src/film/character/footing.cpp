@@ -260,7 +260,7 @@ std::vector<Stance> plant_feet(std::span<const Legs> legs, const Footsteps& step
   return stances;
 }
 
-LegTurns reach(const Leg& leg, const Vec3& ankle) {
+LegTurns solve_two_bone_ik(const Leg& leg, const Vec3& ankle) {
   const Vec3 thigh = leg.knee - leg.hip, shin = leg.ankle - leg.knee, to_ankle = ankle - leg.hip;
   const double a = thigh.norm(), b = shin.norm();
   const double length = std::clamp(to_ankle.norm(), min_reach(leg), max_reach(leg));

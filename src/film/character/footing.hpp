@@ -29,7 +29,8 @@ struct Footsteps {
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
-/// A leg at one key. reach() also accepts an arm: `hip`, `knee` and `ankle` are then its shoulder, elbow and wrist.
+/// A leg at one key. solve_two_bone_ik() also accepts an arm: `hip`, `knee` and `ankle` are then its shoulder, elbow
+/// and wrist.
 struct Leg {
   Vec3 hip, knee, ankle;
   Vec3 ball, heel;  ///< points of the sole below the toe joint and below the ankle
@@ -61,6 +62,6 @@ struct LegTurns {
 };
 /// Two-bone inverse kinematics: the rotations that move the ankle to the position `ankle`, or as near to it as the
 /// limits of the knee allow. The knee bends in the present plane of the leg.
-LegTurns reach(const Leg& leg, const Vec3& ankle);
+LegTurns solve_two_bone_ik(const Leg& leg, const Vec3& ankle);
 
 }  // namespace weft::character

@@ -25,27 +25,27 @@ constexpr double kMaxToePitch = 80;      ///< maximum pitch of a foot on its toe
 constexpr double kInPlaceKneeLift = 32;  ///< additional knee bend in a step in place [degrees]
 constexpr double kToeClearRatio = 0.36;  ///< peak of the pitch added in swing / (pitch rate at toe-off × swing time)
 
-/// A value with its first and second derivative with respect to the key number (`rate`, `bend`).
+/// A value with its first and second derivative with respect to the key number.
 template <class Value>
-struct Jet {
-  Value value, rate, bend;
+struct Derivatives {
+  Value value, first_derivative, second_derivative;
 };
 template <class Function>
-auto jet_of(const Function& f, int key) {
+auto find_derivatives(const Function& f, int key) {
   const auto before = f(key - 1), here = f(key), after = f(key + 1);
   using Value = std::decay_t<decltype(here)>;
-  return Jet<Value>{here, Value((after - before) / 2), Value(after - 2 * here + before)};
+  return Derivatives<Value>{here, Value((after - before) / 2), Value(after - 2 * here + before)};
 }
 
-/// Quintic Hermite interpolation between the jets a and b, which are `span` keys apart, at the fraction s of the span.
+/// Quintic Hermite interpolation between a and b, which are `span` keys apart, at the fraction s of the span.
 template <class Value>
-Value quintic(const Jet<Value>& a, const Jet<Value>& b, double span, double s) {
+Value interpolate_quintic(const Derivatives<Value>& a, const Derivatives<Value>& b, double span, double s) {
   const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
   const double h0 = 1 - 10 * s3 + 15 * s4 - 6 * s5, h1 = s - 6 * s3 + 8 * s4 - 3 * s5,
                h2 = 0.5 * (s2 - 3 * s3 + 3 * s4 - s5), g0 = 1 - h0, g1 = -4 * s3 + 7 * s4 - 3 * s5,
                g2 = 0.5 * (s3 - 2 * s4 + s5);
-  return h0 * a.value + h1 * span * a.rate + h2 * span * span * a.bend + g0 * b.value + g1 * span * b.rate +
-         g2 * span * span * b.bend;
+  return h0 * a.value + h1 * span * a.first_derivative + h2 * span * span * a.second_derivative + g0 * b.value +
+         g1 * span * b.first_derivative + g2 * span * span * b.second_derivative;
 }
 
 /// 0 at both ends, 1 in the middle; twice continuously differentiable.
@@ -66,19 +66,19 @@ double late_bump(double s) {
 
 /// Knee bend in swing that is added to the quintic interpolation between toe-off and strike [degrees]. `s`: fraction of
 /// the swing.
-double knee_in_the_air(double s) {
+double swing_knee_offset(double s) {
   constexpr int fine = 1000;  // samples per stride
   const auto curve = [](int at) { return walking::knee.at(static_cast<double>(at) / fine); };
-  static const auto off = jet_of(curve, static_cast<int>(kStance * fine));
-  static const Jet<double> strike{curve(fine), 0, 0};
-  return walking::knee.at(kStance + s * kSwing) - quintic(off, strike, kSwing * fine, s) +
+  static const auto off = find_derivatives(curve, static_cast<int>(kStance * fine));
+  static const Derivatives<double> strike{curve(fine), 0, 0};
+  return walking::knee.at(kStance + s * kSwing) - interpolate_quintic(off, strike, kSwing * fine, s) +
          kSwingKneeShift * early_bump(s);
 }
 
-Vec3 ahead_of(double yaw) {
+Vec3 forward_direction(double yaw) {
   return {std::sin(yaw), -std::cos(yaw), 0};
 }
-Vec3 beside(double yaw) {
+Vec3 left_direction(double yaw) {
   return {std::cos(yaw), std::sin(yaw), 0};
 }
 
@@ -100,7 +100,7 @@ Feet::Feet(const Physique& body, const StepPlan& plan, const Track& track, const
 
 /// Size of the step that leaves a foothold; 0 for the last foothold.
 double Feet::next_size(int side, std::size_t number) const {
-  return number + 1 < plan_.plants[side].size() ? plant(side, number + 1).size : 0;
+  return number + 1 < plan_.footholds[side].size() ? foothold(side, number + 1).size : 0;
 }
 
 Vec3 Feet::hip(int side, int key) const {
@@ -112,7 +112,7 @@ Vec3 Feet::hip(int side, int key) const {
 /// difference has two parts: the part after the strike is scaled by the size of the step to this foothold, the part
 /// before toe-off by the size of the next step and by kLateKneeRatio. Sizes above 1 count as 1.
 double Feet::knee(int side, std::size_t number, int key) const {
-  const Plant& here = plant(side, number);
+  const Foothold& here = foothold(side, number);
   const double since = plan_.strides_since_strike(here, key), until = plan_.until_off(here, key);
   const double early = std::min(here.size, 1.0) * (1 - smooth_ramp(since, 0.2, 0.35));
   const double late = kLateKneeRatio * std::min(next_size(side, number), 1.0) * smooth_ramp(kStance - until, 0.2, 0.35);
@@ -130,11 +130,11 @@ double Feet::leg_extent(double knee) const {
 
 /// Foot pitch after a strike [rad]: the recorded pitch, scaled by kPitchRatio and the size of the step. It fades to
 /// exactly 0 within 0.12 strides.
-double Feet::strike_pitch(const Plant& plant, int key) const {
-  const double since = plan_.strides_since_strike(plant, key);
+double Feet::strike_pitch(const Foothold& foothold, int key) const {
+  const double since = plan_.strides_since_strike(foothold, key);
   if (since > 0.12) return 0;
   const double recorded = kPitchRatio * kDegree * (walking::foot_pitch.at(since) - walking::kFlatPitch);
-  return plant.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
+  return foothold.size * recorded * (1 - smooth_ramp(since, 0.03, 0.12));
 }
 
 /// Pitch of the toes relative to the floor [rad]. It is 0 until the foot is pitched down by kToesFlat. From there on,
@@ -148,30 +148,31 @@ double Feet::toe_pitch(double pitch) {
 
 /// Position of the ankle of a rolling foot [m]. If `pitch` > 0, the foot rolls over its round heel, so that the contact
 /// point moves back. Otherwise, it bends at the ball and rolls over the toe tips.
-Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
-  const auto turned = [](double forward, double up, double angle) {
+Vec3 Feet::rolling_ankle(const Foothold& foothold, double pitch) const {
+  const auto rotate = [](double forward, double up, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
     return Vec2(c * forward - s * up, s * forward + c * up);
   };
   Vec2 ankle;  // forward and up
   if (pitch > 0) {
     ankle = Vec2(-body_.heel_back - body_.heel_radius * pitch, body_.heel_radius) +
-            turned(body_.heel_back, body_.ankle_height - body_.heel_radius, pitch);
+            rotate(body_.heel_back, body_.ankle_height - body_.heel_radius, pitch);
   } else {
     const double toes = toe_pitch(pitch);
     ankle = Vec2(body_.ball_forward + body_.toe_length - body_.toe_radius * toes, body_.toe_radius) +
-            turned(-body_.toe_length, body_.ball_height - body_.toe_radius, toes) +
-            turned(-body_.ball_forward, body_.ankle_height - body_.ball_height, pitch);
+            rotate(-body_.toe_length, body_.ball_height - body_.toe_radius, toes) +
+            rotate(-body_.ball_forward, body_.ankle_height - body_.ball_height, pitch);
   }
-  return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * ahead_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
+  return Vec3(foothold.at.x(), foothold.at.y(), 0) + ankle.x() * forward_direction(foothold.foot_yaw) +
+         ankle.y() * Vec3::UnitZ();
 }
 
 /// Foot pitch in stance [rad]: early in stance, strike_pitch(); late in stance, the pitch at which the raised heel
 /// gives the knee the bend knee().
 double Feet::standing_pitch(int side, std::size_t number, int key) const {
-  const Plant& here = plant(side, number);
-  const double share = smooth_ramp(kStance - plan_.until_off(here, key), 0.24, 0.36);
-  if (share == 0) return strike_pitch(here, key);
+  const Foothold& here = foothold(side, number);
+  const double fraction = smooth_ramp(kStance - plan_.until_off(here, key), 0.24, 0.36);
+  if (fraction == 0) return strike_pitch(here, key);
   const Vec3 from = hip(side, key);
   const double flat = (from - rolling_ankle(here, 0)).norm(), excess = flat - leg_extent(knee(side, number, key));
   const double wanted = flat - 0.5 * (excess + std::sqrt(excess * excess + kHeelRiseLength * kHeelRiseLength));
@@ -181,11 +182,11 @@ double Feet::standing_pitch(int side, std::size_t number, int key) const {
     const double middle = 0.5 * (low + high);
     ((from - rolling_ankle(here, middle)).norm() < wanted ? low : high) = middle;
   }
-  return share * 0.5 * (low + high) + strike_pitch(here, key);
+  return fraction * 0.5 * (low + high) + strike_pitch(here, key);
 }
 
-FootState Feet::standing(int side, std::size_t number, int key) const {
-  const Plant& here = plant(side, number);
+FootState Feet::stance_state(int side, std::size_t number, int key) const {
+  const Foothold& here = foothold(side, number);
   FootState state;
   state.pitch = standing_pitch(side, number, key);
   state.ankle = rolling_ankle(here, state.pitch);
@@ -194,36 +195,36 @@ FootState Feet::standing(int side, std::size_t number, int key) const {
   return state;
 }
 
-FootState Feet::swinging(int side, std::size_t number, int key) const {
-  const Plant &from = plant(side, number), &to = plant(side, number + 1);
+FootState Feet::swing_state(int side, std::size_t number, int key) const {
+  const Foothold &from = foothold(side, number), &to = foothold(side, number + 1);
   const double span = to.strike - from.off, s = (key - from.off) / span;
   // Interpolated values: bend of the knee [degrees], forward angle of the leg from the vertical [rad], offset of the
   // ankle from the hip to the left [m], pitch of the foot [rad].
   using Values = Eigen::Vector4d;
   const auto values_of = [&](std::size_t which) {
     return [this, side, which](int at) {
-      const FootState foot = standing(side, which, at);
+      const FootState foot = stance_state(side, which, at);
       const Vec3 leg = foot.ankle - hip(side, at);
-      const double yaw = track_.yaw_at(at), forward = leg.dot(ahead_of(yaw)), d = leg.norm();
+      const double yaw = track_.yaw_at(at), forward = leg.dot(forward_direction(yaw)), d = leg.norm();
       const double a = body_.thigh, b = body_.shin;
       const double bend = std::acos(std::clamp((d * d - a * a - b * b) / (2 * a * b), -1.0, 1.0)) / kDegree;
-      return Values(bend, std::atan2(forward, -leg.z()), leg.dot(beside(yaw)), foot.pitch);
+      return Values(bend, std::atan2(forward, -leg.z()), leg.dot(left_direction(yaw)), foot.pitch);
     };
   };
-  Jet<Values> strike = jet_of(values_of(number + 1), to.strike);
+  Derivatives<Values> strike = find_derivatives(values_of(number + 1), to.strike);
   // The velocity and acceleration of the knee at the strike are 0. They need not match those after the strike, because
   // the heel lands abruptly.
-  strike.rate[0] = strike.bend[0] = 0;
-  Jet<Values> off = jet_of(values_of(number), from.off);
-  off.bend[3] = 0;
-  Values now = quintic(off, strike, span, s);
+  strike.first_derivative[0] = strike.second_derivative[0] = 0;
+  Derivatives<Values> off = find_derivatives(values_of(number), from.off);
+  off.second_derivative[3] = 0;
+  Values now = interpolate_quintic(off, strike, span, s);
   const double size = std::min(to.size, 1.0);
-  now[0] += size * knee_in_the_air(s) + kInPlaceKneeLift * (1 - size) * late_bump(s);
+  now[0] += size * swing_knee_offset(s) + kInPlaceKneeLift * (1 - size) * late_bump(s);
   now[2] += (side == 0 ? 1 : -1) * to.aside * bump(s);
-  now[3] -= kToeClearRatio * off.rate[3] * span * early_bump(s);
+  now[3] -= kToeClearRatio * off.first_derivative[3] * span * early_bump(s);
   const double d = leg_extent(now[0]), down = std::sqrt(d * d - now[2] * now[2]), yaw = track_.yaw_at(key);
   FootState state;
-  state.ankle = hip(side, key) + down * std::sin(now[1]) * ahead_of(yaw) + now[2] * beside(yaw) -
+  state.ankle = hip(side, key) + down * std::sin(now[1]) * forward_direction(yaw) + now[2] * left_direction(yaw) -
                 down * std::cos(now[1]) * Vec3::UnitZ();
   state.yaw = from.yaw + (to.yaw - from.yaw) * smooth_ramp(s, 0, 1);
   state.pitch = now[3];
@@ -233,13 +234,13 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
 }
 
 FootState Feet::at(int side, int key) const {
-  const std::size_t number = plan_.plant_at(side, key);
-  return key <= plant(side, number).off ? standing(side, number, key) : swinging(side, number, key);
+  const std::size_t number = plan_.foothold_at(side, key);
+  return key <= foothold(side, number).off ? stance_state(side, number, key) : swing_state(side, number, key);
 }
 
 /// Height of the pelvis above the floor [m] at which the knee of a stance leg has the bend knee().
 double Feet::height_above(int side, std::size_t number, int key) const {
-  const Plant& here = plant(side, number);
+  const Foothold& here = foothold(side, number);
   const Vec3 leg = hip(side, key) - rolling_ankle(here, strike_pitch(here, key));
   const double d = leg_extent(knee(side, number, key));
   // heights_ is not computed yet. hip() therefore assumes that Joint::hips is at height 0.
@@ -277,8 +278,8 @@ void Feet::find_heights() {
     const Support& next = supports[now + 1];
     const double span = next.begin - support.end;
     const auto between = [&](int at) {
-      return quintic(jet_of(above(support), support.end), jet_of(above(next), next.begin), span,
-                     (at - support.end) / span);
+      return interpolate_quintic(find_derivatives(above(support), support.end),
+                                 find_derivatives(above(next), next.begin), span, (at - support.end) / span);
     };
     const double correction = above(next)(next.strike) - between(next.strike);
     heights.push_back(between(key) +

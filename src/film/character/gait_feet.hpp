@@ -44,17 +44,17 @@ class Feet {
   double pelvis_height(int key) const { return heights_[track_.index(key)]; }
 
  private:
-  const Plant& plant(int side, std::size_t number) const { return plan_.plants[side][number]; }
+  const Foothold& foothold(int side, std::size_t number) const { return plan_.footholds[side][number]; }
   double next_size(int side, std::size_t number) const;
   Vec3 hip(int side, int key) const;
   double knee(int side, std::size_t number, int key) const;
   double leg_extent(double knee) const;
-  double strike_pitch(const Plant& plant, int key) const;
+  double strike_pitch(const Foothold& foothold, int key) const;
   double standing_pitch(int side, std::size_t number, int key) const;
   static double toe_pitch(double pitch);
-  Vec3 rolling_ankle(const Plant& plant, double pitch) const;
-  FootState standing(int side, std::size_t number, int key) const;
-  FootState swinging(int side, std::size_t number, int key) const;
+  Vec3 rolling_ankle(const Foothold& foothold, double pitch) const;
+  FootState stance_state(int side, std::size_t number, int key) const;
+  FootState swing_state(int side, std::size_t number, int key) const;
   double height_above(int side, std::size_t number, int key) const;
   void find_heights();
 

@@ -37,7 +37,7 @@ double step_size(const Physique& body, const Pace& pace) {
 struct Step {
   double forward = 0, left = 0;  ///< [m]
   double turn = 0;               ///< [rad]
-  double size = 1;               ///< see Plant::size
+  double size = 1;               ///< see Foothold::size
 };
 
 /// Collects the steps of a walk.
@@ -49,20 +49,20 @@ class Planner {
     plan.speed = pace.step_length / pace.step_time;
     next_strike_ = static_cast<int>(std::round(stand / plan.key_time)) + keys_of_fraction(kWeightShiftFraction) +
                    keys_of_fraction(kSwing);
-    for (int side = 0; side < 2; ++side) plan.plants[side].push_back(plant_of(side));
+    for (int side = 0; side < 2; ++side) plan.footholds[side].push_back(make_foothold(side));
   }
 
   /// Moves the middle of the body and places one foot beside it.
   void step(int side, const Step& step) {
     yaw_ += step.turn;
     middle_ += step.forward * forward_of(yaw_) + step.left * left_of(yaw_);
-    auto& plants = plan.plants[side];
-    Plant plant = plant_of(side);
-    plant.strike = next_strike_;
-    plant.size = step.size;
-    if (step.turn != 0) plant.aside = kOutwardDetour;
-    plants.back().off = next_strike_ - keys_of_fraction(kSwing);
-    plants.push_back(plant);
+    auto& footholds = plan.footholds[side];
+    Foothold foothold = make_foothold(side);
+    foothold.strike = next_strike_;
+    foothold.size = step.size;
+    if (step.turn != 0) foothold.aside = kOutwardDetour;
+    footholds.back().off = next_strike_ - keys_of_fraction(kSwing);
+    footholds.push_back(foothold);
     plan.strikes.push_back({next_strike_, side});
     next_strike_ += plan.step_keys;
   }
@@ -72,13 +72,13 @@ class Planner {
  private:
   int keys_of_fraction(double of_stride) const { return static_cast<int>(std::round(of_stride * plan.period())); }
 
-  Plant plant_of(int side) const {
+  Foothold make_foothold(int side) const {
     const double sign = side == 0 ? 1 : -1;
-    Plant plant;
-    plant.at = middle_ + sign * kHalfTrack * body_.height * left_of(yaw_) - body_.stance_forward * forward_of(yaw_);
-    plant.yaw = yaw_;
-    plant.foot_yaw = yaw_ + sign * body_.foot_yaw;
-    return plant;
+    Foothold foothold;
+    foothold.at = middle_ + sign * kHalfTrack * body_.height * left_of(yaw_) - body_.stance_forward * forward_of(yaw_);
+    foothold.yaw = yaw_;
+    foothold.foot_yaw = yaw_ + sign * body_.foot_yaw;
+    return foothold;
   }
 
   const Physique& body_;
@@ -167,11 +167,11 @@ int keys_of_step(const Pace& pace) {
   return 2 * static_cast<int>(std::round(kKeysPerSecond / 2 * pace.step_time));
 }
 
-std::size_t StepPlan::plant_at(int side, int key) const {
-  const auto& list = plants[side];
-  std::size_t plant = 0;
-  while (plant + 1 < list.size() && key >= list[plant + 1].strike) ++plant;
-  return plant;
+std::size_t StepPlan::foothold_at(int side, int key) const {
+  const auto& list = footholds[side];
+  std::size_t foothold = 0;
+  while (foothold + 1 < list.size() && key >= list[foothold + 1].strike) ++foothold;
+  return foothold;
 }
 
 StepPlan plan_walk(const Physique& body, const Walk& walk) {

@@ -51,7 +51,7 @@ inline constexpr double kSwing = 0.40;    ///< swing phase [strides]
 inline constexpr double kOverlap = 0.10;  ///< double support after a strike [strides]
 
 /// A foothold: a position where a foot stands for some time.
-struct Plant {
+struct Foothold {
   Vec2 at = Vec2::Zero();  ///< point on the floor below the ankle while the sole is flat [m]
   double yaw = 0;          ///< heading of the body at this foothold, 0 toward -y, + to the left [rad]
   double foot_yaw = 0;     ///< heading of the foot: `yaw` plus the outward rotation of the toes [rad]
@@ -63,7 +63,7 @@ struct Plant {
 
 /// Footholds of both feet, and timing of the steps.
 struct StepPlan {
-  std::array<std::vector<Plant>, 2> plants;  ///< footholds of the left and the right foot
+  std::array<std::vector<Foothold>, 2> footholds;  ///< footholds of the left and the right foot
   struct Strike {
     int key, side;
   };
@@ -75,10 +75,10 @@ struct StepPlan {
   /// Number of keys in a stride.
   int period() const { return 2 * step_keys; }
   /// Number of the foothold where the foot `side` stands at the key `key`; in swing, where it stood last.
-  std::size_t plant_at(int side, int key) const;
+  std::size_t foothold_at(int side, int key) const;
   /// Strides since the heel strike, and strides until toe-off; large if the foothold has no strike or no toe-off.
-  double strides_since_strike(const Plant& plant, double key) const { return (key - plant.strike) / period(); }
-  double until_off(const Plant& plant, double key) const { return (plant.off - key) / period(); }
+  double strides_since_strike(const Foothold& foothold, double key) const { return (key - foothold.strike) / period(); }
+  double until_off(const Foothold& foothold, double key) const { return (foothold.off - key) / period(); }
 };
 
 /// Plans a walk that begins and ends with standing and, if `walk.turn_back`, turns around at its far end. Adjusts the

@@ -54,19 +54,19 @@ std::vector<Vec2> balance(const std::vector<Vec2>& p, double omega, double key_t
 }
 
 /// Fraction of the body weight on a foot, 0 to 1. The sum over both feet is not yet 1.
-double weight_fraction(const StepPlan& plan, const Plant& plant, int key) {
-  const double on = std::clamp(plan.strides_since_strike(plant, key) / kOverlap, 0.0, 1.0);
-  const double off = std::clamp(plan.until_off(plant, key) / kOverlap, 0.0, 1.0);
+double weight_fraction(const StepPlan& plan, const Foothold& foothold, int key) {
+  const double on = std::clamp(plan.strides_since_strike(foothold, key) / kOverlap, 0.0, 1.0);
+  const double off = std::clamp(plan.until_off(foothold, key) / kOverlap, 0.0, 1.0);
   return std::min(on, off);
 }
 
 /// The point below a foot that bears the weight [m]. It moves forward during stance.
-Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
+Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Foothold& foothold, double next_size, int key) {
   const double cm = body.height / 175;
-  const double back = kRollBack * (1 - smooth_ramp(plan.strides_since_strike(plant, key), 0, 0.3)) * plant.size;
-  const double front = kRollForward * smooth_ramp(-plan.until_off(plant, key), -0.4, 0) * std::min(next_size, 1.0);
-  const Vec2 forward(std::sin(plant.yaw), -std::cos(plant.yaw));
-  return plant.at + (body.stance_forward + 100 * cm * (front - back)) * forward;
+  const double back = kRollBack * (1 - smooth_ramp(plan.strides_since_strike(foothold, key), 0, 0.3)) * foothold.size;
+  const double front = kRollForward * smooth_ramp(-plan.until_off(foothold, key), -0.4, 0) * std::min(next_size, 1.0);
+  const Vec2 forward(std::sin(foothold.yaw), -std::cos(foothold.yaw));
+  return foothold.at + (body.stance_forward + 100 * cm * (front - back)) * forward;
 }
 
 }  // namespace
@@ -83,12 +83,12 @@ Track balance_body(const Physique& body, const StepPlan& plan, int first, int la
     Vec2 point = Vec2::Zero();
     double yaw = 0, sum = 0;
     for (int side = 0; side < 2; ++side) {
-      const auto& plants = plan.plants[side];
-      const std::size_t number = plan.plant_at(side, key);
-      const double fraction = weight_fraction(plan, plants[number], key);
-      const double next_size = number + 1 < plants.size() ? plants[number + 1].size : 0;
-      point += fraction * bearing_point(body, plan, plants[number], next_size, key);
-      yaw += fraction * plants[number].yaw;
+      const auto& footholds = plan.footholds[side];
+      const std::size_t number = plan.foothold_at(side, key);
+      const double fraction = weight_fraction(plan, footholds[number], key);
+      const double next_size = number + 1 < footholds.size() ? footholds[number + 1].size : 0;
+      point += fraction * bearing_point(body, plan, footholds[number], next_size, key);
+      yaw += fraction * footholds[number].yaw;
       sum += fraction;
     }
     track.place.push_back(point / sum);

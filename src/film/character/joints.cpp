@@ -8,7 +8,7 @@
 #include <set>
 #include <string_view>
 
-#include "film/character/nameless.hpp"
+#include "film/character/structural_joints.hpp"
 
 namespace weft::character {
 namespace {
@@ -367,9 +367,9 @@ std::vector<Index> find_prefixed_joints(const Character& character) {
 std::vector<Index> find_joints(const Character& character) {
   std::vector<Index> joints = find_prefixed_joints(character);
   if (has_all_limbs(joints)) return joints;
-  const std::vector<Index> nameless = find_joints_by_structure(character);
+  const std::vector<Index> by_structure = find_joints_by_structure(character);
   for (std::size_t j = 0; j < joints.size(); ++j)
-    if (joints[j] < 0 && std::ranges::find(joints, nameless[j]) == joints.end()) joints[j] = nameless[j];
+    if (joints[j] < 0 && std::ranges::find(joints, by_structure[j]) == joints.end()) joints[j] = by_structure[j];
   determine_trunk(character.nodes, joints);
   return joints;
 }

@@ -70,7 +70,7 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes, const std::vec
 
 /// Like find_named_joints(), but also handles rigs whose node names share a prefix or suffix, such as the name of the
 /// rig. If not all upper and lower arms and legs are found by name, the structure of the tree determines the missing
-/// joints (nameless.hpp).
+/// joints (structural_joints.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

@@ -207,9 +207,10 @@ void LimbClearance::lift_from_ground(std::span<const Vec3> from, std::span<Vec3>
 // Finds the vertex that moved farthest. A vertex first moves back from `before` to `unlifted`, then up to `x`. `other`:
 // per vertex, the triangle of another limb from which it moved back; -1: it did not move, or only followed its
 // neighbours.
-Moved LimbClearance::farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
-                              std::vector<Index> other) const {
-  Moved moved;
+LargestDisplacement LimbClearance::find_largest_displacement(std::span<const Vec3> before,
+                                                             std::span<const Vec3> unlifted, std::span<const Vec3> x,
+                                                             std::vector<Index> other) const {
+  LargestDisplacement moved;
   for (std::size_t v = 0; v < before.size(); ++v) {
     const double distance = (x[v] - before[v]).norm();
     if (distance > moved.distance) moved.distance = distance, moved.vertex = static_cast<Index>(v);
@@ -232,7 +233,7 @@ Moved LimbClearance::farthest(std::span<const Vec3> before, std::span<const Vec3
   return moved;
 }
 
-Moved LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
+LargestDisplacement LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
   const std::vector<Vec3> original(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(touched_.size()));
   std::vector<Vec3> from(touched_.size());
   skin(bones_, {pose.nodes, {}}, from);
@@ -271,7 +272,7 @@ Moved LimbClearance::move_skin(const Pose& pose, std::span<Vec3> x) const {
   }
   const std::vector<Vec3> unlifted(x.begin(), x.begin() + std::ssize(original));
   lift_from_ground(from, x);
-  return farthest(original, unlifted, x, std::move(other));
+  return find_largest_displacement(original, unlifted, x, std::move(other));
 }
 
 }  // namespace weft::character

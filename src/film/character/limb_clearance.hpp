@@ -21,7 +21,7 @@ struct Ground {
 };
 
 /// The vertex that LimbClearance::move_skin() has moved farthest.
-struct Moved {
+struct LargestDisplacement {
   double distance = 0;  ///< [m]; 0: nothing moved
   Index vertex = -1;
   std::string limb;       ///< limb to which the vertex belongs
@@ -46,7 +46,7 @@ class LimbClearance {
                 std::vector<Ground> grounds);
 
   /// Moves the skin `x`, which must be the result of skin() for the pose. Returns the largest displacement.
-  Moved move_skin(const Pose& pose, std::span<Vec3> x) const;
+  LargestDisplacement move_skin(const Pose& pose, std::span<Vec3> x) const;
 
  private:
   /// Missing clearance of one vertex in one round of move_skin().
@@ -60,8 +60,8 @@ class LimbClearance {
                     std::vector<MissingClearance>& missing) const;
   void smooth(std::span<const double> lengths, std::vector<double>& remaining) const;
   void lift_from_ground(std::span<const Vec3> from, std::span<Vec3> x) const;
-  Moved farthest(std::span<const Vec3> before, std::span<const Vec3> unlifted, std::span<const Vec3> x,
-                 std::vector<Index> other) const;
+  LargestDisplacement find_largest_displacement(std::span<const Vec3> before, std::span<const Vec3> unlifted,
+                                                std::span<const Vec3> x, std::vector<Index> other) const;
 
   double clearance_;
   std::vector<Ground> grounds_;

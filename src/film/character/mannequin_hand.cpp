@@ -32,7 +32,7 @@ void add_rod(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& al
   frame.u = (across - across.dot(along) * along).normalized();
   frame.v = along.cross(frame.u);
   const Rows rows{{0, 0, 0, radius, radius, radius, 2}, {length, 0, 0, end_radius, end_radius, end_radius, 2}};
-  body.add(Loft(frame, scaled(rows, s, false), radius * s.length, end_radius * s.length), blend, true);
+  body.add(Loft(frame, scale_sections(rows, s, false), radius * s.length, end_radius * s.length), blend, true);
 }
 
 /// A flat body that fills the gaps between fingers: length, half widths at both ends, half thickness [cm].
@@ -49,7 +49,7 @@ void add_plate(BlendedBody& body, const Scale& s, const Vec3& from, const Vec3& 
   frame.v = along.cross(frame.u);
   const Rows rows{{0, 0, 0, plate.width, plate.thickness, plate.thickness, 2.5},
                   {plate.length, 0, 0, plate.end_width, plate.thickness, plate.thickness, 2.5}};
-  body.add(Loft(frame, scaled(rows, s, false), 0.6 * s.length, 0.6 * s.length), 0.5 * s.length, true);
+  body.add(Loft(frame, scale_sections(rows, s, false), 0.6 * s.length, 0.6 * s.length), 0.5 * s.length, true);
 }
 
 Vec3 bent(const Vec3& along, const Vec3& toward, double degrees) {
@@ -65,7 +65,7 @@ void add_hand(BlendedBody& body, const Scale& s, const LoftFrame& arm) {
                   {63.5, -0.1, 0.25, 1.45, 3.3, 3.1, 2.2},
                   {66.0, -0.15, 0.2, 1.15, 3.4, 3.2, 2.3},
                   {67.6, -0.3, 0.15, 0.85, 3.2, 3.0, 2.3}};
-  body.add(Loft(arm, scaled(palm, s, false), 2 * s.length, 1.4 * s.length), 2.5 * s.length, true);
+  body.add(Loft(arm, scale_sections(palm, s, false), 2 * s.length, 1.4 * s.length), 2.5 * s.length, true);
   const auto place = [&](double at, double out, double forward) -> Vec3 {
     return arm.origin + s.length * (at * arm.along + out * arm.u + forward * arm.v);
   };

@@ -23,7 +23,7 @@ void add_skull(BlendedBody& body, const Scale& s) {
   const Rows face{{154.9, 0, 4.6, 3.0 * jaw, 3.7, 4.0, 2.2}, {156.8, 0, 3.4, 4.7 * jaw, 5.0, 5.0, 2.2},
                   {159, 0, 2.3, 5.75 * jaw, 6.3, 5.0, 2.2},  {162, 0, 1.6, 6.35, 7.3, 5.0, 2.2},
                   {165, 0, 1.2, 6.5, 7.7, 5.0, 2.2},         {168, 0, 0.7, 6.3, 7.7, 5.0, 2.1}};
-  body.add(Loft({}, scaled(face, s, false), 1.7 * s.length, 4.5 * s.length), 3 * s.length, false);
+  body.add(Loft({}, scale_sections(face, s, false), 1.7 * s.length, 4.5 * s.length), 3 * s.length, false);
 }
 
 void add_eyes(BlendedBody& body, const Scale& s) {
@@ -46,7 +46,7 @@ void add_nose(BlendedBody& body, const Scale& s) {
                   {3.2, 0, -0.2, 0.85, 0.8, 1.6, 2},
                   {4.4, 0, -0.1, 0.95, 0.8, 1.5, 2},
                   {5.0, 0, -0.15, 0.95, 0.8, 1.4, 2}};
-  body.add(Loft(ridge, scaled(rows, s, false), 1.4 * s.length, 0.75 * s.length), 1.6 * s.length, false);
+  body.add(Loft(ridge, scale_sections(rows, s, false), 1.4 * s.length, 0.75 * s.length), 1.6 * s.length, false);
   body.add(ellipsoid(s, {0.95, 9.05, 160.25}, {0.75, 1.05, 0.72}, 0, 18), 0.8 * s.length, true);
   body.carve(ellipsoid(s, {0.58, 9.6, 159.4}, {0.36, 0.62, 0.5}, 0, 14), 0.3 * s.length, true);
 }

@@ -21,7 +21,7 @@ struct Scale {
 using Rows = std::vector<Section>;
 
 /// Scales sections to metres. Widths and depths scale with the girth if `grows`, else with the length.
-Rows scaled(Rows rows, const Scale& scale, bool grows = true);
+Rows scale_sections(Rows rows, const Scale& scale, bool grows = true);
 
 /// An ellipsoid. `middle` and `half`: its centre and half axes, as components to the left, forward and up [table
 /// units]. It is rotated about its centre, first by `pitch`, then by `yaw` [degrees]. A positive pitch tilts the top

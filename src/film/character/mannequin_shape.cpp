@@ -33,7 +33,7 @@ void add_torso(BlendedBody& body, const Scale& s) {
       {138, 0, 0, w(13.0, 15.0), w(6.6, 8.2), w(9.4, 10.8), 2.3},
       {141, 0, 0, w(11.6, 13.2), w(5.6, 6.8), w(8.8, 9.8), 2.2},
   };
-  body.add(Loft({}, scaled(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
+  body.add(Loft({}, scale_sections(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
 }
 
 /// An ellipsoid whose half axes scale with the girth (those of ellipsoid() scale with the height). `middle`: its
@@ -63,7 +63,7 @@ void add_shoulders(BlendedBody& body, const Scale& s) {
   LoftFrame frame;
   frame.along = Vec3::UnitX();
   frame.u = Vec3::UnitZ();
-  body.add(Loft(frame, scaled(rows, s), 5 * s.length, 4.6 * s.length), 0.06, true);
+  body.add(Loft(frame, scale_sections(rows, s), 5 * s.length, 4.6 * s.length), 0.06, true);
 }
 
 void add_neck(BlendedBody& body, const Scale& s) {
@@ -79,7 +79,7 @@ void add_neck(BlendedBody& body, const Scale& s) {
                   {8, 0, 0, 5.0 * k, 5.1 * k, 5.2 * k, 2},
                   {12, 0, 0, 4.95 * k, 5.2 * k, 5.3 * k, 2},
                   {16, 0, 0, 5.3 * k, 5.6 * k, 5.6 * k, 2}};
-  body.add(Loft(neck, scaled(rows, s), 3 * s.length, 3 * s.length), 0.05, false);
+  body.add(Loft(neck, scale_sections(rows, s), 3 * s.length, 3 * s.length), 0.05, false);
 }
 
 /// Frame with the axis along the arm, from the shoulder on; u points away from the body, v forward.
@@ -102,7 +102,7 @@ void add_arm(BlendedBody& body, const Scale& s, const LoftFrame& frame) {
     row.front *= k;
     row.back *= k;
   }
-  body.add(Loft(frame, scaled(arm, s), 4.4 * s.length, 2 * s.length), 0.045, true);
+  body.add(Loft(frame, scale_sections(arm, s), 4.4 * s.length, 2 * s.length), 0.045, true);
 }
 
 void add_leg(BlendedBody& body, const Scale& s) {
@@ -121,7 +121,7 @@ void add_leg(BlendedBody& body, const Scale& s) {
     // Heavier thighs are farther apart.
     row.u += (s.girth / s.length - 1) * row.side * std::min(1.0, row.at / 78);
   }
-  body.add(Loft({}, scaled(leg, s), 3.5 * s.length, 4 * s.length), 0.06, true);
+  body.add(Loft({}, scale_sections(leg, s), 3.5 * s.length, 4 * s.length), 0.06, true);
 }
 
 /// Adds a foot. The axis runs from the heel to the toes, slightly outward; u is to the side, v up.
@@ -137,12 +137,12 @@ void add_foot(BlendedBody& body, const Scale& s, const Vec3& ankle) {
                   {4, 0.1, 2.4, 3.2, 4.9, 3.2, 2.2},    {8, 0.2, 2.1, 3.7, 3.8, 2.9, 2.2},
                   {12, 0.1, 1.7, 4.3, 2.7, 2.5, 2.3},   {15, 0, 1.5, 4.4, 1.9, 2.2, 2.4},
                   {17.6, -0.5, 1.3, 3.9, 1.4, 1.9, 2.4}};
-  body.add(Loft(frame, scaled(rows, s, false), 2.6 * s.length, 2.4 * s.length), 0.03, true);
+  body.add(Loft(frame, scale_sections(rows, s, false), 2.6 * s.length, 2.4 * s.length), 0.03, true);
 }
 
 }  // namespace
 
-Rows scaled(Rows rows, const Scale& scale, bool grows) {
+Rows scale_sections(Rows rows, const Scale& scale, bool grows) {
   const double across = grows ? scale.girth : scale.length;
   for (Section& s : rows) {
     s.at *= scale.length;

@@ -80,10 +80,10 @@ class WeightBlender {
     // Vertices between the legs get weight on both legs.
     const double bridge = 0.6 + 3.5 * smooth_ramp(up_, 71, 80);
     const double left = smooth_ramp(x_, -bridge, bridge);
-    const double share = weight_[z(Joint::hips)] * leg;
-    weight_[z(Joint::hips)] -= share;
-    weight_[z(Joint::left_upper_leg)] += left * share;
-    weight_[z(Joint::right_upper_leg)] += (1 - left) * share;
+    const double leg_weight = weight_[z(Joint::hips)] * leg;
+    weight_[z(Joint::hips)] -= leg_weight;
+    weight_[z(Joint::left_upper_leg)] += left * leg_weight;
+    weight_[z(Joint::right_upper_leg)] += (1 - left) * leg_weight;
 
     const double knee = at(Joint::left_lower_leg).z() / cm_;
     transfer(Joint::left_upper_leg, Joint::left_lower_leg, smooth_ramp(-up_, -knee - 7, -knee + 7));

@@ -13,13 +13,13 @@ namespace {
 /// Vertices per parallel task. A task takes some hundred microseconds.
 constexpr std::size_t kVerticesPerTask = 2048;
 
-Vec3 between(const Vec3& a, const Vec3& b, double weight) {
+Vec3 interpolate(const Vec3& a, const Vec3& b, double weight) {
   return a + weight * (b - a);
 }
-double between(double a, double b, double weight) {
+double interpolate(double a, double b, double weight) {
   return a + weight * (b - a);
 }
-Quat between(const Quat& a, const Quat& b, double weight) {
+Quat interpolate(const Quat& a, const Quat& b, double weight) {
   return a.slerp(weight, b);
 }
 
@@ -31,7 +31,7 @@ Value value_at(const Curve<Value>& curve, double t) {
   if (after == curve.times.end()) return curve.values.back();
   const auto k = static_cast<std::size_t>(after - curve.times.begin());
   const double weight = (t - curve.times[k - 1]) / (curve.times[k] - curve.times[k - 1]);
-  return between(curve.values[k - 1], curve.values[k], weight);
+  return interpolate(curve.values[k - 1], curve.values[k], weight);
 }
 
 /// The rotation of a linear map, by the Gram-Schmidt process on its columns. Mirroring remains in the stretch.
@@ -127,11 +127,12 @@ Pose blend(const Pose& a, const Pose& b, double weight) {
   Pose pose = a;
   for (std::size_t n = 0; n < pose.nodes.size(); ++n) {
     Placement& node = pose.nodes[n];
-    node.position = between(node.position, b.nodes[n].position, weight);
-    node.rotation = between(node.rotation, b.nodes[n].rotation, weight).normalized();
+    node.position = interpolate(node.position, b.nodes[n].position, weight);
+    node.rotation = interpolate(node.rotation, b.nodes[n].rotation, weight).normalized();
     node.stretch += weight * (b.nodes[n].stretch - node.stretch);
   }
-  for (std::size_t m = 0; m < pose.morphs.size(); ++m) pose.morphs[m] = between(pose.morphs[m], b.morphs[m], weight);
+  for (std::size_t m = 0; m < pose.morphs.size(); ++m)
+    pose.morphs[m] = interpolate(pose.morphs[m], b.morphs[m], weight);
   return pose;
 }
 

@@ -332,7 +332,7 @@ class Retargeter {
 
   /// Bends a leg or an arm so that it ends at `end`.
   static void bend_limb(Frame& frame, const Leg& limb, const Vec3& end, Joint upper_joint) {
-    const LegTurns turns = reach(limb, end);
+    const LegTurns turns = solve_two_bone_ik(limb, end);
     Quat& upper = frame.turned[joint_index(upper_joint)];
     Quat& lower = frame.turned[joint_index(upper_joint) + 1];
     upper = (turns.upper * upper).normalized();

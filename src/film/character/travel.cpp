@@ -179,13 +179,13 @@ class Path {
 
 }  // namespace
 
-Clip in_place(const Rig& rig, const Clip& clip, const Vec3& up) {
+Clip remove_travel(const Rig& rig, const Clip& clip, const Vec3& up) {
   const Path path(rig, clip, up);
   return path.translate(Path::moved_nodes(rig, clip), path.displacements_in_place());
 }
 
-TravelResult at_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up) {
-  const Clip still = in_place(rig, clip, up);
+TravelResult set_travel_speed(const Rig& rig, const Clip& clip, double speed, const Vec3& up) {
+  const Clip still = remove_travel(rig, clip, up);
   const Path path(rig, still, up);
   TravelResult result;
   const std::vector<Vec3> by = path.displacements_at_speed(speed, result.feet);

@@ -14,10 +14,10 @@ namespace {
 /// Finds the vertices of a part by its bone, material or name.
 class PartFinder {
  public:
-  PartFinder(const Cast& cast, const scene::SkeletonMotion& acting, const Body& body)
-      : cast_(cast),
+  PartFinder(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion, const Body& body)
+      : context_(context),
         body_(body),
-        joints_(joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source)) {}
+        joints_(joints_of(context, skeleton_motion.joints, &scene::JointNames::body, body.character, body.source)) {}
 
   /// The vertices of a part. Throws if the part contains no triangle. `key`: key of the part in the scene, for
   /// messages.
@@ -25,8 +25,8 @@ class PartFinder {
     character::VertexMask mask = vertices_of(part, key);
     const auto holds = [&](const auto& t) { return mask[t[0]] + mask[t[1]] + mask[t[2]] >= 2; };
     if (std::ranges::none_of(body_.character.mesh.topology.triangles, holds))
-      cast_.fail(key, fmt::format("expected a part with vertices of {}, got \"{}\", which holds none", body_.source,
-                                  part.bone.value_or(part.material.value_or(part.name))));
+      context_.fail(key, fmt::format("expected a part with vertices of {}, got \"{}\", which holds none", body_.source,
+                                     part.bone.value_or(part.material.value_or(part.name))));
     return mask;
   }
 
@@ -36,23 +36,23 @@ class PartFinder {
   character::VertexMask vertices_of(const scene::BodyPart& part, const std::string& key) const {
     const character::Character& body = body_.character;
     if (part.bone)
-      return character::vertices_below(body, named_node(cast_, key + ".bone", *part.bone, body.nodes, body_.source));
+      return character::vertices_below(body, named_node(context_, key + ".bone", *part.bone, body.nodes, body_.source));
     if (part.material) {
       const auto found = std::ranges::find(body.materials, *part.material);
       if (found != body.materials.end())
         return character::vertices_of_material(body, static_cast<Index>(found - body.materials.begin()));
-      cast_.fail(key + ".material", fmt::format("expected a material of {}, got \"{}\"{}", body_.source, *part.material,
-                                                did_you_mean(*part.material, body.materials)));
+      context_.fail(key + ".material", fmt::format("expected a material of {}, got \"{}\"{}", body_.source,
+                                                   *part.material, did_you_mean(*part.material, body.materials)));
     }
     const std::vector<Index> joints = character::joints_of_part(part.name);
     if (joints.empty())
-      cast_.fail(key, fmt::format("expected {} or a joint, or a part with bone or material, got \"{}\"{}",
-                                  "hands, feet, arms, legs, head, torso", part.name,
-                                  did_you_mean(part.name, character::part_names())));
+      context_.fail(key, fmt::format("expected {} or a joint, or a part with bone or material, got \"{}\"{}",
+                                     "hands, feet, arms, legs, head, torso", part.name,
+                                     did_you_mean(part.name, character::part_names())));
     return character::vertices_of(body, joints_, joints);
   }
 
-  const Cast& cast_;
+  const CharacterContext& context_;
   const Body& body_;
   std::vector<Index> joints_;
 };
@@ -75,17 +75,17 @@ scene::BodyPart part_named(const std::string& name) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const Cast& cast, const scene::SkeletonMotion& acting,
+std::vector<Part> parts_of(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion,
                            std::span<const FollowerPoints> following, Body& body) {
-  const PartFinder finder(cast, acting, body);
-  std::vector<scene::BodyPart> wanted = cast.settings.parts;
-  if (!has_hand_settings(wanted) && cast.settings.collide && finder.has_fingers()) {
+  const PartFinder finder(context, skeleton_motion, body);
+  std::vector<scene::BodyPart> wanted = context.settings.parts;
+  if (!has_hand_settings(wanted) && context.settings.collide && finder.has_fingers()) {
     wanted.push_back(part_named("hands"));
     wanted.back().collide = false;
     body.warnings.push_back(
         fmt::format("{}: the hands have fingers, which would catch cloth: cloth passes through them; to let them "
                     "collide, write [[character.part]] name = \"hands\"",
-                    cast.where));
+                    context.where));
   }
   const std::size_t settings = wanted.size();
   for (const FollowerPoints& pin : following)
@@ -98,9 +98,11 @@ std::vector<Part> parts_of(const Cast& cast, const scene::SkeletonMotion& acting
   return parts;
 }
 
-std::vector<Index> shells_of_limbs(const Cast& cast, const scene::SkeletonMotion& acting, const Body& body) {
+std::vector<Index> shells_of_limbs(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion,
+                                   const Body& body) {
   const std::vector<character::Limb> limbs = character::limbs_of(
-      body.character, joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source));
+      body.character,
+      joints_of(context, skeleton_motion.joints, &scene::JointNames::body, body.character, body.source));
   std::vector<Index> shells = mesh::components(body.character.mesh.topology.triangles, limbs.size());
   constexpr Index kLimbCount = static_cast<Index>(character::Limb::right_leg) + 1;
   for (std::size_t v = 0; v < limbs.size(); ++v) shells[v] = shells[v] * kLimbCount + static_cast<Index>(limbs[v]);

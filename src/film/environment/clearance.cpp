@@ -75,15 +75,15 @@ void add_samples(const std::array<Vec3, 3>& corners, PointCubes& places) {
 
 }  // namespace
 
-std::vector<character::Ground> static_grounds(const Cast& cast) {
-  const scene::Pose& pose = cast.settings.pose;
+std::vector<character::Ground> static_grounds(const CharacterContext& context) {
+  const scene::Pose& pose = context.settings.pose;
   std::vector<character::Ground> grounds;
-  for (const scene::Obstacle& obstacle : cast.scene.obstacles) {
+  for (const scene::Obstacle& obstacle : context.scene.obstacles) {
     const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
     if (plane == nullptr || !plane->infinite || !obstacle.collide || !obstacle.motion.keys.empty() ||
         !obstacle.follow.empty())
       continue;
-    const Vec3 up = obstacle.pose.rotation * cast.up();
+    const Vec3 up = obstacle.pose.rotation * context.up();
     grounds.push_back({pose.rotation.conjugate() * up, up.dot(obstacle.pose.position - pose.position)});
   }
   return grounds;
@@ -95,12 +95,12 @@ double height_over(const character::Ground& ground, std::span<const Vec3> x) {
   return least;
 }
 
-double clearance_between_limbs(const Cast& cast) {
-  if (cast.settings.room) return *cast.settings.room;
-  const auto* mannequin = std::get_if<scene::Mannequin>(&cast.settings.source);
-  if (!cast.settings.collide || (mannequin != nullptr && !mannequin->motion)) return 0;
+double clearance_between_limbs(const CharacterContext& context) {
+  if (context.settings.clearance) return *context.settings.clearance;
+  const auto* mannequin = std::get_if<scene::Mannequin>(&context.settings.source);
+  if (!context.settings.collide || (mannequin != nullptr && !mannequin->motion)) return 0;
   double thickest = 0;
-  for (const scene::Cloth& cloth : cast.scene.cloths) thickest = std::max(thickest, cloth.material.thickness);
+  for (const scene::Cloth& cloth : context.scene.cloths) thickest = std::max(thickest, cloth.material.thickness);
   return kLayersBetweenLimbs * thickest;
 }
 
@@ -117,13 +117,13 @@ std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtSt
   return nearness;
 }
 
-std::vector<float> nearness_of_cloths(const Cast& cast, const character::Character& body,
+std::vector<float> nearness_of_cloths(const CharacterContext& context, const character::Character& body,
                                       const character::Performance& performance, std::span<const ClothAtStart> cloths) {
-  const scene::Pose& pose = cast.settings.pose;
+  const scene::Pose& pose = context.settings.pose;
   std::vector<float> nearness(body.mesh.positions.size(), 0);
   std::vector<Vec3> x(nearness.size());
   for (const ClothAtStart& cloth : cloths) {
-    character::skin(body, performance.at(cast.begin() + cloth.put_on), x);
+    character::skin(body, performance.at(context.begin() + cloth.put_on), x);
     for (Vec3& v : x) v = pose.position + pose.rotation * v;
     const std::vector<float> here = nearness_of_cloth(x, cloth);
     for (std::size_t v = 0; v < here.size(); ++v) nearness[v] = std::max(nearness[v], here[v]);

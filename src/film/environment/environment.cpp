@@ -221,7 +221,8 @@ void Environment::add_characters(const scene::Scene& scene) {
     const std::size_t vertices = actor.mesh.positions.size();
     for (PartFollower& follower : followers.rigid) follower.first += vertices;
     add_part_parents(scene, character, followers, actor.keys);
-    if (scene::acting_of(character) != nullptr)  // the key frames of a body with bones include the particles of pins
+    // The key frames of a body with bones include the particles of pins.
+    if (scene::skeleton_motion_of(character) != nullptr)
       for (const PinFollower& follower : followers.pins)
         model.cloths[follower.cloth].pins[follower.pin].first_vertex = vertices + follower.first;
     model.bodies.push_back(make_character(character, std::move(actor), bodies.emplace_back()));

@@ -8,7 +8,7 @@
 #include "core/types.hpp"
 #include "film/assets/mesh_file.hpp"
 #include "film/character/character.hpp"
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 #include "film/environment/made_cloth.hpp"
 #include "film/scene/scene.hpp"
 #include "physics/model/model.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 #include "film/scene/scene.hpp"
 #include "physics/model/model.hpp"
 

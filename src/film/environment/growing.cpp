@@ -105,7 +105,7 @@ std::optional<std::size_t> wearer_of(const scene::Scene& scene, const scene::Clo
   for (std::size_t c = 0; c < scene.characters.size(); ++c) {
     const scene::Character& character = scene.characters[c];
     if (cloth.wearer.empty() ? scene.characters.size() > 1 : character.name != cloth.wearer) continue;
-    if (scene::acting_of(character) == nullptr || !(character.dressing > 0)) continue;
+    if (scene::skeleton_motion_of(character) == nullptr || !(character.dressing > 0)) continue;
     if (kGrowingFraction * character.dressing > scene.time.preroll) continue;
     return c;
   }
@@ -131,20 +131,20 @@ void for_each_worn(const scene::Scene& scene, const Environment& environment, co
 
 }  // namespace
 
-std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, const Environment& environment) {
+std::optional<scene::Scene> pose_arms_for_sleeves(const scene::Scene& scene, const Environment& environment) {
   std::optional<scene::Scene> posed;
   for_each_worn(scene, environment, [&](const model::Cloth& cloth, std::size_t number, const Measure& measure) {
     const scene::Character& character = scene.characters[number];
-    if (scene::acting_of(character)->stance_arms || !(character.blend > 0)) return;
+    if (scene::skeleton_motion_of(character)->stance_arms || !(character.blend > 0)) return;
     const garment::Wearer& body = measure();
     if (!is_pierced_by_arm(cloth, body)) return;
     const std::optional<double> of_sleeves = angle_of_sleeves(cloth, body);
     // If another garment has already set the angle of the arms, only a garment with sleeves changes it, because arms
     // must point into sleeves.
-    if (posed && scene::acting_of(posed->characters[number])->stance_arms && !of_sleeves) return;
+    if (posed && scene::skeleton_motion_of(posed->characters[number])->stance_arms && !of_sleeves) return;
     if (!posed) posed = scene;
     const double angle = std::round(of_sleeves.value_or(kAngleBesideSkirt));
-    scene::acting_of(posed->characters[number])->stance_arms = angle;
+    scene::skeleton_motion_of(posed->characters[number])->stance_arms = angle;
     log::note(
         fmt::format("{}: the arms of '{}' would go through it at the start; while it is put on, they are {:g} "
                     "degrees from hanging, as with stance_arms = {:g}",
@@ -153,15 +153,15 @@ std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, cons
   return posed;
 }
 
-std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment,
-                                                 std::vector<std::string>& notes) {
+std::optional<scene::Scene> let_wearers_grow(const scene::Scene& scene, const Environment& environment,
+                                             std::vector<std::string>& notes) {
   std::optional<scene::Scene> growing;
   for_each_worn(scene, environment, [&](const model::Cloth& cloth, std::size_t number, const Measure& measure) {
     if (scene.characters[number].grow > 0) return;
     if (!growing) growing = scene;
     scene::Character& grown = growing->characters[number];
     grown.grow = kGrowingFraction * grown.dressing;
-    std::optional<double>& arms = scene::acting_of(grown)->stance_arms;
+    std::optional<double>& arms = scene::skeleton_motion_of(grown)->stance_arms;
     if (!arms && grown.blend > 0) arms = angle_of_sleeves(cloth, measure());
     notes.push_back(fmt::format(
         "{}: it cannot be moved out of '{}' at full size; so the body grows into it in the first {:g} "

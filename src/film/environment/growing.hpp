@@ -17,7 +17,7 @@ namespace weft::environment {
 /// - the wearer has bones, a positive `blend`, and no `stance_arms` in the scene,
 /// - the wearer has a positive `dressing`, and at least half of this time is before frame 0.
 /// Returns nullopt if no wearer changes. Logs a note for each garment whose wearer changes.
-std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, const Environment& environment);
+std::optional<scene::Scene> pose_arms_for_sleeves(const scene::Scene& scene, const Environment& environment);
 
 /// Returns a changed scene in which wearers grow from their bones during the first half of `dressing`. If the garment
 /// has sleeves, and the wearer has a positive `blend` and no `stance_arms` in the scene, the arms also point into the
@@ -26,7 +26,7 @@ std::optional<scene::Scene> with_arms_in_sleeves(const scene::Scene& scene, cons
 /// - the wearer has bones, and no `grow` in the scene,
 /// - the wearer has a positive `dressing`, and at least half of this time is before frame 0.
 /// Returns nullopt if no wearer changes. Adds a note to `notes` for each garment whose wearer changes.
-std::optional<scene::Scene> with_growing_wearers(const scene::Scene& scene, const Environment& environment,
-                                                 std::vector<std::string>& notes);
+std::optional<scene::Scene> let_wearers_grow(const scene::Scene& scene, const Environment& environment,
+                                             std::vector<std::string>& notes);
 
 }  // namespace weft::environment

@@ -9,7 +9,7 @@ std::string carrier_of(const scene::Scene& scene, const scene::Cloth& cloth) {
   for (const scene::Pin& pin : cloth.pins) {
     const scene::Followed followed = scene::followed(pin.follow);
     const auto found = std::ranges::find(scene.characters, followed.body, &scene::Character::name);
-    if (!followed.part.empty() && found != scene.characters.end() && scene::acting_of(*found) != nullptr)
+    if (!followed.part.empty() && found != scene.characters.end() && scene::skeleton_motion_of(*found) != nullptr)
       return followed.body;
   }
   return {};

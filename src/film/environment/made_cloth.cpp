@@ -51,7 +51,7 @@ std::vector<Vec3> start_positions(scene::UpAxis up, const scene::Cloth& cloth, c
   return x;
 }
 
-void use_quads(const mesh::Grid& grid, MadeCloth& made) {
+void fill_from_grid(const mesh::Grid& grid, MadeCloth& made) {
   made.cloth.grid = grid;
   made.cloth.mesh = mesh::make_sheet(grid);
   made.cloth.spacing = grid.min_spacing();
@@ -61,7 +61,7 @@ void use_quads(const mesh::Grid& grid, MadeCloth& made) {
                                           graded_fraction(j, grid.nv, grid.warp_grading));
 }
 
-void use_triangles(mesh::Mesh mesh, MadeCloth& made) {
+void fill_from_triangles(mesh::Mesh mesh, MadeCloth& made) {
   made.cloth.sheet = mesh::make_sheet_from_mesh(mesh);
   made.cloth.spacing = std::numbers::sqrt2 * mesh::min_height(made.cloth.sheet);
   const Box3 box = mesh::bounding_box(mesh.positions);
@@ -79,8 +79,8 @@ void use_triangles(mesh::Mesh mesh, MadeCloth& made) {
 /// Makes cloth from a pattern. The garment is upright. If it is fitted to its wearer or has panels around parts of the
 /// wearer, it is at the position of the wearer. Sets made.details.fractions to the positions in the bounding box of
 /// Garment::sheet.rest, from 0 to 1 along x and z.
-void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
-                 MadeCloth& made) {
+void fill_from_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
+                       MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
   const garment::Wearer* wearer = pattern.has_bent_panels() ? &wearers.of(cloth, where) : nullptr;
   const garment::Wearer* fitted = cloth.fit ? &wearers.of(cloth, where) : nullptr;
@@ -210,8 +210,8 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
 
 /// Makes cloth from a mesh file. The cloth starts as the mesh. Its rest shape is the mesh, or the flat panels that its
 /// UVs define. Moves the mesh into `made`, and returns the other data of the file, such as colours and vertex groups.
-assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
-                                 MadeCloth& made) {
+assets::LoadedMesh fill_from_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
+                                       MadeCloth& made) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh)
@@ -224,7 +224,7 @@ assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& 
       made.details.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
                                             welded.vertices, 1e3 * welded.widest);
   }
-  use_triangles(std::move(loaded.mesh), made);
+  fill_from_triangles(std::move(loaded.mesh), made);
   if (panels) {
     made.cloth.sheet.material = std::move(rest.material);
     made.cloth.sheet.sewn = true;
@@ -290,22 +290,22 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
   assets::LoadedMesh file;
   switch (cloth.shape) {
     case scene::ClothShape::quads:
-      use_quads(grid, made);
+      fill_from_grid(grid, made);
       break;
     case scene::ClothShape::aligned_triangles:
-      use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::aligned), made);
+      fill_from_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::aligned), made);
       break;
     case scene::ClothShape::crossed_triangles:
-      use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), made);
+      fill_from_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), made);
       break;
     case scene::ClothShape::mesh:
-      file = use_mesh_file(scene, cloth, where, made);
+      file = fill_from_mesh_file(scene, cloth, where, made);
       break;
     case scene::ClothShape::pattern:
-      use_pattern(scene, cloth, where, wearers, made);
+      fill_from_pattern(scene, cloth, where, wearers, made);
       break;
     case scene::ClothShape::rope:
-      use_rope(scene, *cloth.rope, made);
+      fill_from_rope(scene, *cloth.rope, made);
       break;
   }
   choose_particles(scene, cloth, file, where, made);

@@ -7,7 +7,7 @@
 
 namespace weft::environment {
 
-void use_rope(const scene::Scene& scene, const scene::Rope& rope, MadeCloth& made) {
+void fill_from_rope(const scene::Scene& scene, const scene::Rope& rope, MadeCloth& made) {
   model::Cloth& object = made.cloth;
   scene::RopeShape shape = scene::start_shape(rope, scene.up);
   const auto count = static_cast<Index>(shape.places.size()), pieces = static_cast<Index>(shape.lengths.size());

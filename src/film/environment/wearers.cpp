@@ -6,7 +6,7 @@
 
 #include "core/error.hpp"
 #include "film/character/joints.hpp"
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 #include "physics/mesh/geometry.hpp"
 
 namespace weft::environment {

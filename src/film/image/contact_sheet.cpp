@@ -12,7 +12,7 @@ namespace weft::image {
 namespace {
 
 // Colours of the background, of text, and of SheetPicture::right.
-constexpr Color kPaper{244, 244, 242}, kInk{38, 38, 42}, kFaintInk{112, 112, 118};
+constexpr Color kBackgroundColor{244, 244, 242}, kTextColor{38, 38, 42}, kFaintTextColor{112, 112, 118};
 
 /// Sizes derived from the width of a picture [pixels].
 struct Layout {
@@ -30,7 +30,7 @@ void paste(Image& onto, const Image& image, int x, int y) {
 }
 
 // Length [bytes] of the longest prefix of `text` that fits into `max_width` [pixels]; at least one character.
-std::size_t fitting(const Font& font, std::string_view text, int max_width) {
+std::size_t find_fitting_length(const Font& font, std::string_view text, int max_width) {
   std::size_t length = 0;
   for (int width = 0; length < text.size();) {
     std::size_t next = length + 1;
@@ -53,7 +53,7 @@ std::vector<std::string> wrap_text(const Font& font, std::string_view text, int 
       lines.back() = "…";
       break;
     }
-    std::size_t length = fitting(font, text, max_width);
+    std::size_t length = find_fitting_length(font, text, max_width);
     const std::size_t blank = length < text.size() ? text.rfind(' ', length) : std::string_view::npos;
     if (blank != std::string_view::npos && blank > 0) length = blank;
     const std::string_view line = text.substr(0, length);
@@ -112,8 +112,8 @@ Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const s
   const Layout& layout = plan.layout;
   const Font heading_font(layout.heading), font(layout.text);
   Image sheet(plan.size.width, plan.size.height);
-  for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kPaper[i % 3];
-  heading_font.draw(sheet, layout.gap, layout.gap + layout.heading * 4 / 5, heading, kInk);
+  for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kBackgroundColor[i % 3];
+  heading_font.draw(sheet, layout.gap, layout.gap + layout.heading * 4 / 5, heading, kTextColor);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const SheetPicture& picture = pictures[i];
     if (picture.image.width != width || picture.image.height != height)
@@ -122,8 +122,8 @@ Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const s
     const int y = plan.top + static_cast<int>(i) / plan.columns * plan.size.row;
     paste(sheet, picture.image, x, y);
     int baseline = y + height;
-    for (const std::string& line : plan.captions[i]) font.draw(sheet, x, baseline += layout.line(), line, kInk);
-    font.draw(sheet, x + width - font.width(picture.right), baseline, picture.right, kFaintInk);
+    for (const std::string& line : plan.captions[i]) font.draw(sheet, x, baseline += layout.line(), line, kTextColor);
+    font.draw(sheet, x + width - font.width(picture.right), baseline, picture.right, kFaintTextColor);
   }
   return sheet;
 }

@@ -231,9 +231,9 @@ std::vector<std::string> find_stretches(const scene::Scene& scene, const environ
     for (std::size_t b = 1; b < regions.size(); ++b)
       for (std::size_t a = 0; a < b; ++a) {
         const std::size_t cloth = moving.pins.info(a).cloth;
-        const bool by_bodies = moving.pin(scene, a).follow != moving.pin(scene, b).follow;
-        const bool apart = by_bodies || moving.is_moved(scene, a) || moving.is_moved(scene, b);
-        if (cloth != moving.pins.info(b).cloth || !apart) continue;
+        const bool follow_different_bodies = moving.pin(scene, a).follow != moving.pin(scene, b).follow;
+        const bool can_move_apart = follow_different_bodies || moving.is_moved(scene, a) || moving.is_moved(scene, b);
+        if (cloth != moving.pins.info(b).cloth || !can_move_apart) continue;
         const double limit = scene.cloths[cloth].material.max_stretch, ratio = stretch_between(regions[a], regions[b]);
         if (limit == 0 || ratio <= 1 + limit) continue;
         Stretch& stretch = stretches.try_emplace({a, b}, Stretch{t}).first->second;

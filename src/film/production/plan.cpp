@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 #include "film/environment/environment.hpp"
 #include "film/frame/frame_snapshot.hpp"
 #include "film/production/pin_warnings.hpp"

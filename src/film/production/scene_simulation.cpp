@@ -19,7 +19,7 @@ struct SceneSimulation::Start {
 
   static Start of(const scene::Scene& scene) {
     environment::Environment environment(scene);
-    const auto posed = environment::with_arms_in_sleeves(scene, environment);
+    const auto posed = environment::pose_arms_for_sleeves(scene, environment);
     if (posed) environment = environment::Environment(*posed);
     try {
       Simulation simulation(environment.model);
@@ -27,7 +27,7 @@ struct SceneSimulation::Start {
     } catch (const Error& error) {
       if (error.code() != ExitCode::scene_invalid) throw;
       std::vector<std::string> notes;
-      const auto growing = environment::with_growing_wearers(posed ? *posed : scene, environment, notes);
+      const auto growing = environment::let_wearers_grow(posed ? *posed : scene, environment, notes);
       if (!growing) throw;
       environment::Environment grown(*growing);
       Simulation simulation(grown.model);  // throws if another cloth, without a growing wearer, cannot be untangled

@@ -321,7 +321,8 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
   }
 }
 
-Looks::Looks(const scene::Scene& scene, const environment::Environment& environment) : stage_(make_stage(scene)) {
+SceneLooks::SceneLooks(const scene::Scene& scene, const environment::Environment& environment)
+    : stage_(make_stage(scene)) {
   for (const auto& obstacle : scene.obstacles)
     if (obstacle.look.image) picture_places_[obstacle.name] = places_of(scene, obstacle, pictures_);
   for (const scene::Camera& camera : scene.cameras) {
@@ -357,7 +358,7 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment& environm
   if (std::ranges::any_of(scene.cameras, follows)) mounts_.emplace(scene, environment);
 }
 
-std::vector<frame::Camera> Looks::cameras_at(double time) const {
+std::vector<frame::Camera> SceneLooks::cameras_at(double time) const {
   std::vector<frame::Camera> cameras = cameras_;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     const CameraValue value = camera_tracks_[c].at(time).value;
@@ -371,7 +372,7 @@ std::vector<frame::Camera> Looks::cameras_at(double time) const {
   return cameras;
 }
 
-std::vector<frame::Light> Looks::lights_at(double time) const {
+std::vector<frame::Light> SceneLooks::lights_at(double time) const {
   std::vector<frame::Light> lights = lights_;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const LightValue value = light_tracks_[l].at(time).value;
@@ -383,14 +384,14 @@ std::vector<frame::Light> Looks::lights_at(double time) const {
   return lights;
 }
 
-void Looks::surround(frame::FrameSnapshot& snapshot) const {
+void SceneLooks::set_stage_cameras_and_lights(frame::FrameSnapshot& snapshot) const {
   snapshot.stage = stage_;
   snapshot.cameras = cameras_at(snapshot.time);
   if (mounts_) mounts_->move(snapshot);
   snapshot.lights = lights_at(snapshot.time);
 }
 
-void Looks::place_picture(frame::Surface& surface) const {
+void SceneLooks::place_picture(frame::Surface& surface) const {
   const auto places = picture_places_.find(surface.name);
   if (places != picture_places_.end()) surface.paint_uv = places->second;
 }
@@ -433,14 +434,14 @@ frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const model::Mode
     snapshot->states.push_back({std::vector<Vec3>(model.bodies[b].mesh.positions.size()), {}});
     model.place(b, time, snapshot->states.back().positions);
   }
-  looks_.surround(*snapshot);
+  looks_.set_stage_cameras_and_lights(*snapshot);
   return snapshot;
 }
 
 frame::SnapshotPtr SnapshotMaker::with_looks(const frame::FrameSnapshot& snapshot) const {
   auto copy = std::make_shared<frame::FrameSnapshot>(snapshot);
   copy->surfaces = surfaces_;
-  looks_.surround(*copy);
+  looks_.set_stage_cameras_and_lights(*copy);
   return copy;
 }
 

@@ -31,13 +31,13 @@ class Pictures {
 
 /// The data of a scene that are drawn but not simulated: appearance of objects, stage (background, exposure, heat
 /// colours), cameras and lights.
-class Looks {
+class SceneLooks {
  public:
-  Looks(const scene::Scene& scene, const environment::Environment& environment);
+  SceneLooks(const scene::Scene& scene, const environment::Environment& environment);
 
   /// Sets stage, cameras and lights of a snapshot. The time of the snapshot and the positions of its objects must
   /// already be set.
-  void surround(frame::FrameSnapshot& snapshot) const;
+  void set_stage_cameras_and_lights(frame::FrameSnapshot& snapshot) const;
   /// Sets the texture coordinates of an obstacle that has a picture; does not change other surfaces.
   void place_picture(frame::Surface& surface) const;
 
@@ -75,7 +75,7 @@ class SnapshotMaker {
   frame::SnapshotPtr with_looks(const frame::FrameSnapshot& snapshot) const;
 
  private:
-  const Looks looks_;
+  const SceneLooks looks_;
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
 };
 

@@ -43,7 +43,7 @@ struct PixelValues {
 
 }  // namespace
 
-const std::vector<Vec3>* Before::positions(const frame::Surface& surface, std::size_t count) const {
+const std::vector<Vec3>* EarlierFrame::positions(const frame::Surface& surface, std::size_t count) const {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const auto& found = snapshot.states[i].positions;
     if (snapshot.surfaces[i]->name == surface.name && found.size() == count) return &found;
@@ -85,7 +85,7 @@ std::optional<Vec2> DataPasses::to_picture(const View& view, const Vec3& positio
 }
 
 void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
-                      const std::optional<Before>& before, image::Layers& layers) {
+                      const std::optional<EarlierFrame>& before, image::Layers& layers) {
   find_hits(surfaces, view);
   const auto add = [&](const char* name) {
     layers.channels.push_back({name, std::vector<float>(hits_.size())});

@@ -12,7 +12,7 @@
 namespace weft::render {
 
 /// An earlier frame, and the view from which it was drawn.
-struct Before {
+struct EarlierFrame {
   const frame::FrameSnapshot& snapshot;
   View view;
 
@@ -39,7 +39,7 @@ class DataPasses {
   ///   if `before` is absent, for the backdrop, and for points that were behind the camera
   /// - heat.V: strain or speed (Stage::heat), only if a surface has heat values
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
-            const std::optional<Before>& before, image::Layers& layers);
+            const std::optional<EarlierFrame>& before, image::Layers& layers);
 
  private:
   struct Hit {

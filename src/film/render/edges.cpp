@@ -47,9 +47,9 @@ class Canvas {
     const int from = static_cast<int>(std::clamp(std::ceil(along(a) - 0.5), 0.0, end));
     const int to = static_cast<int>(std::clamp(std::ceil(along(b) - 0.5), 0.0, end));
     for (int step = from; step < to; ++step) {
-      const double share = (step + 0.5 - along(a)) / length;
-      const double cross_place = across(a) + share * (across(b) - across(a)) - 0.5;
-      const double nearness = a.nearness + share * (b.nearness - a.nearness);
+      const double fraction = (step + 0.5 - along(a)) / length;
+      const double cross_place = across(a) + fraction * (across(b) - across(a)) - 0.5;
+      const double nearness = a.nearness + fraction * (b.nearness - a.nearness);
       const double pixel = std::floor(cross_place);
       for (int side = 0; side < 2; ++side) {
         const int cross_pixel = static_cast<int>(pixel) + side;

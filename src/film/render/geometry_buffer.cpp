@@ -8,8 +8,8 @@
 namespace weft::render {
 namespace {
 
-/// Value of the uniform `laid` of geometry.frag: how the picture of an appearance is applied.
-int laid(const frame::Appearance& look) {
+/// Value of the uniform `paint_mode` of geometry.frag: how the picture of an appearance is applied.
+int paint_mode_of(const frame::Appearance& look) {
   if (!look.paint.texture) return 1;
   switch (look.paint.alpha) {
     case frame::Paint::Alpha::ignored:
@@ -27,7 +27,7 @@ int laid(const frame::Appearance& look) {
 // midpoint is at most a quarter of its edge away from the straight edge (middle()). The offset has the same bound, so
 // that small cloth does not cover surfaces in front of it.
 constexpr double kMaxDepthOffset = 1.5e-3;
-float nearer(const SurfaceBuffers& surface) {
+float depth_offset_of(const SurfaceBuffers& surface) {
   return surface.refined() ? static_cast<float>(std::min(kMaxDepthOffset, 0.25 * surface.longest_edge())) : 0.0f;
 }
 
@@ -43,10 +43,10 @@ GeometryBuffer::GeometryProgram::GeometryProgram(const Gl& gl, const Variant& va
   if (variant.clipped) defines.emplace_back("CLIPPED");
   program = Program(gl, "geometry.vert", "geometry.frag", defines);
   surface = program.uniform("surface");
-  nearer = program.uniform("nearer");
+  depth_offset = program.uniform("depth_offset");
   picture_u = program.uniform("picture_u");
   picture_v = program.uniform("picture_v");
-  laid = program.uniform("laid");
+  paint_mode = program.uniform("paint_mode");
   color = program.uniform("color");
   back_color = program.uniform("back_color");
 }
@@ -129,7 +129,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<co
     set_class(PixelClass::floor);
     const GeometryProgram& program = use({});
     gl_->Uniform1f(program.surface, kFloor);
-    gl_->Uniform1f(program.nearer, 0);
+    gl_->Uniform1f(program.depth_offset, 0);
     // The floor is invisible from below. It writes only distance and surface number.
     gl_->Enable(GL_CULL_FACE);
     for (const GLuint unused : {0, 1, 3, 4}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -186,11 +186,11 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
 /// Draws one surface. If any surface of the picture is painted, the shaders of all surfaces write the paint of each
 /// pixel; it is 0 for surfaces that are not painted.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
-  const auto use_for = [&](int laid) -> const GeometryProgram& {
-    const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled, clips_});
+  const auto use_for = [&](int paint_mode) -> const GeometryProgram& {
+    const GeometryProgram& program = use({painted_, paint_mode >= 2, paint_mode == 4, trimmed_, peeled, clips_});
     gl_->Uniform1f(program.surface, number);
-    gl_->Uniform1f(program.nearer, nearer(surface));
-    gl_->Uniform1i(program.laid, laid);
+    gl_->Uniform1f(program.depth_offset, depth_offset_of(surface));
+    gl_->Uniform1i(program.paint_mode, paint_mode);
     return program;
   };
   if (surface.painted() == nullptr) {
@@ -199,8 +199,7 @@ void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peel
   }
   for (const PaintedRange& range : surface.painted()->ranges) {
     const frame::Appearance& look = *range.look;
-    const int how = laid(look);
-    const GeometryProgram& program = use_for(how);
+    const GeometryProgram& program = use_for(paint_mode_of(look));
     const Eigen::Vector3f color = image::linear_from_srgb(look.color).cast<float>();
     const Eigen::Vector3f back = image::linear_from_srgb(look.back_color).cast<float>();
     const bool is_cloth = surface.surface().kind == frame::ObjectKind::cloth;

@@ -67,7 +67,7 @@ class GeometryBuffer {
   };
   struct GeometryProgram {
     Program program;
-    GLint surface, nearer, picture_u, picture_v, laid, color, back_color;
+    GLint surface, depth_offset, picture_u, picture_v, paint_mode, color, back_color;
     GeometryProgram(const Gl& gl, const Variant& variant);
   };
   const GeometryProgram& use(const Variant& variant);

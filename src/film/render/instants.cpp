@@ -17,7 +17,7 @@ Value mix(const Value& now, const Value& before, double back) {
 
 }  // namespace
 
-std::vector<Instant> instants(double shutter, bool lens, int count) {
+std::vector<Instant> make_instants(double shutter, bool lens, int count) {
   std::vector<Instant> list;
   if (shutter <= 0 && !lens) return list;
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
@@ -34,7 +34,7 @@ std::vector<Instant> instants(double shutter, bool lens, int count) {
   return list;
 }
 
-frame::Camera between(const frame::Camera& now, const frame::Camera& before, double back) {
+frame::Camera interpolate_cameras(const frame::Camera& now, const frame::Camera& before, double back) {
   frame::Camera camera = now;
   camera.position = mix(now.position, before.position, back);
   camera.target = mix(now.target, before.target, back);
@@ -42,7 +42,8 @@ frame::Camera between(const frame::Camera& now, const frame::Camera& before, dou
   return camera;
 }
 
-frame::FrameSnapshot between(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, double back) {
+frame::FrameSnapshot interpolate_frames(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before,
+                                        double back) {
   frame::FrameSnapshot mixed = now;
   mixed.time = mix(now.time, before.time, back);
   for (std::size_t i = 0; i < now.states.size() && i < before.states.size(); ++i) {

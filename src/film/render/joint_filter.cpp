@@ -140,9 +140,9 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
   std::vector<Place> columns;
   for (int x = 0; x < many.width(); ++x) columns.push_back(place(x, few.width()));
   // One flag per column of `few`, for the 2 x 2 points in this and the next column and in the rows row.low and
-  // row.high. `even`: the four values are equal. `alike` (only set if `even` is 0): the four points show the same
-  // smooth surface.
-  std::vector<char> even(static_cast<std::size_t>(few.width())), alike(even.size());
+  // row.high. `has_equal_values`: the four values are equal. `shows_one_surface` (only set if `has_equal_values` is 0):
+  // the four points show the same smooth surface.
+  std::vector<char> has_equal_values(static_cast<std::size_t>(few.width())), shows_one_surface(has_equal_values.size());
   int known_low = -1, known_high = -1;  // rows to which the flags refer; both are 0 below the first row of `few`
   for (int y = begin; y < end; ++y) {
     const Place row = place(y, few.height());
@@ -152,22 +152,23 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
                                                       values.data() + static_cast<std::size_t>(row.high) * few.width()};
     if (row.low != known_low || row.high != known_high) {
       known_low = row.low, known_high = row.high;
-      constexpr float kAlike = 0.95f;
+      constexpr float kMinSameSurfaceWeight = 0.95f;
       for (int x = 0; x < few.width(); ++x) {
         const int next = std::min(x + 1, few.width() - 1);
         const Eigen::Vector4f& value = lines[0][x];
-        even[x] = lines[0][next] == value && lines[1][x] == value && lines[1][next] == value;
-        if (even[x] != 0) continue;
+        has_equal_values[x] = lines[0][next] == value && lines[1][x] == value && lines[1][next] == value;
+        if (has_equal_values[x] != 0) continue;
         const auto weight_of = [&](const Rows& at, int k) {
           return neighbor_weights<1>(there[0], x, at, k, kAny).value();
         };
-        alike[x] = std::min({weight_of(there[0], next), weight_of(there[1], x), weight_of(there[1], next)}) > kAlike;
+        shows_one_surface[x] = std::min({weight_of(there[0], next), weight_of(there[1], x),
+                                         weight_of(there[1], next)}) > kMinSameSurfaceWeight;
       }
     }
     Eigen::Vector4f* result = results.data() + static_cast<std::size_t>(y) * many.width();
     for (int x = 0; x < many.width(); ++x) {
       const Place& column = columns[x];
-      if (even[column.low] != 0) {
+      if (has_equal_values[column.low] != 0) {
         result[x] = lines[0][column.low];
         continue;
       }
@@ -175,7 +176,7 @@ void interpolate(std::span<const Eigen::Vector4f> values, const PixelPoints& few
       const std::array<float, 4> plain{(1 - right) * (1 - up), right * (1 - up), (1 - right) * up, right * up};
       const std::array<const Eigen::Vector4f*, 4> corners{lines[0] + column.low, lines[0] + column.high,
                                                           lines[1] + column.low, lines[1] + column.high};
-      if (alike[column.low] != 0 && here.surface[x] == there[0].surface[column.low]) {
+      if (shows_one_surface[column.low] != 0 && here.surface[x] == there[0].surface[column.low]) {
         result[x] = plain[0] * *corners[0] + plain[1] * *corners[1] + plain[2] * *corners[2] + plain[3] * *corners[3];
         continue;
       }

@@ -8,12 +8,12 @@ namespace weft::render {
 
 /// Directions from eight points toward a lamp, and the relative intensity of the lamp at these
 /// points. The intensity is 1 for a sun. For a spot, it is 1 at its target and 0 outside its cone.
-struct Toward {
+struct LampSample {
   Lanes3 direction;  ///< unit length
   Lanes distance;    ///< distance of the lamp [m]; 1e30 for suns
   Lanes intensity;
 };
-inline Toward toward(const Lamp& lamp, const Lanes3& point) {
+inline LampSample sample_lamp(const Lamp& lamp, const Lanes3& point) {
   const LightUniform& light = lamp.packed;
   const auto all = [](float value) { return Lanes(Lanes::Constant(value)); };
   const Lanes3 axis{all(light.toward_light.x()), all(light.toward_light.y()), all(light.toward_light.z())};

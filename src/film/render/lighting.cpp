@@ -55,10 +55,10 @@ LightSet light_set(std::span<const frame::Light> lights) {
 
 Lamp make_lamp(const frame::Light& light, const Vec3& scale) {
   const bool spot = light.kind == frame::Light::Kind::spot;
-  const double reach_sq = std::max((light.target - light.position).squaredNorm(), 1e-6);
+  const double target_distance_sq = std::max((light.target - light.position).squaredNorm(), 1e-6);
   const double outer = std::cos(half_cone(light)), inner = std::cos(0.8 * half_cone(light));
   LightUniform packed;
-  packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? static_cast<float>(reach_sq) : 0.0f;
+  packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? static_cast<float>(target_distance_sq) : 0.0f;
   packed.position << light.position.cast<float>(), static_cast<float>(outer);
   packed.color << (light.intensity * scale.cwiseProduct(image::linear_from_srgb(light.color))).cast<float>(),
       static_cast<float>(1 / (inner - outer));

@@ -47,7 +47,7 @@ struct Lamp {
 
   bool is_spot() const { return packed.toward_light.w() != 0; }
   /// Distance of a spot from its target [m].
-  float reach() const { return std::sqrt(packed.toward_light.w()); }
+  float target_distance() const { return std::sqrt(packed.toward_light.w()); }
 };
 
 /// Converts a light. `scale`: factor on the intensity for each channel.

@@ -9,7 +9,7 @@ constexpr int kDivisor = 2;  // side of a pixel of the reflection [pixels of the
 
 /// Settings for reflections: because they are blurred, shadows and surroundings are traced at points twice as far
 /// apart.
-QualitySettings plainer(QualitySettings quality) {
+QualitySettings reflection_quality(QualitySettings quality) {
   quality.shadow_divisor *= kDivisor;
   quality.ambient_divisor *= kDivisor;
   return quality;
@@ -17,13 +17,13 @@ QualitySettings plainer(QualitySettings quality) {
 
 }  // namespace
 
-View mirrored(const View& view, const Floor& floor) {
+View mirror_view(const View& view, const Floor& floor) {
   const Vec3 n = floor.normal;
-  const auto turned = [&](const Vec3& v) -> Vec3 { return v - 2 * n.dot(v) * n; };
+  const auto reflect = [&](const Vec3& v) -> Vec3 { return v - 2 * n.dot(v) * n; };
   View mirror = view;
-  mirror.eye = floor.point + turned(view.eye - floor.point);
+  mirror.eye = floor.point + reflect(view.eye - floor.point);
   // A reflection makes the axes left-handed. Negating `up` makes them right-handed again, and the picture upside down.
-  mirror.axes = {turned(view.axes.right), -turned(view.axes.up), turned(view.axes.forward)};
+  mirror.axes = {reflect(view.axes.right), -reflect(view.axes.up), reflect(view.axes.forward)};
   mirror.view_from_world = look_along(mirror.eye, mirror.axes);
   mirror.clip_from_world = perspective(view.tan_half_width, view.tan_half_height, view.near) * mirror.view_from_world;
   return mirror;
@@ -34,7 +34,7 @@ Mirror::Mirror(const Gl& gl, const QualitySettings& quality, int width, int heig
       width_((width + kDivisor - 1) / kDivisor),
       height_((height + kDivisor - 1) / kDivisor),
       geometry_(gl, width_, height_, true),
-      traced_light_(gl, plainer(quality), width_, height_),
+      traced_light_(gl, reflection_quality(quality), width_, height_),
       shading_(gl, quality, width_, height_, geometry_),
       frame_block_(gl),
       picture_(gl, GLenum{GL_TEXTURE_2D}) {

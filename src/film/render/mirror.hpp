@@ -11,7 +11,7 @@
 namespace weft::render {
 
 /// The view mirrored at the floor: it shows what the floor reflects, upside down.
-View mirrored(const View& view, const Floor& floor);
+View mirror_view(const View& view, const Floor& floor);
 
 class Mirror {
  public:
@@ -27,9 +27,9 @@ class Mirror {
     double heat_scale;
     bool painted;  ///< whether pictures and colours of parts are shown
   };
-  /// Draws the subjects from `view`, a mirrored() view. `block`: the frame block of this view. The light block must be
-  /// bound. Binds the picture to texture unit 13 and its distances to unit 14. Afterwards, the frame block and the
-  /// other texture units are bound to data of this pass.
+  /// Draws the subjects from `view`, a result of mirror_view(). `block`: the frame block of this view. The light block
+  /// must be bound. Binds the picture to texture unit 13 and its distances to unit 14. Afterwards, the frame block and
+  /// the other texture units are bound to data of this pass.
   void draw(const View& view, const FrameUniform& block, const Subjects& subjects, const LightSet& lights);
 
   int width() const { return width_; }

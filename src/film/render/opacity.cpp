@@ -21,16 +21,16 @@ std::vector<TexelWeights> texel_weights(int from, int to) {
   const double width = static_cast<double>(from) / to;
   for (int i = 0; i < to; ++i) {
     const double begin = i * width, end = begin + width;
-    TexelWeights share{static_cast<int>(begin), {}};
-    for (int k = share.first; k < from && k < end; ++k)
-      share.weights.push_back(static_cast<float>((std::min(end, k + 1.0) - std::max(begin, double(k))) / width));
-    all.push_back(std::move(share));
+    TexelWeights texel{static_cast<int>(begin), {}};
+    for (int k = texel.first; k < from && k < end; ++k)
+      texel.weights.push_back(static_cast<float>((std::min(end, k + 1.0) - std::max(begin, double(k))) / width));
+    all.push_back(std::move(texel));
   }
   return all;
 }
 
 /// Texel index after wrapping; -1 outside a picture with Wrap::once.
-int wrapped(int texel, int size, Wrap wrap) {
+int wrap_texel(int texel, int size, Wrap wrap) {
   switch (wrap) {
     case Wrap::repeat:
       return ((texel % size) + size) % size;
@@ -109,10 +109,10 @@ float Opacity::at(const Eigen::Vector2f& place, float footprint) const {
   float sum = 0;
   for (int j = 0; j < 2; ++j) {
     for (int i = 0; i < 2; ++i) {
-      const int at_x = wrapped(column + i, level.width, wrap_u_), at_y = wrapped(row + j, level.height, wrap_v_);
+      const int at_x = wrap_texel(column + i, level.width, wrap_u_), at_y = wrap_texel(row + j, level.height, wrap_v_);
       if (at_x < 0 || at_y < 0) continue;
-      const float share = (i ? right : 1 - right) * (j ? up : 1 - up);
-      sum += share * static_cast<float>(level.alpha[static_cast<std::size_t>(at_y) * level.width + at_x]);
+      const float weight = (i ? right : 1 - right) * (j ? up : 1 - up);
+      sum += weight * static_cast<float>(level.alpha[static_cast<std::size_t>(at_y) * level.width + at_x]);
     }
   }
   return sum / 255.0f;

@@ -346,8 +346,9 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
   return sources;
 }
 
-void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
-                      const View& view, const PixelArea& area, std::span<std::uint64_t> picture) {
+void Outlines::antialias(std::span<const Seen> seen, std::span<const DrawnMesh> meshes,
+                         const std::optional<Floor>& floor, const View& view, const PixelArea& area,
+                         std::span<std::uint64_t> picture) {
   pixels_.clear();
   if (area.width <= 0 || area.height <= 0) return;
   kink_ = static_cast<float>(kMinCreaseTangent * 2 * view.tan_half_height / height_);
@@ -369,8 +370,8 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   }
 }
 
-void Outlines::cut_out(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
-                       std::vector<Eigen::Vector4f>& surfaces) const {
+void Outlines::extract_surfaces(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
+                                std::vector<Eigen::Vector4f>& surfaces) const {
   const auto color = [&](std::size_t pixel) { return Eigen::Vector4f(linear_of(unsmoothed[pixel]).homogeneous()); };
   surfaces.assign(seen.size(), Eigen::Vector4f::Zero());
   for (std::size_t i = 0; i < seen.size(); ++i)

@@ -22,13 +22,13 @@ class Outlines {
 
   /// Antialiases `picture` (RGBA with 16 bits per channel, lowest row first) inside `area`. `seen`: distance and
   /// surface of each pixel. `meshes`: all surfaces except the floor; mesh i has the number kFirstSurface + i.
-  void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
-              const View& view, const PixelArea& area, std::span<std::uint64_t> picture);
+  void antialias(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
+                 const View& view, const PixelArea& area, std::span<std::uint64_t> picture);
 
   /// Computes `surfaces`, the last picture without floor and backdrop, lowest row first: linear colours premultiplied
-  /// by coverage; w: coverage. `unsmoothed`: the picture before smooth().
-  void cut_out(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
-               std::vector<Eigen::Vector4f>& surfaces) const;
+  /// by coverage; w: coverage. `unsmoothed`: the picture before antialias().
+  void extract_surfaces(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
+                        std::vector<Eigen::Vector4f>& surfaces) const;
 
   /// Number of pixels of the last picture that have samples.
   std::size_t count() const { return pixels_.size(); }

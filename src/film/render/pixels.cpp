@@ -39,7 +39,7 @@ Eigen::Vector3f linear_of(std::uint64_t rgba) {
   return {table[rgba & 0xFFFF], table[rgba >> 16 & 0xFFFF], table[rgba >> 32 & 0xFFFF]};
 }
 
-std::uint64_t encoded(const Eigen::Vector3f& linear) {
+std::uint64_t encode(const Eigen::Vector3f& linear) {
   const Vec3 srgb = image::srgb_from_linear(linear.cast<double>().cwiseMax(0).cwiseMin(1).eval());
   std::uint64_t rgba = std::uint64_t{0xFFFF} << 48;
   for (int k = 0; k < 3; ++k) rgba |= static_cast<std::uint64_t>(std::lround(srgb[k] * (kLevels - 1))) << (16 * k);

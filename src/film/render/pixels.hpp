@@ -13,7 +13,7 @@ namespace weft::render {
 /// Linear colour of one pixel, 0 to 1.
 Eigen::Vector3f linear_of(std::uint64_t rgba);
 /// Inverse of linear_of(). Clamps `linear` to 0 to 1; alpha is 1.
-std::uint64_t encoded(const Eigen::Vector3f& linear);
+std::uint64_t encode(const Eigen::Vector3f& linear);
 
 /// 8-bit image, top row first. Dithers by up to half a level, so that smooth gradients show no bands.
 image::Image to_image(std::span<const std::uint64_t> rgba, int width, int height);

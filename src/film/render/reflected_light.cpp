@@ -26,8 +26,8 @@ Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
 }
 
 /// Whether an opaque picture covers only a part of the surface, because it does not repeat. The rest of the surface
-/// then shows its colour (case 3 of laid() in geometry_buffer.cpp).
-bool lies_once(const frame::Paint& paint) {
+/// then shows its colour (case 3 of paint_mode_of() in geometry_buffer.cpp).
+bool covers_partly(const frame::Paint& paint) {
   using Wrap = frame::Paint::Wrap;
   return paint.alpha == frame::Paint::Alpha::ignored && (paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once);
 }
@@ -73,7 +73,7 @@ Vector3f MeanColors::of(const frame::Appearance& look, bool back, double fractio
     if (covered > 0) known->second = (sum / covered).cast<float>();
   }
   const Vector3f color = image::linear_from_srgb(look.color).cast<float>();
-  if (lies_once(paint)) return color + static_cast<float>(fraction) * (known->second - color);
+  if (covers_partly(paint)) return color + static_cast<float>(fraction) * (known->second - color);
   return known->second.cwiseProduct(color);
 }
 
@@ -89,7 +89,7 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
   ReflectingSurface result;
   for (const PaintedRange& each : painted.ranges) {
     const double covered =
-        lies_once(each.look->paint) ? covered_fraction(painted, each, surface.triangles(), surface.positions()) : 1;
+        covers_partly(each.look->paint) ? covered_fraction(painted, each, surface.triangles(), surface.positions()) : 1;
     result.ranges.push_back(range(*each.look, each.first + each.count, covered));
   }
   return result;
@@ -162,10 +162,10 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     on_floor[lane] = ends[lane] == End::floor ? 1.0f : 0.0f;
   }
   for (const Lamp& lamp : lamps_) {
-    const Toward to = toward(lamp, point);
-    const Lanes strength = to.intensity * dot(normal, to.direction);
+    const LampSample sample = sample_lamp(lamp, point);
+    const Lanes strength = sample.intensity * dot(normal, sample.direction);
     Rays shadow;
-    shadow.origin = point, shadow.direction = to.direction, shadow.end = to.distance, shadow.seed = rays.seed;
+    shadow.origin = point, shadow.direction = sample.direction, shadow.end = sample.distance, shadow.seed = rays.seed;
     shadow.wanted = mask(on_surface + on_floor > 0 && strength > 0);
     if ((shadow.wanted == 0).all()) continue;
     const Lanes dark = rays_->blocked(shadow);

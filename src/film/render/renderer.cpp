@@ -39,10 +39,9 @@ Vec3 up_of(const frame::FrameSnapshot& snapshot) {
 }
 
 void check_states(const frame::FrameSnapshot& snapshot) {
-  if (snapshot.surfaces.size() != snapshot.states.size()) {
+  if (snapshot.surfaces.size() != snapshot.states.size())
     throw Error(ExitCode::internal, "frame {}: {} surfaces, but states of {}", snapshot.frame, snapshot.surfaces.size(),
                 snapshot.states.size());
-  }
 }
 
 std::vector<TracedLight::Surface> traced_surfaces(std::span<const Shading::Material> materials) {
@@ -133,10 +132,9 @@ Renderer::Impl::Impl(const Settings& wanted)
   const CurrentContext current(*context);
   GLint largest = 0;
   gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-  if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest) {
+  if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest)
     throw Error(ExitCode::usage, "--size: expected 1x1 to {}x{} pixels, got {}x{}", largest, largest, settings.width,
                 settings.height);
-  }
   passes.emplace(gl, quality, settings);
   if (quality.smooth_outlines || settings.layers) outlines.emplace(settings.width, settings.height);
   if (settings.layers) data.emplace(settings.width, settings.height);
@@ -283,7 +281,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   const std::vector<TracedLight::Surface> traced = traced_surfaces(materials(plan));
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
-    const View view = mirrored(plan.view, *plan.floor);
+    const View view = mirror_view(plan.view, *plan.floor);
     const FrameUniform block =
         pack_frame(view, plan.lighting, plan.surroundings, plan.floor, mirror->width(), mirror->height());
     const std::vector<Shading::Material> looks = materials(plan);
@@ -310,7 +308,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
       open_floor.clear();
     }
   }
-  if (outlines) outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
+  if (outlines) outlines->antialias(seen, meshes, plan.floor, plan.view, area, rgba);
   if (plan.lighting.style.edges) draw_edges(passes->surfaces, plan.view, settings.width, settings.height, seen, rgba);
 }
 
@@ -319,7 +317,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
 void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const char> sheer, const ReflectedLight& light,
                                              std::span<const DrawnMesh> opaque, const PixelArea& area) {
   std::vector<std::uint64_t> behind = rgba;
-  outlines->smooth(seen, opaque, plan.floor, plan.view, area, behind);
+  outlines->antialias(seen, opaque, plan.floor, plan.view, area, behind);
   const auto of_sheer = [&](const Seen& at) {
     return at.surface >= kFirstSurface && sheer[static_cast<std::size_t>(at.surface) - kFirstSurface] != 0;
   };
@@ -348,7 +346,7 @@ void Renderer::Impl::blend_translucent_cloth(const Plan& plan, std::span<const c
       const float opacity = static_cast<float>(layer->rgba[i] >> 48) / 65535.0f;
       blended += opacity * (linear_of(layer->rgba[i]) - blended);
     }
-    rgba[i] = encoded(blended);
+    rgba[i] = encode(blended);
     seen[i] = peeled.front().seen[i];
   }
 }
@@ -382,10 +380,12 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     return;
   }
   const frame::Camera camera_before = before ? choose_camera(*before) : camera;
-  const auto snapshot_at = [&](double back) { return shutter > 0 ? between(snapshot, *before, back) : snapshot; };
+  const auto snapshot_at = [&](double back) {
+    return shutter > 0 ? interpolate_frames(snapshot, *before, back) : snapshot;
+  };
   const auto view_at = [&](double back, const frame::FrameSnapshot& moved) {
-    return make_view(between(camera, camera_before, back), up_of(moved), settings.aspect(), subject_bounds(moved),
-                     find_floor(moved, up_of(moved)));
+    return make_view(interpolate_cameras(camera, camera_before, back), up_of(moved), settings.aspect(),
+                     subject_bounds(moved), find_floor(moved, up_of(moved)));
   };
   // Without depth of field, draws as few pictures as kMaxMotionPerPicture allows (at most `instants`), and smears each
   // of them along the motion.
@@ -401,9 +401,9 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
                                     Eigen::Vector3f::Zero()),
       sharp(sums.size());
   Smear smear(settings.width, settings.height);
-  for (const Instant& instant : instants(shutter, camera.aperture > 0, count)) {
+  for (const Instant& instant : make_instants(shutter, camera.aperture > 0, count)) {
     const frame::FrameSnapshot moved = snapshot_at(instant.back);
-    const frame::Camera middle = between(camera, camera_before, instant.back);
+    const frame::Camera middle = interpolate_cameras(camera, camera_before, instant.back);
     const Vec3 up = up_of(moved);
     // The same direction is upright in the pictures from all points of the lens. If it were `up`, pictures of a camera
     // that looks steeply down would be rotated against each other.
@@ -420,13 +420,13 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     smear.add(passes->surfaces, plan.view, from, view_at(instant.back + half, from), to,
               view_at(instant.back - half, to), sharp, sums);
   }
-  for (std::size_t i = 0; i < sums.size(); ++i) rgba[i] = encoded(Eigen::Vector3f(sums[i] / static_cast<float>(count)));
+  for (std::size_t i = 0; i < sums.size(); ++i) rgba[i] = encode(Eigen::Vector3f(sums[i] / static_cast<float>(count)));
 }
 
 void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before) {
   layers = {settings.width, settings.height, {}};
   std::vector<Eigen::Vector4f> surfaces;
-  outlines->cut_out(seen, unsmoothed, surfaces);
+  outlines->extract_surfaces(seen, unsmoothed, surfaces);
   for (const char* name : {"R", "G", "B", "A", "picture.R", "picture.G", "picture.B"})
     layers.channels.push_back({name, std::vector<float>(surfaces.size()), true});
   for (int y = 0; y < settings.height; ++y) {
@@ -450,8 +450,8 @@ void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* b
     }
     layers.channels.push_back({"caught.A", std::move(alpha), true});
   }
-  std::optional<Before> earlier;
-  if (before) earlier.emplace(Before{*before, plan_of(*before, choose_camera(*before), up_of(*before)).view});
+  std::optional<EarlierFrame> earlier;
+  if (before) earlier.emplace(EarlierFrame{*before, plan_of(*before, choose_camera(*before), up_of(*before)).view});
   data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
 }
 

@@ -97,8 +97,8 @@ std::vector<Vec3> area_normals(std::span<const Triangle> triangles, std::span<co
   return normals;
 }
 
-ShadedMesh shade(std::span<const Triangle> triangles, const CornerMap& corners, std::span<const Vec3> positions,
-                 double crease_angle) {
+ShadedMesh make_shaded_mesh(std::span<const Triangle> triangles, const CornerMap& corners,
+                            std::span<const Vec3> positions, double crease_angle) {
   const std::vector<Vec3> areas = area_normals(triangles, positions);
   ShadedMesh mesh;
   if (crease_angle >= 180) {

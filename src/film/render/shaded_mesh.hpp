@@ -56,7 +56,7 @@ struct ShadedMesh {
 /// whose normals differ from that of the corner's triangle by less than `crease_angle` [degrees, 0 to 180] plus a
 /// margin of 0.37 degrees. At 180, no vertex is split, and under mesh refinement the normals converge to those of the
 /// smooth surface. If the mean is zero, as for degenerate triangles, the normal is +z.
-ShadedMesh shade(std::span<const Triangle> triangles, const CornerMap& corners, std::span<const Vec3> positions,
-                 double crease_angle);
+ShadedMesh make_shaded_mesh(std::span<const Triangle> triangles, const CornerMap& corners,
+                            std::span<const Vec3> positions, double crease_angle);
 
 }  // namespace weft::render

@@ -130,14 +130,14 @@ Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
               to_y = std::clamp(static_cast<int>(std::lround(static_cast<float>(y) + t * motion.y())), 0, height_ - 1);
     const std::size_t there = static_cast<std::size_t>(to_y) * width_ + to_x;
     // `extent`: distance that the nearer surface moves to either side [pixels]; of the faster surface if both are
-    // equally near. `share`: weight of the colour at the sample; it falls from 1 to 0 over one pixel around `extent`.
+    // equally near. `weight`: that of the colour at the sample; it falls from 1 to 0 over one pixel around `extent`.
     constexpr float kSame = 1.01f;
     const float distance = std::abs(t) * length, other = 0.5f * motions_[there].motion.norm();
     const bool before = motions_[there].nearness > kSame * motions_[here].nearness,
                behind = motions_[here].nearness > kSame * motions_[there].nearness;
     const float extent = before ? other : behind ? own : std::max(own, other);
-    const float share = std::clamp(extent - distance + 0.5f, 0.0f, 1.0f);
-    sum += share * sharp[there] + (1 - share) * sharp[here];
+    const float weight = std::clamp(extent - distance + 0.5f, 0.0f, 1.0f);
+    sum += weight * sharp[there] + (1 - weight) * sharp[here];
   }
   return sum / static_cast<float>(taps);
 }

@@ -89,7 +89,7 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
     }
     faces_outward_ = volume_times_6 > 0;
   }
-  mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
+  mesh_ = make_shaded_mesh(surface_->triangles, corners_, state.positions, surface_->crease_angle);
   if (painted_) painted_ = make_painted_mesh(*surface_, mesh_);
   std::vector<Vertex> vertices(mesh_.source.size());
   positions_.resize(vertices.size());

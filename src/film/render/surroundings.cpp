@@ -91,8 +91,8 @@ Vec3 Surroundings::light(const Vec3& toward, double alpha) const {
   return sum;
 }
 
-Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
-                      std::span<const frame::Light> lights, const Vec3& ground) {
+Surroundings make_surroundings(const Style& style, const frame::Stage& stage, const Vec3& up,
+                               std::span<const frame::Light> lights, const Vec3& ground) {
   // `key`: horizontal direction to the first light. The boxes are placed relative to this direction, not to the camera,
   // so that they do not move with the camera.
   Vec3 key = Vec3::Zero();
@@ -132,7 +132,7 @@ Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3&
   // Scales sky and boxes so that a horizontal surface receives the style's fraction of all light,
   // in the sky's colour. For `daylight` without Stage::sky_color, all channels have the same
   // factor, which keeps the blue of the sky.
-  const Vec3 flat = at(irradiance_of(around), up);
+  const Vec3 flat = evaluate_irradiance(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));
   const bool tinted = stage.look == Look::daylight;
   const Vec3 even = Vec3::Constant(style.sky_intensity / flat.dot(Vec3(0.2126, 0.7152, 0.0722)));
@@ -172,7 +172,7 @@ Irradiance irradiance_of(const Surroundings& surroundings) {
   return result;
 }
 
-Vec3 at(const Irradiance& irradiance, const Vec3& n) {
+Vec3 evaluate_irradiance(const Irradiance& irradiance, const Vec3& n) {
   const std::array<double, 9> basis = quadric(n);
   Vec3 sum = Vec3::Zero();
   for (int k = 0; k < 9; ++k) sum += basis[k] * irradiance[k];

@@ -49,14 +49,14 @@ struct Surroundings {
 /// The surroundings of a style, scaled so that an unoccluded horizontal surface receives the
 /// style's fraction of all light. The boxes are placed relative to the first light. `ground`: light
 /// from below.
-Surroundings surround(const Style& style, const frame::Stage& stage, const Vec3& up,
-                      std::span<const frame::Light> lights, const Vec3& ground);
+Surroundings make_surroundings(const Style& style, const frame::Stage& stage, const Vec3& up,
+                               std::span<const frame::Light> lights, const Vec3& ground);
 
 /// Light that a matte white surface with normal n shows (irradiance / pi): a quadratic polynomial in n. Coefficients of
 /// 1, x, y, z, xy, yz, zx, z², x² - y²: the first nine spherical harmonics, convolved with the clamped cosine
 /// (Ramamoorthi and Hanrahan, "An Efficient Representation for Irradiance Environment Maps", 2001).
 using Irradiance = std::array<Vec3, 9>;
 Irradiance irradiance_of(const Surroundings& surroundings);
-Vec3 at(const Irradiance& irradiance, const Vec3& n);
+Vec3 evaluate_irradiance(const Irradiance& irradiance, const Vec3& n);
 
 }  // namespace weft::render

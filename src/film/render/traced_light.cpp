@@ -15,11 +15,11 @@ using Kind = PixelPoints::Kind;
 
 constexpr float kGoldenAngle = 2.39996323f;  // [rad]
 constexpr std::size_t kRowsAtOnce = 8;       // chunk of parallel loops [rows]
-constexpr int kTurns = 64;                   // number of rotations of the points on a lamp, a power of 2 (turn_of())
-constexpr int kFirstRays = 1;                // rays per point of the first pass, which finds penumbrae
-constexpr int kFloorTile = 16;               // side of a tile of shaded floor [pixels]
-constexpr int kPenumbraTile = 8;             // side of a tile in which penumbrae are searched [points]
-constexpr int kMirrorRays = 4;               // rays per point for reflections of surfaces
+constexpr int kRotations = 64;    // number of rotations of the points on a lamp, a power of 2 (rotation_index())
+constexpr int kFirstRays = 1;     // rays per point of the first pass, which finds penumbrae
+constexpr int kFloorTile = 16;    // side of a tile of shaded floor [pixels]
+constexpr int kPenumbraTile = 8;  // side of a tile in which penumbrae are searched [points]
+constexpr int kMirrorRays = 4;    // rays per point for reflections of surfaces
 // Shadow rays are traced only if the cosine between normal and light is above this value (on the floor: above 0). The
 // value is negative, because skin is lit slightly beyond the terminator (surface.frag). For cloth, shadow rays are
 // always traced, because light passes through it.
@@ -30,11 +30,11 @@ constexpr float kMinFloorChange = 0.002f;
 
 constexpr float kFloorKind = static_cast<float>(Kind::floor), kClothKind = static_cast<float>(Kind::cloth);
 
-/// A rotation for each pixel, from 0 to kTurns - 1. Both factors are odd, so that each row and each column has all
+/// A rotation for each pixel, from 0 to kRotations - 1. Both factors are odd, so that each row and each column has all
 /// rotations: the filter of step 2, which never mixes even and odd ones, leaves no stripes. Of such factors, these
 /// leave the least noise (tests/bench/history.md, section "Rays").
-int turn_of(int x, int y) {
-  return (11 * x + 17 * y) & (kTurns - 1);
+int rotation_index(int x, int y) {
+  return (11 * x + 17 * y) & (kRotations - 1);
 }
 
 /// Point k of n points that are evenly spread over a disc of radius 1 (Vogel 1979). `turn`: rotation of all points
@@ -62,16 +62,16 @@ void across<Lanes, Lanes3>(const Lanes3& n, Lanes3& first, Lanes3& second) {
   second = {b, sign + n.y * n.y * a, -n.y};
 }
 
-/// spread(spread_number(x, y)) is a pair of numbers in [0, 1) for point (x, y). The 25 pairs of a block of 5 x 5 points
-/// are evenly spread. Each block shifts its pairs by one of 64 terms of the R2 sequence (Roberts, "The Unreasonable
-/// Effectiveness of Quasirandom Sequences", 2018). Without shifts, the same 25 directions would cause the same error in
-/// all blocks.
-constexpr int kSpreads = 25 * 64;
-int spread_number(int x, int y) {
+/// jitter_pair(jitter_index(x, y)) is a pair of numbers in [0, 1) for point (x, y). The 25 pairs of a block of 5 x 5
+/// points are evenly spread. Each block shifts its pairs by one of 64 terms of the R2 sequence (Roberts, "The
+/// Unreasonable Effectiveness of Quasirandom Sequences", 2018). Without shifts, the same 25 directions would cause the
+/// same error in all blocks.
+constexpr int kJitterPairs = 25 * 64;
+int jitter_index(int x, int y) {
   const int block = (x / 5 + 19 * (y / 5)) % 64;  // 19 steps of the sequence: a large change of both numbers
   return block * 25 + (x + 2 * y) % 5 + 5 * ((y + 2 * x) % 5);
 }
-Vector2f spread(int number) {
+Vector2f jitter_pair(int number) {
   const int a = number % 5, b = number / 5 % 5;
   const int block = number / 25;
   const auto shift = static_cast<float>(block);
@@ -80,12 +80,12 @@ Vector2f spread(int number) {
   return at - Vector2f(at.array().floor());
 }
 
-/// Directions about +z with a density proportional to their cosine: `rays` of them for each argument of spread().
+/// Directions about +z with a density proportional to their cosine: `rays` of them for each argument of jitter_pair().
 std::vector<Vector3f> cosine_directions(int rays) {
   std::vector<Vector3f> all;
-  for (int number = 0; number < kSpreads; ++number) {
+  for (int number = 0; number < kJitterPairs; ++number) {
     for (int k = 0; k < rays; ++k) {
-      const Vector2f jitter = spread(number), at = on_disc(static_cast<float>(k), rays, jitter.x(), jitter.y());
+      const Vector2f jitter = jitter_pair(number), at = on_disc(static_cast<float>(k), rays, jitter.x(), jitter.y());
       all.emplace_back(at.x(), at.y(), std::sqrt(std::max(1 - at.squaredNorm(), 0.0f)));
     }
   }
@@ -220,17 +220,17 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
   // `places`: target of each ray for each rotation: a direction toward the sun, or a position on the spot lamp.
   const Vector3f axis = lamp.packed.toward_light.head<3>();
   const Vector3f center = lamp.is_spot() ? Vector3f(lamp.packed.position.head<3>()) : axis;
-  const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.reach() : 1);
+  const float radius = lamp.source_tangent * (lamp.is_spot() ? lamp.target_distance() : 1);
   Vector3f first, second;
   across<float, Vector3f>(axis, first, second);
   std::vector<Vector3f> places;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int turn = 0; turn < kRotations; ++turn) {
     for (int k = 0; k < rays; ++k) {
       // In this order, the first half of the rays is already spread over the disc. The distance of the first ray from
       // the centre depends on the rotation: if it were the same for all points, no first ray would find the rims of
       // wide penumbrae.
       const auto order = static_cast<float>((k * 5 + turn) % rays);
-      const Vector2f at = on_disc(order, rays, static_cast<float>(turn) / kTurns, 0.5f);
+      const Vector2f at = on_disc(order, rays, static_cast<float>(turn) / kRotations, 0.5f);
       places.emplace_back(center + radius * (at.x() * first + at.y() * second));
     }
   }
@@ -243,12 +243,12 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
         for (int x = 0; x < width; x += kLanes) {
           const Lanes kinds = points.kinds(x, y), asked = Eigen::Map<const Lanes>(wanted.row(y) + x);
           if (!(kinds * asked > 0).any()) continue;
-          const Toward to = toward(lamp, points.positions(x, y));
+          const LampSample sample = sample_lamp(lamp, points.positions(x, y));
           const Lanes3 normal = points.normals(x, y);
-          const Lanes side = dot(normal, to.direction);
+          const Lanes side = dot(normal, sample.direction);
           const Lanes least = (kinds == kFloorKind).select(Lanes::Zero(), Lanes::Constant(kMinShadowCosine));
           Rays packet;
-          packet.wanted = mask(kinds * asked > 0 && to.intensity > 0 && (kinds == kClothKind || side > least));
+          packet.wanted = mask(kinds * asked > 0 && sample.intensity > 0 && (kinds == kClothKind || side > least));
           if ((packet.wanted == 0).all()) continue;
           // Rays start at the smooth surface, on the side that faces the lamp. If they started at the flat triangle,
           // neighbouring triangles would block them.
@@ -260,7 +260,7 @@ void TracedLight::trace_lamp(const ReflectedLight& light, const Lamp& lamp, Plan
           Lanes hits = Lanes::Zero();
           for (int k = first_ray; k < last_ray; ++k) {
             for (int lane = 0; lane < kLanes; ++lane)
-              packet.direction.set(lane, places[static_cast<std::size_t>(turn_of(x + lane, y) * rays + k)]);
+              packet.direction.set(lane, places[static_cast<std::size_t>(rotation_index(x + lane, y) * rays + k)]);
             if (lamp.is_spot()) packet.direction = packet.direction + Lanes::Constant(-1) * packet.origin;
             packet.seed = static_cast<unsigned>((k * height + y) * width + x);
             hits += light.rays().blocked(packet);
@@ -304,7 +304,7 @@ void TracedLight::trace_surroundings(const ReflectedLight& light) {
           for (int k = 0; k < rays; ++k) {
             Lanes3 local;
             for (int lane = 0; lane < kLanes; ++lane)
-              local.set(lane, directions[static_cast<std::size_t>(spread_number(x + lane, y) * rays + k)]);
+              local.set(lane, directions[static_cast<std::size_t>(jitter_index(x + lane, y) * rays + k)]);
             packet.direction = local.x * first + local.y * second + local.z * normal;
             packet.seed = static_cast<unsigned>((k * points.height() + y) * points.width() + x);
             const ReflectedLight::Arriving arriving = light.arriving(packet);
@@ -353,7 +353,7 @@ void TracedLight::trace_mirrors(const ReflectedLight& light, std::span<const Sur
             const Vector3f mirrored = seen - 2 * normal.dot(seen) * normal;
             Vector3f first, second;
             across<float, Vector3f>(mirrored, first, second);
-            const Vector2f jitter = spread(spread_number(x + lane, y));
+            const Vector2f jitter = jitter_pair(jitter_index(x + lane, y));
             const Vector2f at = alpha[lane] * on_disc(static_cast<float>(k), kMirrorRays, jitter.x(), jitter.y());
             packet.direction.set(lane, (mirrored + at.x() * first + at.y() * second).normalized());
           }

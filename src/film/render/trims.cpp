@@ -247,7 +247,8 @@ double rim_width(const frame::Appearance& look, std::span<const Vec3> positions,
   double nearest = 1e9;
   for (const Vec3& p : positions) nearest = std::min(nearest, view.axes.forward.dot(p - view.eye));
   const double pixel = 2 * view.tan_half_height * std::max(nearest, view.near) / rows;
-  const double share = std::clamp(edge / pixel - 1.5, 0.0, 1.0), width = edge * share * share * (3 - 2 * share);
+  const double visibility = std::clamp(edge / pixel - 1.5, 0.0, 1.0),
+               width = edge * visibility * visibility * (3 - 2 * visibility);
   return width < pixel ? 0 : width;
 }
 

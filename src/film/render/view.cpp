@@ -125,15 +125,15 @@ bool fades_steeply(const View& view, const std::optional<Floor>& floor, const Bo
 }
 
 Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights) {
-  const double share = 1 - style.sky_intensity;
+  const double direct_fraction = 1 - style.sky_intensity;
   const Vec3 sky = style.sky_intensity * style.sky_color;
-  if (!floor) return {Vec3::Constant(share), 0.8 * style.sky_color};
+  if (!floor) return {Vec3::Constant(direct_fraction), 0.8 * style.sky_color};
   Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
     // Ignores spots, because distant floor does not receive their light.
     if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
-    direct += share * each.intensity * facing * image::linear_from_srgb(each.color);
+    direct += direct_fraction * each.intensity * facing * image::linear_from_srgb(each.color);
   }
   Vec3 gain = Vec3::Ones();
   if (style.exposes) {
@@ -142,7 +142,8 @@ Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span
     const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kMaxWhiteBalance).cwiseMin(1 + kMaxWhiteBalance);
     gain = std::clamp(level, 1.0, kMaxGain) * tint;
   }
-  return {share * gain, image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
+  return {direct_fraction * gain,
+          image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
 }
 
 Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
@@ -157,7 +158,7 @@ Lighting make_lighting(const frame::Stage& stage, const Vec3& up, const std::opt
           ? Vec3(kGroundLight * lighting.style.floor_tint * lighting.exposure.floor)
           : lighting.style.sky_intensity *
                 (stage.ground_color ? image::linear_from_srgb(*stage.ground_color) : Vec3(Vec3::Constant(0.55)));
-  lighting.around = surround(lighting.style, stage, up, lights, ground);
+  lighting.around = make_surroundings(lighting.style, stage, up, lights, ground);
   return lighting;
 }
 

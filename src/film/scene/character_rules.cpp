@@ -66,7 +66,7 @@ Travel travel_from(const Value& value) {
 
 /// Adds the keys of SkeletonMotion.
 template <class Kind>
-void acting_rows(TableBuilder<Character>& rows) {
+void skeleton_motion_rows(TableBuilder<Character>& rows) {
   rows.plain(Type::file, "motion", of_source<Kind>(&SkeletonMotion::motion),
              "file with the motion of another skeleton, such as BVH, which is transferred to this body")
       .by_default("none")
@@ -110,7 +110,7 @@ void source_rows(TableBuilder<Character>& rows) {
           .plain(Type::texts, "without", of_source<CharacterFile>(&CharacterFile::without),
                  "meshes of the file that are left out, named likewise")
           .by_default("those that cloths use from the same file by `object`")
-          .with(acting_rows<CharacterFile>));
+          .with(skeleton_motion_rows<CharacterFile>));
   rows.variant(
       "mannequin",
       Rows()
@@ -129,7 +129,7 @@ void source_rows(TableBuilder<Character>& rows) {
                  "whether it turns around at the end of its walk and walks back")
           .number("arms_out", of_source<Mannequin>(&Mannequin::arms_out), within(0, 60), "degrees",
                   "angle of the upper arms from the vertical while it walks, which leaves space for clothes")
-          .with(acting_rows<Mannequin>));
+          .with(skeleton_motion_rows<Mannequin>));
   rows.variant("sequence", Rows()
                                .plain(Type::text, "files", of_source<MeshSequence>(&MeshSequence::files),
                                       "folder of mesh files, or a file name with one *; their order is that of the "
@@ -170,7 +170,7 @@ const Table& character_rules() {
               "time at the beginning of `dressing` in which it grows from its bones to its size, into clothes that "
               "are too narrow but enclose its bones; 0: only if a garment from a pattern cannot be moved out of it, "
               "in half of `dressing`")
-          .number("room", &Character::room, within(0, 0.1), "m",
+          .number("room", &Character::clearance, within(0, 0.1), "m",
                   "clearance for cloth between its limbs: if the motion presses limbs on cloth, or cloth on the floor, "
                   "the skin moves back, each limb by at most half of the missing clearance; 0: never")
           .by_default(

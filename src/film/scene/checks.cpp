@@ -342,10 +342,12 @@ void check_characters(const Scene& scene, Findings& findings) {
       findings.report(path + ".name",
                       fmt::format("expected a name used once, got {}, which a cloth, rope or obstacle has",
                                   in_quotes(character.name)));
-    if (const SkeletonMotion* acting = acting_of(character);
-        acting != nullptr && (acting->stance == Stance::rest || acting->stance_arms) && character.blend <= 0)
-      findings.report(path + ".blend", fmt::format("expected > 0 s to get from the {} to the clip, got {}",
-                                                   acting->stance_arms ? "stance" : "rest pose", character.blend));
+    if (const SkeletonMotion* skeleton_motion = skeleton_motion_of(character);
+        skeleton_motion != nullptr && (skeleton_motion->stance == Stance::rest || skeleton_motion->stance_arms) &&
+        character.blend <= 0)
+      findings.report(path + ".blend",
+                      fmt::format("expected > 0 s to get from the {} to the clip, got {}",
+                                  skeleton_motion->stance_arms ? "stance" : "rest pose", character.blend));
     if (character.grow > character.dressing)
       findings.report(path + ".grow", fmt::format("expected at most the {} s of dressing, in which it stands, got {}",
                                                   character.dressing, character.grow));

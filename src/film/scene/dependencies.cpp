@@ -141,8 +141,9 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
     if (attachment.mask) walk.visit_alone(*attachment.mask, FileUse::simulation);
   for (const Character& character : scene.characters) {
     if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
-    if (const SkeletonMotion* acting = acting_of(character); acting != nullptr && acting->motion)
-      walk.visit(*acting->motion);
+    if (const SkeletonMotion* skeleton_motion = skeleton_motion_of(character);
+        skeleton_motion != nullptr && skeleton_motion->motion)
+      walk.visit(*skeleton_motion->motion);
     if (const auto* sequence = std::get_if<MeshSequence>(&character.source))
       for (const fs::path& file : sequence_files(sequence->files)) walk.visit(file);
   }

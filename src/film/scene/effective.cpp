@@ -51,12 +51,12 @@ std::string toml_value(const Value& value, const Rule& rule) {
 }
 
 /// Which keys are written: all, or only those that affect the simulation.
-enum class Part { all, simulated };
+enum class KeySelection { all, simulated };
 
 /// Writes the effective scene as TOML.
 class Writer {
  public:
-  explicit Writer(Part part) : part_(part) {}
+  explicit Writer(KeySelection selection) : selection_(selection) {}
 
   std::string text;
 
@@ -84,7 +84,7 @@ class Writer {
   void for_rules(const Table& table, void* target, const Body& body) const {
     const auto visit = [&](const std::vector<Rule>& rules) {
       for (const Rule& rule : rules)
-        if (part_ == Part::all || rule.simulated) body(rule);
+        if (selection_ == KeySelection::all || rule.simulated) body(rule);
     };
     visit(table.rules);
     if (const Variant* variant = table.variant_of(target)) visit(variant->rules);
@@ -117,14 +117,14 @@ class Writer {
     text += "]\n";
   }
 
-  const Part part_;
+  const KeySelection selection_;
 };
 
-std::string text_of(const Scene& scene, Part part) {
+std::string text_of(const Scene& scene, KeySelection selection) {
   // Rules access members through non-const pointers, so work on a copy.
   Scene copy = scene;
   remove_rope_cloths(copy);
-  Writer writer(part);
+  Writer writer(selection);
   writer.write(scene_rules(), &copy, "");
   return std::move(writer.text);
 }
@@ -164,7 +164,7 @@ void keep_file_names(Scene& scene) {
   for (Attachment& attachment : scene.attachments) keep_name_if_any(attachment.mask);
   for (Character& character : scene.characters) {
     if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_name(file->path);
-    if (SkeletonMotion* acting = acting_of(character)) keep_name_if_any(acting->motion);
+    if (SkeletonMotion* skeleton_motion = skeleton_motion_of(character)) keep_name_if_any(skeleton_motion->motion);
     if (auto* sequence = std::get_if<MeshSequence>(&character.source))
       sequence->files = std::filesystem::path(sequence->files).filename().string();
     keep_names_of_pictures(character.look);
@@ -175,7 +175,7 @@ void keep_file_names(Scene& scene) {
 }  // namespace
 
 std::string effective_scene(const Scene& scene) {
-  return text_of(scene, Part::all);
+  return text_of(scene, KeySelection::all);
 }
 
 void identify(Scene& scene) {
@@ -190,8 +190,8 @@ void identify(Scene& scene) {
   });
   Scene copy = scene;
   keep_file_names(copy);
-  shown.add(text_of(copy, Part::all));
-  simulated.add(text_of(copy, Part::simulated));
+  shown.add(text_of(copy, KeySelection::all));
+  simulated.add(text_of(copy, KeySelection::simulated));
   // The duration affects the motion of characters, because this motion is sampled into key frames up to the end of the
   // film, and the last key frames influence the interpolation before them.
   if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));

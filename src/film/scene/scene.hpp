@@ -375,10 +375,10 @@ struct Character {
   double dressing = 0;  ///< time for which it stands still to be dressed, from the start of the preroll on [s]
   /// Time after `dressing` [s] in which the clip accelerates to `speed` and the pose changes from `stance` to the clip.
   double blend = 0;
-  double grow = 0;             ///< time at the start of `dressing` in which it grows from its bones to its size [s]
-  double start = 0;            ///< time of the clip at which the motion begins [s]
-  double speed = 1;            ///< factor on the speed of the clip
-  std::optional<double> room;  ///< clearance between limbs [m]; absent: clearance_between_limbs()
+  double grow = 0;   ///< time at the start of `dressing` in which it grows from its bones to its size [s]
+  double start = 0;  ///< time of the clip at which the motion begins [s]
+  double speed = 1;  ///< factor on the speed of the clip
+  std::optional<double> clearance;        ///< clearance between limbs [m]; absent: clearance_between_limbs()
   std::optional<double> keys_per_second;  ///< computed key frames per second [Hz]; absent: rate of
                                           ///< the clip, but 10 to 120
   Interpolation interpolation = Interpolation::cubic;
@@ -390,12 +390,12 @@ struct Character {
 };
 
 /// The motion settings of a character with a skeleton; nullptr for mesh sequences.
-inline const SkeletonMotion* acting_of(const Character& character) {
+inline const SkeletonMotion* skeleton_motion_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
 }
-inline SkeletonMotion* acting_of(Character& character) {
-  return const_cast<SkeletonMotion*>(acting_of(std::as_const(character)));
+inline SkeletonMotion* skeleton_motion_of(Character& character) {
+  return const_cast<SkeletonMotion*>(skeleton_motion_of(std::as_const(character)));
 }
 
 /// Key frame of a light.

@@ -87,9 +87,9 @@ void assign(std::vector<Vec3>& target, const Value& value) {
     target.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
 }
 
-Words::Words(std::initializer_list<std::string_view> words) : list(words.begin(), words.end()) {}
-Words::Words(const std::vector<std::string>& words) : list(words) {}
-Words::~Words() = default;
+Names::Names(std::initializer_list<std::string_view> names) : list(names.begin(), names.end()) {}
+Names::Names(const std::vector<std::string>& names) : list(names) {}
+Names::~Names() = default;
 
 RowBuilder::RowBuilder(std::string_view documentation) {
   table_.documentation = documentation;
@@ -114,7 +114,7 @@ void RowBuilder::add_table(std::string_view key, Type type, const Table& inner) 
   last().table = &inner;
 }
 
-void RowBuilder::set_components(const Words& components) {
+void RowBuilder::set_components(const Names& components) {
   last().components = components.list;
 }
 
@@ -133,13 +133,13 @@ void RowBuilder::bind_pair(std::function<Value(void*, bool)> get, std::function<
       });
 }
 
-void RowBuilder::bind_choice(const Words& choices, std::function<std::size_t(void*)> get,
+void RowBuilder::bind_choice(const Names& choices, std::function<std::size_t(void*)> get,
                              std::function<void(void*, std::size_t)> set) {
   last().choices = choices.list;
-  bind([get = std::move(get), words = choices.list](void* s) { return Value(words.at(get(s))); },
-       [set = std::move(set), words = choices.list](void* s, const Value& value) {
-         const auto found = std::find(words.begin(), words.end(), std::get<std::string>(value));
-         set(s, static_cast<std::size_t>(found - words.begin()));
+  bind([get = std::move(get), names = choices.list](void* s) { return Value(names.at(get(s))); },
+       [set = std::move(set), names = choices.list](void* s, const Value& value) {
+         const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
+         set(s, static_cast<std::size_t>(found - names.begin()));
        });
 }
 

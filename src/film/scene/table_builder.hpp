@@ -48,10 +48,10 @@ void assign(std::optional<T>& target, const Value& value) {
 }
 
 /// Names of choices or components.
-struct Words {
-  Words(std::initializer_list<std::string_view> words);
-  Words(const std::vector<std::string>& words);
-  ~Words();
+struct Names {
+  Names(std::initializer_list<std::string_view> names);
+  Names(const std::vector<std::string>& names);
+  ~Names();
   std::vector<std::string> list;
 };
 
@@ -71,13 +71,13 @@ class RowBuilder {
   void add(std::string_view key, Type type, std::string_view documentation);
   void add_number(std::string_view key, Range range, std::string_view unit, std::string_view documentation);
   void add_table(std::string_view key, Type type, const Table& inner);
-  void set_components(const Words& components);
+  void set_components(const Names& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
   /// Binds one array of two numbers to two members. `second`: whether the second member is read or written.
   void bind_pair(std::function<Value(void*, bool second)> get,
                  std::function<void(void*, bool second, const Value&)> set);
-  /// Binds a choice. The functions read and write the index of the chosen word in `choices`.
-  void bind_choice(const Words& choices, std::function<std::size_t(void*)> get,
+  /// Binds a choice. The functions read and write the index of the chosen name in `choices`.
+  void bind_choice(const Names& choices, std::function<std::size_t(void*)> get,
                    std::function<void(void*, std::size_t)> set);
   void add_variant(std::string_view name, const RowBuilder& rows);
   void write_if(Flag when);
@@ -106,7 +106,7 @@ class TableBuilder : public RowBuilder {
     return number(key, member, range, "", documentation).whole();
   }
   template <class Member>
-  TableBuilder& vector(std::string_view key, Member member, const Words& components, Range range, std::string_view unit,
+  TableBuilder& vector(std::string_view key, Member member, const Names& components, Range range, std::string_view unit,
                        std::string_view documentation) {
     number(key, member, range, unit, documentation);
     set_components(components);
@@ -114,7 +114,7 @@ class TableBuilder : public RowBuilder {
   }
   /// A list of points.
   template <class Member>
-  TableBuilder& points(std::string_view key, Member member, const Words& components, Range range, std::string_view unit,
+  TableBuilder& points(std::string_view key, Member member, const Names& components, Range range, std::string_view unit,
                        std::string_view documentation) {
     vector(key, member, components, range, unit, documentation);
     last().type = Type::points;
@@ -134,16 +134,16 @@ class TableBuilder : public RowBuilder {
   }
   /// A choice, stored as an enumeration or a bool. `choices`: in the order of the enumeration, or for false and true.
   template <class Member>
-  TableBuilder& choice(std::string_view key, Member member, const Words& choices, std::string_view documentation) {
+  TableBuilder& choice(std::string_view key, Member member, const Names& choices, std::string_view documentation) {
     using Field = std::remove_reference_t<std::invoke_result_t<Member, S&>>;
     return choice_by(
         key, choices, documentation, [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
         [member](S& s, std::size_t index) { std::invoke(member, s) = static_cast<Field>(index); });
   }
   /// A choice that no single member stores. The functions read (S&) and write (S&, std::size_t) the
-  /// index of the chosen word in `choices`.
+  /// index of the chosen name in `choices`.
   template <class Get, class Set>
-  TableBuilder& choice_by(std::string_view key, const Words& choices, std::string_view documentation, Get get,
+  TableBuilder& choice_by(std::string_view key, const Names& choices, std::string_view documentation, Get get,
                           Set set) {
     add(key, Type::choice, documentation);
     bind_choice(
@@ -151,12 +151,12 @@ class TableBuilder : public RowBuilder {
         [set](void* s, std::size_t index) { set(*static_cast<S*>(s), index); });
     return *this;
   }
-  /// A number, or one of `words`. The functions read (S&) and write (S&, const Value&) the number or the word.
+  /// A number, or one of `names`. The functions read (S&) and write (S&, const Value&) the number or the name.
   template <class Get, class Set>
-  TableBuilder& number_or(std::string_view key, const Words& words, Range range, std::string_view unit,
+  TableBuilder& number_or(std::string_view key, const Names& names, Range range, std::string_view unit,
                           std::string_view documentation, Get get, Set set) {
     add_number(key, range, unit, documentation);
-    last().choices = words.list;
+    last().choices = names.list;
     bind([get](void* s) -> Value { return get(*static_cast<S*>(s)); },
          [set](void* s, const Value& value) { set(*static_cast<S*>(s), value); });
     return *this;

@@ -92,7 +92,7 @@ struct Decoder::Impl {
   }
 
   // Sends the next packet of the stream to the decoder, or signals the end of the file.
-  void feed() {
+  void send_next_packet() {
     for (;;) {
       const int code = av_read_frame(input.get(), packet.get());
       if (code == AVERROR_EOF) {
@@ -101,11 +101,11 @@ struct Decoder::Impl {
         return;
       }
       check_read(code, file);
-      const bool ours = packet->stream_index == stream;
-      const int sent = ours ? avcodec_send_packet(codec.get(), packet.get()) : 0;
+      const bool is_video_packet = packet->stream_index == stream;
+      const int sent = is_video_packet ? avcodec_send_packet(codec.get(), packet.get()) : 0;
       av_packet_unref(packet.get());
       check_read(sent, file);
-      if (ours) return;
+      if (is_video_packet) return;
     }
   }
 
@@ -156,7 +156,7 @@ std::optional<image::Image> Decoder::next() {
     if (code == AVERROR_EOF) return std::nullopt;
     if (code != AVERROR(EAGAIN)) check_read(code, impl_->file);
     if (impl_->at_end) return std::nullopt;
-    impl_->feed();
+    impl_->send_next_packet();
   }
 }
 

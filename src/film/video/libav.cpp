@@ -12,13 +12,13 @@ namespace weft::video {
 namespace {
 
 // Size of the log buffer [lines].
-constexpr std::size_t kRememberedLines = 4;
+constexpr std::size_t kMaxLogLines = 4;
 
 std::mutex g_log_mutex;  // encoder threads log too
 std::deque<std::string> g_log_lines;
 
 // Callback of libav: stores a warning or error in the log buffer, unless the buffer already contains its text.
-void remember(void* source, int level, const char* format, va_list arguments) {
+void append_to_log(void* source, int level, const char* format, va_list arguments) {
   if (level > AV_LOG_WARNING) return;
   std::array<char, 512> text{};
   int print_prefix = 0;  // without prefix, which would contain a memory address
@@ -29,7 +29,7 @@ void remember(void* source, int level, const char* format, va_list arguments) {
   const std::lock_guard lock(g_log_mutex);
   if (line.empty() || std::find(g_log_lines.begin(), g_log_lines.end(), line) != g_log_lines.end()) return;
   g_log_lines.push_back(std::move(line));
-  if (g_log_lines.size() > kRememberedLines) g_log_lines.pop_front();
+  if (g_log_lines.size() > kMaxLogLines) g_log_lines.pop_front();
 }
 
 std::string take_log() {
@@ -49,7 +49,7 @@ void OutputDeleter::operator()(AVFormatContext* output) const {
 
 void collect_log() {
   static std::once_flag once;
-  std::call_once(once, [] { av_log_set_callback(remember); });
+  std::call_once(once, [] { av_log_set_callback(append_to_log); });
   take_log();
 }
 

@@ -73,7 +73,7 @@ void check_frame_before(const cache::Reader& reader, const FrameRange& frames) {
 }
 
 void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
-  const cache::Reader any(reader.folder(), cache::Looks::any);
+  const cache::Reader any(reader.folder(), cache::AcceptedLooks::any);
   for (const int frame : any.frames()) {
     try {
       const cache::CachedFrame cached = any.read(frame);

@@ -42,7 +42,7 @@ void Store::find_start() {
   if (!has_leftover())
     return log::info(fmt::format("note: {}: nothing to resume; starting at the beginning", folder().string()));
   try {
-    auto reader = std::make_unique<cache::Reader>(folder(), cache::Looks::any);
+    auto reader = std::make_unique<cache::Reader>(folder(), cache::AcceptedLooks::any);
     const cache::Manifest& found = reader->manifest();
     if (found.simulation_hash != manifest_.simulation_hash)
       throw Error(ExitCode::output_failed,
@@ -157,7 +157,7 @@ void Store::keep(const MadeFrame& frame) {
 }
 
 frame::SnapshotPtr Store::stored(int frame) {
-  if (!now_reader_) now_reader_ = std::make_unique<cache::Reader>(folder(), cache::Looks::any);
+  if (!now_reader_) now_reader_ = std::make_unique<cache::Reader>(folder(), cache::AcceptedLooks::any);
   return now_reader_->snapshot(frame);
 }
 

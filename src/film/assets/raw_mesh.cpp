@@ -1,4 +1,4 @@
-#include "film/assets/soup.hpp"
+#include "film/assets/raw_mesh.hpp"
 
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -45,20 +45,20 @@ Transform to_eigen(const aiMatrix4x4& m) {
 }
 
 /// Appends the bones of a mesh as vertex groups. Bones of the same name form one group.
-void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
+void append_groups(RawMesh& raw, const aiMesh& part, std::size_t base) {
   for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
-    const auto known = std::ranges::find(soup.group_names, bone->mName.C_Str());
-    const auto group = static_cast<Index>(known - soup.group_names.begin());
-    if (known == soup.group_names.end()) soup.group_names.emplace_back(bone->mName.C_Str());
+    const auto known = std::ranges::find(raw.group_names, bone->mName.C_Str());
+    const auto group = static_cast<Index>(known - raw.group_names.begin());
+    if (known == raw.group_names.end()) raw.group_names.emplace_back(bone->mName.C_Str());
     for (const aiVertexWeight& weight : std::span(bone->mWeights, bone->mNumWeights))
       if (weight.mVertexId < part.mNumVertices)
-        soup.weights.push_back({group, static_cast<Index>(base + weight.mVertexId), weight.mWeight});
+        raw.weights.push_back({group, static_cast<Index>(base + weight.mVertexId), weight.mWeight});
   }
 }
 
 /// Appends one mesh, transformed to the world. Morph targets have the weights that the file states.
-void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Transform& to_world) {
-  const std::size_t base = soup.positions.size();
+void append_mesh(RawMesh& raw, const aiScene& scene, const aiMesh& part, const Transform& to_world) {
+  const std::size_t base = raw.positions.size();
   if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
     throw std::runtime_error("expected fewer than 2^31 vertices");
   for (unsigned v = 0; v < part.mNumVertices; ++v) {
@@ -67,14 +67,13 @@ void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Tra
       if (target->HasPositions() && v < target->mNumVertices)
         x += (target->mVertices[v] - part.mVertices[v]) * static_cast<ai_real>(rest_weight(scene, *target));
     const Eigen::Vector4d world = to_world * Eigen::Vector4d(x.x, x.y, x.z, 1);
-    soup.positions.push_back(world.head<3>());
-    soup.uv.emplace_back(kNone, kNone);
-    if (part.HasTextureCoords(0)) soup.uv.back() = {part.mTextureCoords[0][v].x, part.mTextureCoords[0][v].y};
-    soup.colors.emplace_back(kNone, kNone, kNone);
-    if (part.HasVertexColors(0))
-      soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
+    raw.positions.push_back(world.head<3>());
+    raw.uv.emplace_back(kNone, kNone);
+    if (part.HasTextureCoords(0)) raw.uv.back() = {part.mTextureCoords[0][v].x, part.mTextureCoords[0][v].y};
+    raw.colors.emplace_back(kNone, kNone, kNone);
+    if (part.HasVertexColors(0)) raw.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
   }
-  append_groups(soup, part, base);
+  append_groups(raw, part, base);
   // If the transform mirrors, faces would point inward. Reverses the order of their corners.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
   std::vector<Index> corners;
@@ -88,7 +87,7 @@ void append_mesh(Soup& soup, const aiScene& scene, const aiMesh& part, const Tra
       corners.push_back(static_cast<Index>(base + v));
     }
     if (mirrored) std::reverse(corners.begin(), corners.end());
-    append_face(soup, corners);
+    append_face(raw, corners);
   }
 }
 
@@ -157,20 +156,20 @@ void take(std::string_view& bytes, std::vector<T>& list) {
 
 }  // namespace
 
-void append_face(Soup& soup, std::span<const Index> corners) {
+void append_face(RawMesh& raw, std::span<const Index> corners) {
   if (corners.size() == 4) {
-    soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
+    raw.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
   } else {
-    soup.polygons.push_back(static_cast<Index>(corners.size()));
-    soup.polygons.insert(soup.polygons.end(), corners.begin(), corners.end());
-    mesh::triangulate_face(corners, soup.positions, soup.triangles);
+    raw.polygons.push_back(static_cast<Index>(corners.size()));
+    raw.polygons.insert(raw.polygons.end(), corners.begin(), corners.end());
+    mesh::triangulate_face(corners, raw.positions, raw.triangles);
   }
 }
 
-Soup read_soup(const std::filesystem::path& file, const std::string& object) {
+RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& object) {
   Assimp::Importer importer;
   const aiScene* scene = &import(importer, file, aiProcess_ValidateDataStructure);
-  Soup soup;
+  RawMesh raw;
   std::set<std::string> names;
   const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
   // Transforms of nodes by name. If several nodes have the same name, the first without a mesh counts, or the first if
@@ -184,72 +183,72 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
       const aiMesh& part = *scene->mMeshes[m];
       names.insert({node->mName.C_Str(), part.mName.C_Str()});
       if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
-        append_mesh(soup, *scene, part, placement_of(part, to_world, placed));
+        append_mesh(raw, *scene, part, placement_of(part, to_world, placed));
     }
-  if (!object.empty() && soup.positions.empty()) {
+  if (!object.empty() && raw.positions.empty()) {
     names.erase("");
     throw std::runtime_error(
         fmt::format("expected a mesh or node named \"{}\", got {}", object,
                     names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", "))));
   }
   if (const auto metres = metres_per_unit(*scene))
-    for (Vec3& x : soup.positions) x *= *metres;
-  if (const auto up = up_axis(importer, *scene)) soup.up = {*up};
-  return soup;
+    for (Vec3& x : raw.positions) x *= *metres;
+  if (const auto up = up_axis(importer, *scene)) raw.up = {*up};
+  return raw;
 }
 
-mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
+mesh::Topology make_topology(const RawMesh& raw, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions) {
   mesh::Topology topology;
-  topology.triangles = mesh::split_quads(soup.quads, soup.positions);
+  topology.triangles = mesh::split_quads(raw.quads, raw.positions);
   const auto flat = [&](const mesh::Triangle& t) {
-    return !has_area(t, soup.positions) &&
+    return !has_area(t, raw.positions) &&
            std::ranges::none_of(later_positions, [&](const std::vector<Vec3>& x) { return has_area(t, x); });
   };
-  if (soup.triangles.empty() && std::none_of(topology.triangles.begin(), topology.triangles.end(), flat)) {
-    topology.quads = soup.quads;
+  if (raw.triangles.empty() && std::none_of(topology.triangles.begin(), topology.triangles.end(), flat)) {
+    topology.quads = raw.quads;
   } else {
-    topology.triangles.insert(topology.triangles.end(), soup.triangles.begin(), soup.triangles.end());
+    topology.triangles.insert(topology.triangles.end(), raw.triangles.begin(), raw.triangles.end());
     removed_triangles = std::erase_if(topology.triangles, flat);
   }
   return topology;
 }
 
-std::string to_bytes(const Soup& soup) {
+std::string to_bytes(const RawMesh& raw) {
   std::string bytes;
-  put(bytes, soup.positions);
-  put(bytes, soup.uv);
-  put(bytes, soup.colors);
-  put(bytes, soup.weights);
+  put(bytes, raw.positions);
+  put(bytes, raw.uv);
+  put(bytes, raw.colors);
+  put(bytes, raw.weights);
   std::vector<char> names;  // each with a terminating zero
-  for (const std::string& name : soup.group_names)
+  for (const std::string& name : raw.group_names)
     names.insert(names.end(), name.c_str(), name.c_str() + name.size() + 1);
   put(bytes, names);
-  put(bytes, soup.triangles);
-  put(bytes, soup.quads);
-  put(bytes, soup.polygons);
-  put(bytes, soup.up);
+  put(bytes, raw.triangles);
+  put(bytes, raw.quads);
+  put(bytes, raw.polygons);
+  put(bytes, raw.up);
   return bytes;
 }
 
-Soup from_bytes(std::string_view bytes) {
-  Soup soup;
-  take(bytes, soup.positions);
-  take(bytes, soup.uv);
-  take(bytes, soup.colors);
-  take(bytes, soup.weights);
+RawMesh from_bytes(std::string_view bytes) {
+  RawMesh raw;
+  take(bytes, raw.positions);
+  take(bytes, raw.uv);
+  take(bytes, raw.colors);
+  take(bytes, raw.weights);
   std::vector<char> names;
   take(bytes, names);
   for (auto begin = names.begin(); begin != names.end();) {
     const auto end = std::find(begin, names.end(), '\0');
-    soup.group_names.emplace_back(begin, end);
+    raw.group_names.emplace_back(begin, end);
     begin = end == names.end() ? end : end + 1;
   }
-  take(bytes, soup.triangles);
-  take(bytes, soup.quads);
-  take(bytes, soup.polygons);
-  take(bytes, soup.up);
-  return soup;
+  take(bytes, raw.triangles);
+  take(bytes, raw.quads);
+  take(bytes, raw.polygons);
+  take(bytes, raw.up);
+  return raw;
 }
 
 }  // namespace weft::assets

@@ -1,4 +1,4 @@
-#include "film/character/nameless.hpp"
+#include "film/character/structural_joints.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -14,7 +14,7 @@
 namespace weft::assets {
 
 /// The faces of a file. Several vertices may have the same position; all indices are in range.
-struct Soup {
+struct RawMesh {
   std::vector<Vec3> positions;  ///< in metres if the file states its unit
   std::vector<Vec2> uv;         ///< per position, v upward; NaN if its mesh in the file has none
   std::vector<Vec3> colors;     ///< per position; NaN if its mesh in the file has none
@@ -37,21 +37,21 @@ struct Soup {
 /// Ignores points and lines. Throws std::runtime_error with the message of assimp or, if no mesh with vertices has the
 /// name, with the existing names. Call this function only through run_isolated(), because damaged files can crash
 /// assimp or block it for ever.
-Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
+RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& object = {});
 
 /// Appends a face. Divides a face that is no quad into triangles.
-void append_face(Soup& soup, std::span<const Index> corners);
+void append_face(RawMesh& raw, std::span<const Index> corners);
 
-/// The surface of a soup. If the soup has only quads, and both halves of each quad have an area, the surface has these
-/// quads. Otherwise, it has only triangles with an area; sets `removed_triangles` to the number of the others. A
-/// triangle has no area if it has a repeated corner or all corners on a line, in `soup` and in all `later_positions`
-/// (positions in later files of a sequence).
-mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles,
+/// The surface of a raw mesh. If the raw mesh has only quads, and both halves of each quad have an area, the surface
+/// has these quads. Otherwise, it has only triangles with an area; sets `removed_triangles` to the number of the
+/// others. A triangle has no area if it has a repeated corner or all corners on a line, in `raw` and in all
+/// `later_positions` (positions in later files of a sequence).
+mesh::Topology make_topology(const RawMesh& raw, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions = {});
 
-/// Serialises a soup for transfer between two processes of the same program.
-std::string to_bytes(const Soup& soup);
+/// Serialises a raw mesh for transfer between two processes of the same program.
+std::string to_bytes(const RawMesh& raw);
 /// The reverse of to_bytes(). Throws std::runtime_error if the data are incomplete.
-Soup from_bytes(std::string_view bytes);
+RawMesh from_bytes(std::string_view bytes);
 
 }  // namespace weft::assets

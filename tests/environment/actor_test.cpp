@@ -1,5 +1,5 @@
 // Characters of a scene, from small files that the tests write.
-#include "film/environment/acting.hpp"
+#include "film/environment/actor.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "film/character/nameless.hpp"
+#include "film/character/structural_joints.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ struct Chain {
 /// Two chains that leave the node `from`. `a`, `b`: their first nodes.
 struct Pair {
   Index from = -1, a = -1, b = -1;
-  double reach = 0;  ///< length of the shorter chain [m]
+  double chain_length = 0;  ///< length of the shorter chain [m]
 };
 
 bool moves(const Channel& channel) {
@@ -56,9 +56,9 @@ bool moves(const Channel& channel) {
 }
 
 /// Implements find_joints_by_structure().
-class NamelessFinder {
+class StructuralJointFinder {
  public:
-  explicit NamelessFinder(const Character& character)
+  explicit StructuralJointFinder(const Character& character)
       : character_(character), count_(character.nodes.size()), joints_(kJointCount, -1) {
     const std::vector<Affine> at_rest = global_transforms(character, rest_pose(character));
     length_.assign(count_, 0);
@@ -70,7 +70,7 @@ class NamelessFinder {
       length_[n] = (at_rest[n].translation() - at_rest[parent].translation()).norm();
       children_[parent].push_back(static_cast<Index>(n));
     }
-    compute_reach();
+    compute_chain_lengths();
     find_ends();
   }
 
@@ -85,7 +85,8 @@ class NamelessFinder {
         return (at[limb[0].upper] - at[limb[1].upper]).dot(to_the_left(at, leg, arm));
       });
     };
-    const double legs_across = across(leg), arms_across = across(arm), size = legs.reach * legs.reach * legs.reach;
+    const double legs_across = across(leg), arms_across = across(arm),
+                 size = legs.chain_length * legs.chain_length * legs.chain_length;
     if (!(std::min(std::abs(legs_across), std::abs(arms_across)) > kMinLeftSignal * size)) return joints_;
     for (const bool right : {false, true}) {
       const Chain &l = leg[right != (legs_across < 0)], &a = arm[right != (arms_across < 0)];
@@ -106,13 +107,13 @@ class NamelessFinder {
   void set_joint(Joint left, bool right, Index node) { joints_[joint_index(on_side(left, right))] = node; }
 
   /// Computes the length of the longest chain below each node, and the child to which this chain leads.
-  void compute_reach() {
-    reach_.assign(count_, 0);
+  void compute_chain_lengths() {
+    chain_length_.assign(count_, 0);
     next_.assign(count_, -1);
     for (std::size_t n = count_; n-- > 0;)
       for (const Index child : children_[n])
-        if (const double reach = length_[child] + reach_[child]; next_[n] < 0 || reach > reach_[n]) {
-          reach_[n] = reach;
+        if (const double length = length_[child] + chain_length_[child]; next_[n] < 0 || length > chain_length_[n]) {
+          chain_length_[n] = length;
           next_[n] = child;
         }
   }
@@ -136,8 +137,8 @@ class NamelessFinder {
 
   /// Whether the longest chains through the nodes `a` and `b` can be left and right limb of a body.
   bool are_alike(Index a, Index b) const {
-    const double max_difference = kMaxChainDifference * std::max(reach_[a], reach_[b]);
-    if (std::abs(reach_[a] - reach_[b]) > max_difference) return false;
+    const double max_difference = kMaxChainDifference * std::max(chain_length_[a], chain_length_[b]);
+    if (std::abs(chain_length_[a] - chain_length_[b]) > max_difference) return false;
     for (int k = 0; k < kComparedBones; ++k) {
       a = next_[a];
       b = next_[b];
@@ -155,9 +156,9 @@ class NamelessFinder {
         for (std::size_t j = i + 1; j < children_[n].size(); ++j) {
           const Index a = children_[n][i], b = children_[n][j];
           if (are_alike(a, b) && chain_of(a, 1).end >= 0 && chain_of(b, 1).end >= 0)
-            pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
+            pairs.push_back({static_cast<Index>(n), a, b, std::min(chain_length_[a], chain_length_[b])});
         }
-    std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
+    std::ranges::stable_sort(pairs, std::greater(), &Pair::chain_length);
     // The spine may be as long as a leg. But a pair that contains the spine is not disjoint from any other pair.
     for (std::size_t first = 0; first < pairs.size(); ++first)
       for (std::size_t second = first + 1; second < pairs.size(); ++second)
@@ -185,7 +186,8 @@ class NamelessFinder {
     for (Index n = from; n >= 0; n = next_[n]) {
       nodes.push_back(n);
       if (is_joint_[n]) last = nodes.size() - 1;
-      if (hand == 0 && std::ranges::count_if(children_[n], [&](Index c) { return reach_[c] > 0; }) >= kMinFingers)
+      if (hand == 0 &&
+          std::ranges::count_if(children_[n], [&](Index c) { return chain_length_[c] > 0; }) >= kMinFingers)
         hand = nodes.size() - 1;
     }
     if (hand >= 2) last = hand;
@@ -301,7 +303,7 @@ class NamelessFinder {
   std::vector<Index> joints_;
   std::vector<double> length_;                // length of the bone that ends at a node [m]
   std::vector<std::vector<Index>> children_;  // of each node
-  std::vector<double> reach_;                 // length of the longest chain below a node [m]
+  std::vector<double> chain_length_;          // length of the longest chain below a node [m]
   std::vector<Index> next_;                   // child of the node on this chain, or -1
   std::vector<bool> is_active_;               // per node: whether it influences skin, or moves in a clip
   std::vector<bool> is_joint_;                // per node: whether it is active, or has children
@@ -310,28 +312,30 @@ class NamelessFinder {
 }  // namespace
 
 std::vector<Index> find_joints_by_structure(const Character& character) {
-  return NamelessFinder(character).find();
+  return StructuralJointFinder(character).find();
 }
 
 std::array<Index, 2> find_knuckles(const Character& character, Index hand) {
   const std::vector<Node>& nodes = character.nodes;
-  std::vector<double> reach(nodes.size(), 0);  // per node: length of the longest chain from its parent through it
+  // Per node: length of the longest chain from its parent through it.
+  std::vector<double> chain_length(nodes.size(), 0);
   for (std::size_t n = nodes.size(); n-- > 0;) {
-    reach[n] += nodes[n].local.translation().norm();
-    if (const Index parent = nodes[n].parent; parent >= 0) reach[parent] = std::max(reach[parent], reach[n]);
+    chain_length[n] += nodes[n].local.translation().norm();
+    if (const Index parent = nodes[n].parent; parent >= 0)
+      chain_length[parent] = std::max(chain_length[parent], chain_length[n]);
   }
   const auto place = [&](Index finger) -> Vec3 { return nodes[finger].local.translation(); };
   std::vector<Index> fingers;
   Vec3 along = Vec3::Zero();
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const auto finger = static_cast<Index>(n);
-    if (nodes[n].parent != hand || !(reach[n] > place(finger).norm())) continue;
+    if (nodes[n].parent != hand || !(chain_length[n] > place(finger).norm())) continue;
     fingers.push_back(finger);
     along += place(finger);
   }
   constexpr std::size_t kMinFingerChains = 4;
   if (fingers.size() < kMinFingerChains) return {-1, -1};
-  const Index thumb = *std::ranges::min_element(fingers, {}, [&](Index f) { return reach[f]; });
+  const Index thumb = *std::ranges::min_element(fingers, {}, [&](Index f) { return chain_length[f]; });
   std::erase(fingers, thumb);
   std::array<Index, 2> ends{-1, -1};
   double widest = 0;

@@ -22,7 +22,7 @@ struct Body {
 };
 
 /// A character of the scene, and its name for messages.
-struct Cast {
+struct CharacterContext {
   const scene::Scene& scene;
   const scene::Character& settings;
   std::string where;  ///< scene file, line, column and name, for messages
@@ -39,10 +39,10 @@ struct Cast {
   [[noreturn]] void fail(const std::string& key, const std::string& why) const;
 };
 
-Cast make_cast(const scene::Scene& scene, const scene::Character& settings);
+CharacterContext make_character_context(const scene::Scene& scene, const scene::Character& settings);
 
 /// Throws Error(scene_invalid) if the character starts after the end of `motion`, which has this duration [s].
-void check_start(const Cast& cast, const std::string& motion, double duration);
+void check_start(const CharacterContext& context, const std::string& motion, double duration);
 
 /// "; did you mean ...?" with the most similar of the known names; empty if none is similar.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known);
@@ -50,7 +50,7 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
 /// The number of the node with the name `name`, which the scene gives in a [[character.joint]] or as the `bone` of a
 /// [[character.part]]. `key`: key in the scene; `source`: the file of the nodes; both for messages. Throws
 /// Error(scene_invalid) if there is no such node.
-Index named_node(const Cast& cast, const std::string& key, const std::string& name,
+Index named_node(const CharacterContext& context, const std::string& key, const std::string& name,
                  const std::vector<character::Node>& nodes, const std::string& source);
 
 /// For each of joint_names(), the node of a skeleton with that role; −1 if there is none. The names `given` in the
@@ -58,8 +58,18 @@ Index named_node(const Cast& cast, const std::string& key, const std::string& na
 /// hips. `name`: the member of JointNames that applies to this file; `source`: the file, for messages. Throws
 /// Error(scene_invalid) for names in the scene that do not exist, and for a node that the scene names as two joints,
 /// except the hips.
-std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
+std::vector<Index> joints_of(const CharacterContext& context, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source);
+
+/// The clip with the name `name`; without a name, the first clip. `source`: file of the clips, for messages. Throws
+/// Error(scene_invalid) if there is no such clip.
+const character::Clip& choose_clip(const CharacterContext& context, const std::optional<std::string>& name,
+                                   const std::vector<character::Clip>& clips, const std::string& source);
+
+/// Throws Error(scene_invalid) if no node is the hips. `joints`: result of joints_of(); `source`: the file of the
+/// nodes, for messages.
+void check_hips(const CharacterContext& context, const std::vector<Index>& joints,
+                const std::vector<character::Node>& nodes, const std::string& source);
 
 }  // namespace weft::environment
