@@ -36,7 +36,7 @@ struct Bone {
 
 /// A body with long shins and short arms that swings its arms and legs, turns and nods. Joints have the names of the
 /// CMU recordings.
-std::vector<Bone> somebody() {
+std::vector<Bone> make_bones() {
   std::vector<Bone> bones = {{"Hips", -1, {0, 95, 0}, {0, 1, 0}, -20, 20},
                              {"LowerBack", 0, {0, 8, -1}, {1, 0, 0}, 5, -3},
                              {"Spine1", 1, {0, 30, -2}, {0, 1, 0}, 15, -15},
@@ -135,7 +135,7 @@ class RetargetedBvh : public support::TestFolder {
 };
 
 TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
-  const std::vector<Bone> bones = somebody();
+  const std::vector<Bone> bones = make_bones();
   std::vector<double> order(bones.size(), 0);
   const std::vector<Vec3> expected =
       vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), order));
@@ -158,7 +158,7 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
 // MakeHuman writes translations that are added to the offsets of joints; recordings write translations that replace the
 // offsets.
 TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
-  const std::vector<Bone> bones = somebody();
+  const std::vector<Bone> bones = make_bones();
   const std::vector<double> order(bones.size(), 0);
   const std::vector<Quat> zero(bones.size(), Quat::Identity());
   const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
@@ -171,7 +171,7 @@ TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
 }
 
 TEST_F(RetargetedBvh, MayHaveKeywordsInAnySpellingAndSpacesInNames) {
-  std::vector<Bone> bones = somebody();
+  std::vector<Bone> bones = make_bones();
   const std::vector<double> order(bones.size(), 0);
   const std::vector<Quat> zero(bones.size(), Quat::Identity());
   const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
@@ -187,7 +187,7 @@ TEST_F(RetargetedBvh, MayHaveKeywordsInAnySpellingAndSpacesInNames) {
 }
 
 TEST_F(RetargetedBvh, NeedsNoNames) {
-  std::vector<Bone> bones = somebody();
+  std::vector<Bone> bones = make_bones();
   const std::vector<double> order(bones.size(), 0);
   const std::vector<Vec3> expected =
       vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), order));
@@ -203,7 +203,7 @@ TEST_F(RetargetedBvh, NeedsNoNames) {
 }
 
 TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) {
-  const std::vector<Bone> bones = somebody();
+  const std::vector<Bone> bones = make_bones();
   vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), std::vector<double>(bones.size(), 0)));
   const auto joints = character::find_joints(body_);
   const character::Skeleton skeleton({body_, joints});

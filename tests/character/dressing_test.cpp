@@ -108,16 +108,16 @@ TEST(Dressing, GrowsFromATenthToAllWithoutAJerk) {
   EXPECT_NEAR((growth_fraction(1e-4, 2) - growth_fraction(0, 2)) / 1e-4, 0, 1e-3);
 }
 
-constexpr double kRoom = 0.008;
+constexpr double kClearance = 0.008;
 
-class RoomOfAMannequin : public ::testing::Test {
+class LimbClearanceOfAMannequin : public ::testing::Test {
  protected:
   std::vector<Vec3> skinned(const Pose& pose) const {
     std::vector<Vec3> x(body_.mesh.positions.size());
     skin(body_, pose, x);
     return x;
   }
-  LimbClearance clearance(std::vector<Ground> grounds = {}, double width = kRoom) const {
+  LimbClearance clearance(std::vector<Ground> grounds = {}, double width = kClearance) const {
     return {{body_, joints_},
             VertexMask(body_.mesh.positions.size(), 1),
             std::vector<float>(body_.mesh.positions.size(), 1),
@@ -125,15 +125,15 @@ class RoomOfAMannequin : public ::testing::Test {
             std::move(grounds)};
   }
   std::size_t crossings(const std::vector<Vec3>& x) const {
-    const support::JudgedObject object{"skin", true, x, body_.mesh.topology.triangles};
-    return support::judge(std::span(&object, 1)).pairs.size();
+    const support::TestedObject object{"skin", true, x, body_.mesh.topology.triangles};
+    return support::find_intersections(std::span(&object, 1)).pairs.size();
   }
 
   const Character body_ = make_mannequin({.edge_length = 0.04});
   const std::vector<Index> joints_ = find_joints(body_);
 };
 
-TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
+TEST_F(LimbClearanceOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
@@ -158,11 +158,11 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
       if (limbs[w] == Limb::trunk) least = std::min(least, (after[v] - after[w]).norm());
   }
   EXPECT_GT(moved, 100);
-  EXPECT_GT(least, 0.6 * kRoom);  // 5.1 mm, between fingers and thighs
+  EXPECT_GT(least, 0.6 * kClearance);  // 5.1 mm, between fingers and thighs
 }
 
 // A crease is a fold in the skin of one body. The clearance does not open it, and adds no crossings.
-TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
+TEST_F(LimbClearanceOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
   Pose pose = rest_pose(body_);
   const Index thigh = joints_[joint_index(Joint::left_upper_leg)];
   const Quat above(global_transforms(body_, pose)[body_.nodes[thigh].parent].linear());
@@ -179,32 +179,32 @@ TEST_F(RoomOfAMannequin, MakesNothingWorseInTheCreaseOfAHip) {
 
 // The clearance is at most that of the rest pose, which is below the requested 10 cm in places, for example between the
 // legs.
-TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
+TEST_F(LimbClearanceOfAMannequin, LeavesARestingBodyToTheBit) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
   clearance({}, 0.1).move_skin(rest_pose(body_), after);
   EXPECT_EQ(after, before);
 }
 
-TEST_F(RoomOfAMannequin, LeavesSkinWithoutClothToTheBit) {
+TEST_F(LimbClearanceOfAMannequin, LeavesSkinWithoutClothToTheBit) {
   const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   const std::vector<Vec3> before = skinned(pose);
   std::vector<Vec3> after = before;
   const VertexMask all(before.size(), 1);
-  const LimbClearance bare({body_, joints_}, all, std::vector<float>(before.size(), 0), kRoom, {});
+  const LimbClearance bare({body_, joints_}, all, std::vector<float>(before.size(), 0), kClearance, {});
   EXPECT_EQ(bare.move_skin(pose, after).distance, 0);
   EXPECT_EQ(after, before);
 }
 
 // Cloth covers only the left of the trunk: the left arm comes down on cloth, the right arm on skin.
-TEST_F(RoomOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
+TEST_F(LimbClearanceOfAMannequin, IsMadeOnlyWhereClothIsAndReported) {
   const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   const std::vector<Vec3> before = skinned(pose);
   const std::vector<Limb> limbs = limbs_of(body_, joints_);
   std::vector<float> near_cloth(before.size());
   for (std::size_t v = 0; v < before.size(); ++v) near_cloth[v] = limbs[v] == Limb::trunk && before[v].x() > 0 ? 1 : 0;
   std::vector<Vec3> after = before;
-  const LimbClearance dressed({body_, joints_}, VertexMask(before.size(), 1), near_cloth, kRoom, {});
+  const LimbClearance dressed({body_, joints_}, VertexMask(before.size(), 1), near_cloth, kClearance, {});
   const LargestDisplacement moved = dressed.move_skin(pose, after);
   double left = 0, right = 0, most = 0;
   for (std::size_t v = 0; v < before.size(); ++v) {
@@ -250,7 +250,7 @@ Character leg_above_wall() {
 
 // Cloth is around the lower tip of the leg, so its ring moves away from the trunk. The tip only follows the ring, but
 // moves farther, because it is farther from the bone.
-TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
+TEST(LimbClearanceOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
   const Character body = leg_above_wall();
   std::vector<Index> joints(kJointCount, -1);
   joints[joint_index(Joint::hips)] = 0, joints[joint_index(Joint::left_upper_leg)] = 1;
@@ -268,7 +268,7 @@ TEST(RoomOfALeg, IsReportedAsThatOfTheNeighboursIfSkinFollowsThem) {
 }
 
 // Even if a limb is deep inside another, such as a thigh in the belly, it must not become very thin.
-TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
+TEST_F(LimbClearanceOfAMannequin, LeavesHalfOfEachLimb) {
   Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
   for (const bool right : {false, true}) {
     const Index arm = joints_[joint_index(on_side(Joint::left_upper_arm, right))];
@@ -292,7 +292,7 @@ TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   }
 }
 
-TEST_F(RoomOfAMannequin, FlattensItAboveTheGroundButForItsFeet) {
+TEST_F(LimbClearanceOfAMannequin, FlattensItAboveTheGroundButForItsFeet) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
   std::vector<Vec3> after = before;
   // The ground is a wall along the back of the body, 3 cm inside the skin.
@@ -308,7 +308,7 @@ TEST_F(RoomOfAMannequin, FlattensItAboveTheGroundButForItsFeet) {
       nearest = std::min(nearest, wall.up.dot(after[v]) - wall.height);
     }
   }
-  EXPECT_NEAR(nearest, 0.5 * kRoom, 1e-9);
+  EXPECT_NEAR(nearest, 0.5 * kClearance, 1e-9);
 }
 
 TEST(TriangleGrids, FindTheFirstFrontThatBruteForceFinds) {

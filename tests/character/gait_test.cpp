@@ -297,8 +297,8 @@ TEST(Gait, BodyOfAnyBuildDoesNotCutItselfWhileItWalks) {
     const Clip clip = make_stride(body, 1.2);
     for (std::size_t k = 0; k < keys(clip); k += 5) {
       const auto posed = skinned(body, joints_at_key(body, clip, k));
-      const support::JudgedObject judged{"body", true, posed, body.mesh.topology.triangles};
-      EXPECT_TRUE(support::judge(std::span(&judged, 1)).pairs.empty()) << build.height << ' ' << k;
+      const support::TestedObject object{"body", true, posed, body.mesh.topology.triangles};
+      EXPECT_TRUE(support::find_intersections(std::span(&object, 1)).pairs.empty()) << build.height << ' ' << k;
     }
   }
 }
@@ -310,8 +310,9 @@ TEST(Gait, LegsDoNotCutEachOtherInTheTurn) {
   const Clip clip = make_walk(mannequin(), walk);
   for (std::size_t k = 0; k < keys(clip); k += 6) {
     const auto posed = skinned(mannequin(), joints_at_key(mannequin(), clip, k));
-    const support::JudgedObject judged{"body", true, posed, mannequin().mesh.topology.triangles};
-    EXPECT_TRUE(support::judge(std::span(&judged, 1)).pairs.empty()) << clip.channels[0].rotation.times[k] << " s";
+    const support::TestedObject object{"body", true, posed, mannequin().mesh.topology.triangles};
+    EXPECT_TRUE(support::find_intersections(std::span(&object, 1)).pairs.empty())
+        << clip.channels[0].rotation.times[k] << " s";
   }
 }
 

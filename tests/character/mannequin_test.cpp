@@ -74,10 +74,10 @@ void expect_whole(const Character& body) {
   EXPECT_EQ(body.mesh.positions.size() + triangles.size() - edges, 2U) << "not a sphere with limbs";
   const double height = mesh::bounding_box(body.mesh.positions).max().z();
   EXPECT_GT(support::enclosed_volume(triangles, body.mesh.positions), 0.007 * std::pow(height, 3)) << "inside out";
-  const support::JudgedObject judged{"body", true, body.mesh.positions, triangles};
-  const auto judgement = support::judge(std::span(&judged, 1));
-  EXPECT_TRUE(judgement.pairs.empty()) << judgement.pairs.size();
-  EXPECT_TRUE(judgement.degenerate.empty());
+  const support::TestedObject object{"body", true, body.mesh.positions, triangles};
+  const auto intersections = support::find_intersections(std::span(&object, 1));
+  EXPECT_TRUE(intersections.pairs.empty()) << intersections.pairs.size();
+  EXPECT_TRUE(intersections.degenerate.empty());
 }
 
 // Source of the numbers, fractions of the body height: Drillis & Contini (1966), in Winter, Fig. 4.1.

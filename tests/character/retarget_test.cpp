@@ -429,7 +429,7 @@ TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
             1e-3);
 }
 
-TEST(Retarget, DoubtsWhatNoBodyDoes) {
+TEST(Retarget, WarnsOfJointAnglesBeyondHumanReach) {
   const Character motion = sticks(1, 0, 0, Quat::Identity());
   Clip clip = waving(motion, Vec3::Zero());
   clip.channels[0].rotation.values[1] = about(Vec3::UnitY(), -175);
@@ -462,7 +462,7 @@ TEST(Retarget, NamesTheMotionOfAnAnimalWithFourLegs) {
   })) << fmt::format("{}", fmt::join(warnings, "; "));
 }
 
-TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {
+TEST(Retarget, WarnsOfABodyThatDoesNotStandInItsFile) {
   const Character motion = sticks(1, 0, 0, Quat::Identity());
   Character body = sticks(1, 30, 0, kOwnFrame);
   const auto ours = find_joints(body), theirs = find_joints(motion);

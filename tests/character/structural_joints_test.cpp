@@ -48,7 +48,7 @@ struct Sticks {
 };
 
 /// `right_first`: limbs of the right side come first; `pelvis`: the legs are children of a node beside the spine.
-Sticks somebody(bool right_first, bool pelvis, double collar = 0.15, double hand = 0.09) {
+Sticks make_sticks(bool right_first, bool pelvis, double collar = 0.15, double hand = 0.09) {
   Sticks s;
   const Index hips = s.add("Hips", s.add("", -1, {0, 0, 0}), {0, 0, 1});
   const Index legs = pelvis ? s.add("", hips, {0, 0, -0.02}) : hips;
@@ -70,18 +70,18 @@ TEST(NamelessJoints, AreFoundByTreeAndLengths) {
   for (const bool right_first : {false, true})
     for (const bool pelvis : {false, true}) {
       SCOPED_TRACE(fmt::format("{} {}", right_first, pelvis));
-      expect_all_found(somebody(right_first, pelvis));
+      expect_all_found(make_sticks(right_first, pelvis));
     }
 }
 
 TEST(NamelessJoints, OfLongCollarbonesAndLargeHandsAreFound) {
-  expect_all_found(somebody(false, false, 0.25));
-  expect_all_found(somebody(false, false, 0.15, 0.3));
+  expect_all_found(make_sticks(false, false, 0.25));
+  expect_all_found(make_sticks(false, false, 0.15, 0.3));
 }
 
 // Rigs with twist bones have a node in the middle of upper arms, lower arms, thighs and shins.
 TEST(NamelessJoints, OfBonesInTwoHalvesAreTheirEnds) {
-  const Sticks whole = somebody(false, true);
+  const Sticks whole = make_sticks(false, true);
   Sticks s;
   std::vector<Index> now;
   for (std::size_t n = 0; n < whole.parts.size(); ++n) {
@@ -106,7 +106,7 @@ TEST(NamelessJoints, OfTheMannequinAreThoseThatItsNamesSay) {
 }
 
 TEST(NamelessJoints, AreNotGuessedWhereNothingTellsTheLeft) {
-  Sticks s = somebody(false, false);
+  Sticks s = make_sticks(false, false);
   for (const char* side : {"Left", "Right"}) {  // straight legs without feet
     s.body.nodes[s.of(std::string(side) + "LowerLeg")].local.translation().y() = 0;
     s.body.nodes[s.of(std::string(side) + "Foot")].local.translation().y() = 0;
@@ -117,13 +117,13 @@ TEST(NamelessJoints, AreNotGuessedWhereNothingTellsTheLeft) {
 }
 
 TEST(NamelessJoints, OfABodyWithoutArmsAreNotGuessed) {
-  Sticks s = somebody(false, false);
+  Sticks s = make_sticks(false, false);
   s.body.nodes.resize(static_cast<std::size_t>(s.of("RightUpperLeg")));
   for (const Index joint : find_joints(s.body)) EXPECT_EQ(joint, -1);
 }
 
 TEST(NamelessJoints, StandInWhereNamesAreMissing) {
-  Sticks s = somebody(true, false);
+  Sticks s = make_sticks(true, false);
   s.body.nodes[s.of("Hips")].name = "pelvis";
   s.body.nodes[s.of("Head")].name = "head";
   s.body.nodes[s.of("LeftFoot")].name = "foot_l";
@@ -132,7 +132,7 @@ TEST(NamelessJoints, StandInWhereNamesAreMissing) {
 
 TEST(Knuckles, AreThoseOfIndexAndLittleFinger) {
   for (const bool right_first : {false, true}) {
-    const Sticks s = somebody(right_first, false);
+    const Sticks s = make_sticks(right_first, false);
     for (const char* hand : {"LeftHand", "RightHand"}) {
       const Index palm = s.of(hand);
       const std::array<Index, 2> knuckles = find_knuckles(s.body, palm);

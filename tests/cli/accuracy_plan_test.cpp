@@ -138,7 +138,7 @@ Accuracy accuracy_of_one_metre() {
   for (int k = 0; k < 6; ++k) {
     const double n = std::pow(2, k);
     bench::Run euler{.setting = {.integrator = Integrator::implicit_euler, .step = 0.04 / n, .newton_tolerance = 0.1},
-                     .step_decides = true};
+                     .is_step_limited = true};
     euler.errors.fill(0.08 / n);
     euler.work.cpu_s = n;
     bench::Run bdf2 = euler;

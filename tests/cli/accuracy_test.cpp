@@ -175,7 +175,7 @@ const Accuracy& measured() {
 
 TEST(AccuracyOfASheet, ObservedOrdersAreThoseOfTheMethods) {
   for (Integrator integrator : kIntegrators) {
-    const auto series = measured().decided(integrator);
+    const auto series = measured().step_limited_runs(integrator);
     ASSERT_EQ(series.size(), 6u) << "each step was solved so exactly that it decides";
     const bench::Run &coarse = *series[4], &fine = *series[5];
     EXPECT_DOUBLE_EQ(control_of(coarse), 2 * control_of(fine));
@@ -188,11 +188,11 @@ TEST(AccuracyOfASheet, ObservedOrdersAreThoseOfTheMethods) {
   }
 }
 
-TEST(AccuracyOfASheet, ThatTheStepDecidesIsShownByATenfoldSmallerTolerance) {
+TEST(AccuracyOfASheet, StepLimitedRunsHardlyChangeAtATenthOfTheTolerance) {
   for (Integrator integrator : kIntegrators) {
     const auto grid = measured().series(Axis::grid, integrator);
     for (std::size_t k = 0; k < grid.size(); ++k) {
-      if (!grid[k]->step_decides) continue;
+      if (!grid[k]->is_step_limited) continue;
       ASSERT_LT(k + 1, grid.size());
       const bench::Run& tighter = *grid[k + 1];
       EXPECT_EQ(tighter.setting.step, grid[k]->setting.step);
@@ -208,7 +208,7 @@ TEST(AccuracyOfASheet, ErrorsFallWithTheTolerancesOfStepsAndSolver) {
   ASSERT_GE(tolerances.size(), 5u);
   EXPECT_LT(tolerances.back()->errors[0], 0.1 * tolerances.front()->errors[0]);
   const bench::Run &loose = *measured().series(Axis::grid, Integrator::bdf2).front(),
-                   &exact = *measured().decided(Integrator::bdf2).front();
+                   &exact = *measured().step_limited_runs(Integrator::bdf2).front();
   EXPECT_EQ(loose.setting.step, exact.setting.step);
   EXPECT_LE(exact.solver_error, loose.solver_error);
 }
@@ -224,7 +224,7 @@ TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
   // The reference is compared with a run of twice its step. Relative to the error of the finest run, the difference is
   // 1/16 − 1/64 = 3/64. The solver adds about as much.
   EXPECT_LT(at(accuracy.uncertainty, Quantity::position),
-            0.1 * error_of(*accuracy.decided(Integrator::implicit_midpoint).back(), Quantity::position));
+            0.1 * error_of(*accuracy.step_limited_runs(Integrator::implicit_midpoint).back(), Quantity::position));
 }
 
 TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
@@ -337,7 +337,7 @@ Accuracy made_up_accuracy() {
   for (int k = 0; k < 9; ++k) {
     const double n = std::pow(2, k);
     bench::Run euler{.setting = {.integrator = Integrator::implicit_euler, .step = 0.04 / n, .newton_tolerance = 0.1},
-                     .step_decides = true};
+                     .is_step_limited = true};
     euler.errors.fill(0.0194 / n);
     euler.work.cpu_s = n;
     bench::Run midpoint = euler;

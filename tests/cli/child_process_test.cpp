@@ -10,7 +10,7 @@
 namespace weft::cli {
 namespace {
 
-TEST(ChildProcess, ThatCannotBeStartedIsNoFaultOfOurs) {
+TEST(ChildProcess, ThatCannotBeStartedIsAnOutputError) {
   rlimit before{};
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
   const rlimit none{0, before.rlim_max};

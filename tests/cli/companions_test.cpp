@@ -116,7 +116,7 @@ scene::Scene undecided() {
       "position = [0, 0, 0.153]\nrotation = [90, 0, 0]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
 }
 
-TEST(Companions, SayWherePathsPart) {
+TEST(Companions, ReportChaoticMotion) {
   const ErrorEstimate estimate = estimate_of(undecided());
   EXPECT_TRUE(estimate.is_chaotic);
   EXPECT_GT(part_of(estimate, ErrorSource::start), 1e-4);
@@ -126,7 +126,7 @@ TEST(Companions, SayWherePathsPart) {
   EXPECT_FALSE(cli::error_json(estimate).at("comparable"));
 }
 
-TEST(Companions, WhoseErrorIsNotKnownLeaveALowerBound) {
+TEST(Companions, ReportALowerBoundIfAPartOfTheErrorIsNotKnown) {
   ErrorEstimate estimate;
   estimate.parts = {{ErrorSource::steps, {}}, {ErrorSource::mesh, {}, "the coarser mesh touches a body"}};
   EXPECT_TRUE(estimate.is_lower_bound());
@@ -153,7 +153,7 @@ TEST(Companions, ObserveTheOrder) {
   }
 }
 
-TEST(Companions, DoubtStepsWhoseErrorDoesNotFall) {
+TEST(Companions, WarnOfStepsWhoseErrorDoesNotFall) {
   // A stiff sheet bounces off a floor: twice the step changes the result hardly more than half of it.
   const scene::Scene bounces = support::scene_of_text(
       "[time]\nduration = 0.48\nintegrator = \"bdf2\"\n[[cloth]]\nname = \"a\"\nsize = 0.4\nparticles = 9\n"
@@ -171,13 +171,13 @@ TEST(Companions, DoubtStepsWhoseErrorDoesNotFall) {
   }
 }
 
-TEST(Companions, StopWhereTheyAreToldTo) {
+TEST(Companions, StopOnRequest) {
   EXPECT_THROW(estimate_of(swinging(), {.proceed = [] { return false; }}), Error);
 }
 
 class ErrorOfARun : public support::TestFolder {};
 
-TEST_F(ErrorOfARun, IsToldAtTheEndAndInTheStatistics) {
+TEST_F(ErrorOfARun, IsReportedAtTheEndAndInTheStatistics) {
   support::write_bytes(folder_ / "s.toml", kSwingingSheet);
   const cli::Outcome outcome = cli::run_weft({"simulate", "s.toml", "--cache", "c", "--error", "--stats", "s.json",
                                               "--set", "cloth.sheet.particles=9", "--set", "time.duration=0.4"},

@@ -91,8 +91,8 @@ TEST_F(Farms, SubmitOnlyTheReportIfOnlyTheReportFailed) {
   const Outcome again = submit();
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_FALSE(contains(again.err, "all runs are done")) << again.err;
-  EXPECT_TRUE(contains(again.out, "hand_in report report --time=10\n")) << again.out;
-  EXPECT_FALSE(contains(again.out, "hand_in simulate")) << again.out;
+  EXPECT_TRUE(contains(again.out, "submit_task report report --time=10\n")) << again.out;
+  EXPECT_FALSE(contains(again.out, "submit_task simulate")) << again.out;
   EXPECT_TRUE(do_tasks().empty()) << log("report");
   EXPECT_TRUE(contains(submit().err, "all runs are done"));
   fs::remove(folder_ / "a b/table.csv");

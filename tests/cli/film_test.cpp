@@ -35,12 +35,12 @@ struct Script {
   throw Error(code, "{}", text);
 }
 
-class Life {
+class InstanceCount {
  public:
-  explicit Life(Script& script) : script_(script) { count(1); }
-  ~Life() { count(-1); }
-  Life(const Life&) = delete;
-  Life& operator=(const Life&) = delete;
+  explicit InstanceCount(Script& script) : script_(script) { count(1); }
+  ~InstanceCount() { count(-1); }
+  InstanceCount(const InstanceCount&) = delete;
+  InstanceCount& operator=(const InstanceCount&) = delete;
 
  private:
   void count(int change) {
@@ -52,7 +52,7 @@ class Life {
 
 class Source : public FrameSource {
  public:
-  explicit Source(Script& script) : script_(script), life_(script) {}
+  explicit Source(Script& script) : script_(script), instance_count_(script) {}
   MadeFrame next() override {
     if (frame_ == script_.simulation_fails_at) fail(ExitCode::simulation_failed, "no convergence");
     if (frame_ == script_.stop_at) *script_.stop = true;
@@ -68,13 +68,13 @@ class Source : public FrameSource {
 
  private:
   Script& script_;
-  Life life_;
+  InstanceCount instance_count_;
   int frame_ = 0;
 };
 
 class Painter : public FramePainter {
  public:
-  explicit Painter(Script& script) : script_(script), life_(script) {}
+  explicit Painter(Script& script) : script_(script), instance_count_(script) {}
   Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
     script_.before.push_back(before ? before->frame : -1);
     if (snapshot.frame == script_.drawing_fails_at) fail(ExitCode::internal, "context lost");
@@ -88,12 +88,12 @@ class Painter : public FramePainter {
 
  private:
   Script& script_;
-  Life life_;
+  InstanceCount instance_count_;
 };
 
 class Writer : public FrameWriter {
  public:
-  explicit Writer(Script& script) : script_(script), life_(script) {}
+  explicit Writer(Script& script) : script_(script), instance_count_(script) {}
   void write(const frame::FrameSnapshot& snapshot, const Picture& picture) override {
     if (snapshot.frame == script_.writing_fails_at) fail(ExitCode::output_failed, "disk full");
     EXPECT_EQ(picture.image.rgb[0], snapshot.frame) << "picture and frame got mixed up";
@@ -106,7 +106,7 @@ class Writer : public FrameWriter {
 
  private:
   Script& script_;
-  Life life_;
+  InstanceCount instance_count_;
 };
 
 FilmResult play(Script& script, const FrameRange& wanted) {

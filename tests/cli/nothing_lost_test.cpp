@@ -236,7 +236,7 @@ TEST_F(AnyInput, ThatNestsTooDeepIsRefused) {
   EXPECT_EQ(page.exit_code, 0) << page.err.substr(0, 2000);
 }
 
-TEST_F(AnyInput, JsonWithValuesOfOtherTypesIsNoFaultOfOurs) {
+TEST_F(AnyInput, JsonWithValuesOfOtherTypesCausesNoInternalError) {
   const auto filled = [](std::string text, const std::string& value) {
     for (std::size_t at = 0; (at = text.find('@', at)) != std::string::npos; at += value.size())
       text.replace(at, 1, value);
@@ -263,7 +263,7 @@ TEST_F(AnyInput, JsonWithValuesOfOtherTypesIsNoFaultOfOurs) {
   }
 }
 
-TEST_F(AnyInput, ThatIsNoPathIsNoFaultOfOurs) {
+TEST_F(AnyInput, ThatIsNoPathCausesNoInternalError) {
   const std::string longest(5000, 'x');
   for (const std::string& path : {std::string(), longest, longest + ".toml", longest + ".png", longest + "/x.mp4"}) {
     for (const Arguments& arguments : {Arguments{"check", path},
@@ -306,7 +306,7 @@ TEST_F(AnyInput, ThatIsNoPathIsNoFaultOfOurs) {
   }
 }
 
-TEST_F(AnyInput, InAFolderThatIsGoneIsNoFaultOfOurs) {
+TEST_F(AnyInput, InARemovedFolderCausesNoInternalError) {
   const fs::path gone = folder_ / "gone";
   const std::string scene = (folder_ / "s.toml").string(), cache = (folder_ / "c").string();
   for (const Arguments& arguments :
@@ -356,7 +356,7 @@ TEST_F(AnyInput, AFrameWithWildContentUnderARightChecksumIsDrawnOrNamed) {
   support::write_bytes(folder_ / "c/frame_00001.weft", whole);
 }
 
-TEST_F(AnyInput, OfAnEndlessNumberOfThingsIsBounded) {
+TEST_F(AnyInput, WithTooManyEntriesIsRefused) {
   std::string columns = "time.fps", values = "25";
   for (int i = 0; i < 20'000; ++i) columns += fmt::format(",k{}", i), values += ",1";
   write("wide.csv", columns + "\n" + values + "\n" + values + "2\n");

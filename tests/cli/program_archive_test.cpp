@@ -113,7 +113,7 @@ TEST_F(ProgramArchives, AreUnpackedOnceAndRunByAllTasks) {
   };
   const Outcome outcome = submit();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_TRUE(contains(outcome.out, "hand_in unpack unpack --time=10\n")) << outcome.out;
+  EXPECT_TRUE(contains(outcome.out, "submit_task unpack unpack --time=10\n")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "--array=0 --dependency=\"afterok:$unpack\"\n")) << outcome.out;
   const auto programs = [&] {
     std::vector<fs::path> found;

@@ -69,14 +69,14 @@ TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
   for (double* stiffness : {&material.stretch_weft, &material.stretch_warp, &material.shear, &material.bend})
     *stiffness *= stiffer->breaks->factors[0];
   production::SceneSimulation simulation(scene);
-  std::string told;
+  std::string reported;
   try {
     for (int k = 0; k < 8; ++k)
-      for (const std::string& warning : simulation.advance().warnings) told += warning;
+      for (const std::string& warning : simulation.advance().warnings) reported += warning;
   } catch (const Error& error) {
-    told += error.what();
+    reported += error.what();
   }
-  EXPECT_NE(told.find("more than at the start"), std::string::npos) << told;
+  EXPECT_NE(reported.find("more than at the start"), std::string::npos) << reported;
   const std::string sentence = margin_sentence(strip());
   EXPECT_TRUE(sentence.starts_with("The scene as it is runs without anything broken, and its nearest limit is "))
       << sentence;
@@ -86,8 +86,8 @@ TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
 TEST(SceneStability, ASceneThatBreaksSaysWhatHolds) {
   SceneStability stability;
   stability.as_is = {.verdict = TrialVerdict::refused, .reason = "why", .step = 0.01};
-  stability.trials.push_back({.factors = with(VariedParameter::step, 0.125), .mends = true});
-  stability.trials.push_back({.factors = with(VariedParameter::step, 0.5), .mends = true});
+  stability.trials.push_back({.factors = with(VariedParameter::step, 0.125), .is_free_of_faults = true});
+  stability.trials.push_back({.factors = with(VariedParameter::step, 0.5), .is_free_of_faults = true});
   stability.trials.push_back({.factors = with(VariedParameter::mass, 10), .verdict = TrialVerdict::warned});
   stability.trials.push_back({.factors = with(VariedParameter::friction, 1.5)});  // unstable, as the scene itself
   EXPECT_EQ(margin_sentence(stability), "The scene as it is breaks (refused: why); it goes through with step at 5 ms.");
@@ -99,7 +99,7 @@ TEST(SceneStability, MarginIsUpToTheFirstThatBreaks) {
   stability.trials.push_back({.factors = with(VariedParameter::step, 2)});
   stability.trials.push_back({.factors = with(VariedParameter::step, 4),
                               .verdict = TrialVerdict::warned,
-                              .broken = {"energy comes from nowhere"}});
+                              .new_faults = {"energy comes from nowhere"}});
   stability.trials.push_back({.factors = with(VariedParameter::step, 8)});
   stability.trials.push_back(
       {.factors = with(VariedParameter::mass, 100), .verdict = TrialVerdict::refused, .reason = "why"});

@@ -97,7 +97,7 @@ def main(weft):
             file.write(output("weft", "man"))
         lint = subprocess.run(["mandoc", "-Tlint", "weft.1"], capture_output=True, text=True, check=False).stdout
         # Lines of --help keep their length in the manual.
-        problems += [told for told in lint.splitlines() if "longer than 80 bytes" not in told]
+        problems += [problem for problem in lint.splitlines() if "longer than 80 bytes" not in problem]
     print("\n".join(problems) or f"{lines} lines are completed by {', '.join(PROGRAMS[:3])}")
     return 1 if problems else 0
 

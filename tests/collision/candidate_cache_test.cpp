@@ -115,7 +115,7 @@ TEST(CandidateCache, FeaturesWithinReachAtACoveredStartWereWithinTheRadius) {
 
 // If the cloth rests, the Verlet margin is half the detection distance. Without reuse of candidate pairs, or in a fast
 // step, the cache covers only exactly the same start positions.
-TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
+TEST(CandidateCache, TheVerletMarginOfRestingClothIsHalfTheDetectionDistance) {
   const Layers layers(2, kReach);
   std::vector<Vec3> inside = layers.x, outside = layers.x, fast = layers.x;
   inside[3].z() += 0.499 * kReach;
@@ -138,7 +138,7 @@ TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
   EXPECT_FALSE(every_step.covers_start(inside));
 }
 
-TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
+TEST(CandidateCache, CoversEndsWithinTheMarginOfThePredictedEnd) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
   to[4].x() += 3 * kReach;  // fast: the margin is half the detection distance
@@ -174,7 +174,7 @@ TEST(CandidateCache, WithMoreDirectionsThanSixAnEndIsCoveredWithinABall) {
 
 // If the response moves particles away from their end positions, the cache covers any position between the two, and all
 // positions that it covered before.
-TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {
+TEST(CandidateCache, CoversPositionsBetweenStartAndEndOfPushedParticles) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
   for (Vec3& x : to) x.x() += 3 * kReach;

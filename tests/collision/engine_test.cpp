@@ -72,7 +72,7 @@ TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
 
 // Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm. They contain every pair
 // of features that comes near by such motions.
-TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
+TEST(Engine, FindsNearPairsAfterMotionWithinTheVerletMargin) {
   Sheet sheet(3, 0.0044);
   Engine engine = sheet.engine();
   begin_step(engine, sheet.x, sheet.x);
@@ -101,7 +101,7 @@ TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
   EXPECT_EQ(engine.proximities(), 16);
 }
 
-TEST(Engine, WhatWouldMeetIsFoundAtTheEndOfTheWay) {
+TEST(Engine, DetectsCollisionsUpToTheEndOfTheTrajectory) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   begin_step(engine, sheet.x, sheet.x);
@@ -111,7 +111,7 @@ TEST(Engine, WhatWouldMeetIsFoundAtTheEndOfTheWay) {
   EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.1)));
 }
 
-TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
+TEST(Engine, FailingPairsBecomeContactsOnce) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   const std::vector<Vec3> end = sheet.falling(0.06);
@@ -124,7 +124,7 @@ TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
   EXPECT_EQ(engine.add_failing_contacts(sheet.x, end), 0);
 }
 
-TEST(Engine, AGuessThatMeetsTheFloorIsPushedApart) {
+TEST(Engine, APredictedEndBelowTheFloorIsPushedUp) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
@@ -140,7 +140,7 @@ TEST(Engine, AGuessThatMeetsTheFloorIsPushedApart) {
 
 // The sheet falls by 1.4 mm to below the floor, and is pushed up. The ceiling sinks by 1.4 mm, so it is near the sheet
 // only after the push.
-TEST(Engine, WhatAGuessIsPushedToIsFoundNear) {
+TEST(Engine, FindsPairsThatAreNearOnlyAfterThePredictedEndIsPushed) {
   Sheet sheet(3, 0.001, 0.0042);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});
@@ -156,14 +156,14 @@ TEST(Engine, WhatAGuessIsPushedToIsFoundNear) {
 }
 
 // If the predicted end is below the floor, the contacts with it exist before the first solve.
-TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
+TEST(Engine, APredictedEndBelowTheFloorGivesContactsBeforeTheFirstSolve) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   begin_step(engine, sheet.x, sheet.falling(0.06));
   EXPECT_FALSE(engine.response().springs().empty());
 }
 
-TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
+TEST(Engine, PushingApartSeparatesTheTrajectories) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   std::vector<Vec3> end = sheet.falling(0.06);
@@ -203,7 +203,7 @@ TEST(Engine, PairsFailAnewOnlyUntilTheyWerePushedApart) {
 // A step that restarts from an intermediate state uses the contacts of that state: none of those at the start, and one
 // for each pair that was pushed apart. Slip is measured from the start of the step. Other contacts keep corners behind
 // the plane of their pair, without friction.
-TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
+TEST(Engine, ARestartedStepUsesTheContactsOfItsIntermediateState) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   std::vector<Vec3> bend = sheet.falling(0.06);
@@ -278,7 +278,7 @@ TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
 
 // A ceiling comes down tilted, and pinches the cloth on one side. A guess of the next end must not exempt further
 // pairs.
-TEST(Engine, NothingIsExemptedForAGuess) {
+TEST(Engine, APredictedEndExemptsNoPairs) {
   Sheet sheet(6, 0.005, 0.01);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});

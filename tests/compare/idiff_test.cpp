@@ -13,7 +13,7 @@
 namespace weft::compare {
 namespace {
 
-struct Judgement {
+struct IdiffResult {
   bool passed = false;
   std::int64_t pixels_over = 0;
 };
@@ -29,23 +29,23 @@ class Idiff : public support::TestFolder {
 
   // The threshold is half a level above the tolerance, so that floating-point rounding does not matter. idiff warns
   // about any pixel above the threshold (exit code 1), so that it prints the count even if the pictures pass.
-  Judgement ask(int tolerance, double budget) const {
+  IdiffResult run_idiff(int tolerance, double budget) const {
     const std::string command =
         fmt::format("idiff -warn {0:.9f} -warnpercent 0 -fail {0:.9f} -failpercent {1:.9f} '{2}' '{3}' 2>&1",
                     (tolerance + 0.5) / 255, 100 * budget, (folder_ / "a.png").string(), (folder_ / "b.png").string());
-    Judgement judgement;
+    IdiffResult answer;
     std::string text;
     std::FILE* pipe = ::popen(command.c_str(), "r");
     EXPECT_NE(pipe, nullptr);
     for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
     const int code = WEXITSTATUS(::pclose(pipe));
     EXPECT_LE(code, 2) << text;
-    judgement.passed = code < 2;
+    answer.passed = code < 2;
     // idiff prints "  34811 pixels (60.4%) over 0.0177" for warnings and again for failures, if there are any.
     const std::regex line(R"((\d+) pixels \()");
     std::smatch match;
-    for (; std::regex_search(text, match, line); text = match.suffix()) judgement.pixels_over = std::stoll(match[1]);
-    return judgement;
+    for (; std::regex_search(text, match, line); text = match.suffix()) answer.pixels_over = std::stoll(match[1]);
+    return answer;
   }
 
   // Each call of idiff takes about 0.5 CPU s.
@@ -55,9 +55,9 @@ class Idiff : public support::TestFolder {
     for (const int tolerance : tolerances) {
       constexpr double kBudget = 0.0125;
       const FileComparison result = compare_files(folder_ / "a.png", folder_ / "b.png", {tolerance, kBudget, 1});
-      const Judgement judgement = ask(tolerance, kBudget);
-      EXPECT_EQ(judgement.passed, result.good()) << tolerance;
-      EXPECT_EQ(judgement.pixels_over, result.worst.figures.pixels_over) << tolerance;
+      const IdiffResult answer = run_idiff(tolerance, kBudget);
+      EXPECT_EQ(answer.passed, result.good()) << tolerance;
+      EXPECT_EQ(answer.pixels_over, result.worst.figures.pixels_over) << tolerance;
     }
   }
 };

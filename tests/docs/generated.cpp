@@ -196,8 +196,8 @@ std::vector<std::vector<std::string>> printed_table(const fs::path& file) {
 }
 
 // The cells of a row in the named columns.
-std::vector<std::string> chosen(const std::vector<std::string>& row, const std::vector<std::string>& head,
-                                const std::vector<std::string>& columns) {
+std::vector<std::string> select_cells(const std::vector<std::string>& row, const std::vector<std::string>& head,
+                                      const std::vector<std::string>& columns) {
   std::vector<std::string> cells;
   for (const std::string& column : columns) {
     const auto at = std::find(head.begin(), head.end(), column);
@@ -257,7 +257,7 @@ std::string side_by_side(const fs::path& folder, const std::string& arguments) {
   for (std::string file; files >> file; first = false) {
     const auto rows = printed_table(folder / file);
     std::map<std::string, std::vector<std::string>> cells;
-    for (const auto& row : rows) cells[row[0]] = chosen(row, rows[0], columns);
+    for (const auto& row : rows) cells[row[0]] = select_cells(row, rows[0], columns);
     for (std::string& cell : cells[rows[0][0]]) cell = (several ? fs::path(file).stem().string() + ": " : "") + cell;
     if (first) {
       for (const auto& row : rows) lines.push_back({row[0], {}});

@@ -99,7 +99,7 @@ TEST_F(Acting, GrowsFromItsBonesWhileItIsDressedAndThenMoves) {
   for (const double t : {-0.5, -0.3}) EXPECT_LT((at(growing, t)[kLow] - low).norm(), 1e-3) << t;
 }
 
-TEST_F(Acting, LoopsAClipWithItsWay) {
+TEST_F(Acting, LoopsAClipWithItsTravel) {
   file_.loop = true;
   scene_.time.duration = 6;
   const Actor actor = make();
@@ -180,7 +180,7 @@ std::string hand_file() {
   return text.substr(0, wave);
 }
 
-TEST_F(Acting, LeavesHandsWithFingersOutUnlessTheSceneHasItsOwnSay) {
+TEST_F(Acting, ExcludesHandsWithFingersFromContactUnlessTheSceneHasParts) {
   support::write_bytes(folder_ / "rod.x", hand_file());
   const Actor by_itself = make();
   ASSERT_EQ(by_itself.parts.size(), 1u);
@@ -395,7 +395,7 @@ TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   EXPECT_EQ(make().warnings.size(), 1u);
 }
 
-TEST_F(Acting, DoubtsABodyThatMissesTheFloor) {
+TEST_F(Acting, WarnsOfABodyThatMissesTheFloor) {
   scene_.obstacles.emplace_back();
   scene_.obstacles[0].shape = scene::Plane{};
   const auto warning = [&](double height) {

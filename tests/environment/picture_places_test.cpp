@@ -30,12 +30,12 @@ const std::vector<std::string> kShapes = {
     "shape = 'plane'\nsize = [4, 2]\ninfinite = false",
 };
 
-struct Laid {
+struct PlacedPicture {
   mesh::Mesh mesh;
   PicturePlaces places;
 };
 
-Laid lay(const std::string& shape, const std::string& up, const std::optional<Vec2>& tile = {}) {
+PlacedPicture place_picture(const std::string& shape, const std::string& up, const std::optional<Vec2>& tile = {}) {
   const scene::Scene scene = support::scene_of_text("up = '" + up + "'\n[[obstacle]]\nname = 'thing'\n" + shape + "\n");
   assets::LoadedMesh loaded = mesh_of(scene, scene.obstacles[0]);
   PicturePlaces places = picture_places(scene, scene.obstacles[0], loaded, tile);
@@ -46,10 +46,10 @@ Laid lay(const std::string& shape, const std::string& up, const std::optional<Ve
 struct Directions {
   Vec3 u, v, normal;
 };
-std::optional<Directions> directions(const Laid& laid, std::size_t t) {
-  const auto& [a, b, c] = laid.mesh.topology.triangles[t];
-  const auto& x = laid.mesh.positions;
-  const Vec2 p = laid.places[t][1] - laid.places[t][0], q = laid.places[t][2] - laid.places[t][0];
+std::optional<Directions> directions(const PlacedPicture& placed, std::size_t t) {
+  const auto& [a, b, c] = placed.mesh.topology.triangles[t];
+  const auto& x = placed.mesh.positions;
+  const Vec2 p = placed.places[t][1] - placed.places[t][0], q = placed.places[t][2] - placed.places[t][0];
   Eigen::Matrix2d places;
   places << p, q;
   if (std::abs(places.determinant()) < 1e-12) return std::nullopt;
@@ -62,11 +62,11 @@ std::optional<Directions> directions(const Laid& laid, std::size_t t) {
 TEST(PicturePlaces, ShowNoPictureMirroredFromOutside) {
   for (const std::string& shape : kShapes)
     for (const std::string up : {"z", "y"}) {
-      const Laid laid = lay(shape, up);
-      ASSERT_EQ(laid.places.size(), laid.mesh.topology.triangles.size());
+      const PlacedPicture placed = place_picture(shape, up);
+      ASSERT_EQ(placed.places.size(), placed.mesh.topology.triangles.size());
       std::size_t without_area = 0;
-      for (std::size_t t = 0; t < laid.places.size(); ++t) {
-        const auto to = directions(laid, t);
+      for (std::size_t t = 0; t < placed.places.size(); ++t) {
+        const auto to = directions(placed, t);
         if (!to) {
           ++without_area;
           continue;
@@ -82,9 +82,9 @@ TEST(PicturePlaces, AreUprightAtTheFront) {
     for (const std::string up : {"z", "y"}) {
       const Vec3 up_axis = up == "z" ? Vec3(0, 0, 1) : Vec3(0, 1, 0),
                  front = up == "z" ? Vec3(0, -1, 0) : Vec3(0, 0, 1);
-      const Laid laid = lay(shape, up);
-      for (std::size_t t = 0; t < laid.places.size(); ++t) {
-        const auto to = directions(laid, t);
+      const PlacedPicture placed = place_picture(shape, up);
+      for (std::size_t t = 0; t < placed.places.size(); ++t) {
+        const auto to = directions(placed, t);
         if (!to || to->normal.dot(front) < 0.98 || shape.find("half_pipe") != std::string::npos) continue;
         EXPECT_GT(to->u.normalized().x(), 0.95) << shape << " " << up;
         EXPECT_GT(to->v.normalized().dot(up_axis), 0.9) << shape << " " << up;
@@ -94,9 +94,9 @@ TEST(PicturePlaces, AreUprightAtTheFront) {
 
 TEST(PicturePlaces, GoOnceAroundAndAreNowhereTornInATriangle) {
   for (const std::string& shape : kShapes) {
-    const Laid laid = lay(shape, "z");
+    const PlacedPicture placed = place_picture(shape, "z");
     Vec2 low(1, 1), high(0, 0);
-    for (const auto& corners : laid.places) {
+    for (const auto& corners : placed.places) {
       for (std::size_t k = 0; k < 3; ++k) {
         low = low.cwiseMin(corners[k]);
         high = high.cwiseMax(corners[k]);
@@ -117,18 +117,18 @@ TEST(PicturePlaces, GoOnceAroundAndAreNowhereTornInATriangle) {
 TEST(PicturePlaces, WithAWidthAreMeasuredInMetres) {
   const Vec2 tile(0.5, 0.25);
   for (const std::string& shape : {kShapes[1], kShapes[7]}) {
-    const Laid laid = lay(shape, "z", tile);
-    for (std::size_t t = 0; t < laid.places.size(); ++t) {
-      const auto to = directions(laid, t);
+    const PlacedPicture placed = place_picture(shape, "z", tile);
+    for (std::size_t t = 0; t < placed.places.size(); ++t) {
+      const auto to = directions(placed, t);
       ASSERT_TRUE(to);
       EXPECT_NEAR(to->u.norm(), tile.x(), 1e-12);
       EXPECT_NEAR(to->v.norm(), tile.y(), 1e-12);
     }
   }
   // Six tiles of 0.5 m fit best around a cylinder of 3.14 m circumference, so each is widened to 0.524 m.
-  const Laid laid = lay(kShapes[5] + "\nsegments = 200", "z", tile);
-  for (std::size_t t = 0; t < laid.places.size(); ++t) {
-    const auto to = directions(laid, t);
+  const PlacedPicture placed = place_picture(kShapes[5] + "\nsegments = 200", "z", tile);
+  for (std::size_t t = 0; t < placed.places.size(); ++t) {
+    const auto to = directions(placed, t);
     ASSERT_TRUE(to);
     if (std::abs(to->normal.z()) > 0.5) continue;
     EXPECT_NEAR(to->u.norm(), kPi / 6, 1e-3);
@@ -141,11 +141,11 @@ TEST(PicturePlaces, OfAFileAreItsUVs) {
       std::filesystem::path(testing::TempDir()) / ("weft_places_" + std::to_string(::getpid()) + ".obj");
   const std::string shape = "shape = 'mesh'\nfile = '" + file.string() + "'";
   std::ofstream(file) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n";
-  EXPECT_EQ(lay(shape, "z").places.at(0), (std::array<Vec2, 3>{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}));
+  EXPECT_EQ(place_picture(shape, "z").places.at(0), (std::array<Vec2, 3>{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}));
   // One unit of the texture coordinates of this file is 2 m long.
-  EXPECT_LT((lay(shape, "z", Vec2(0.5, 1)).places.at(0)[2] - Vec2(4, 2)).norm(), 1e-12);
+  EXPECT_LT((place_picture(shape, "z", Vec2(0.5, 1)).places.at(0)[2] - Vec2(4, 2)).norm(), 1e-12);
   std::ofstream(file) << "v 0 0 0\nv 2 0 0\nv 2 2 0\nf 1 2 3\n";
-  EXPECT_THROW(lay(shape, "z"), Error);
+  EXPECT_THROW(place_picture(shape, "z"), Error);
   std::filesystem::remove(file);
 }
 

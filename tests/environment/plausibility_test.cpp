@@ -8,7 +8,7 @@
 namespace weft::environment {
 namespace {
 
-TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
+TEST(Plausibility, WarnsOfABodyWhoseBonesHoldNoSkin) {
   // Hips with five child bones that the clip rotates; but the mesh is bound only to the hips.
   character::Character body;
   body.nodes.push_back({"hips", -1, character::Affine::Identity()});
@@ -32,20 +32,20 @@ TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
 
 // A jumping body is in the air most of the time; a rolling body is below the floor part of the time. Neither is a
 // reason to warn.
-TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
-  const auto doubts = [](std::vector<double> lowest, bool alone = true) {
+TEST(Plausibility, WarnsOfABodyBelowTheFloorHalfOfTheTimeOrAlwaysAboveIt) {
+  const auto warning_of = [](std::vector<double> lowest, bool alone = true) {
     return warn_of_floor_distance(std::move(lowest), alone).value_or("");
   };
-  EXPECT_EQ(doubts({}), "");
-  EXPECT_EQ(doubts({-0.3, 0, 0.6, -0.3, 0.6}), "") << "two of five below";
-  EXPECT_EQ(doubts({-0.3, 0, -0.2, -0.4, 0.6}),
+  EXPECT_EQ(warning_of({}), "");
+  EXPECT_EQ(warning_of({-0.3, 0, 0.6, -0.3, 0.6}), "") << "two of five below";
+  EXPECT_EQ(warning_of({-0.3, 0, -0.2, -0.4, 0.6}),
             "its lowest point is 0.2 m below the floor in half of its motion or more; position puts it higher");
-  EXPECT_EQ(doubts({0.6, 0.04, 0.6}), "") << "on it once";
-  EXPECT_EQ(doubts({0.6, 0.06, 0.6}), "it comes no nearer to the floor than 0.06 m; position puts it lower");
-  EXPECT_EQ(doubts({0.6, 0.06, 0.6}, false), "") << "it may stand on something else";
+  EXPECT_EQ(warning_of({0.6, 0.04, 0.6}), "") << "on it once";
+  EXPECT_EQ(warning_of({0.6, 0.06, 0.6}), "it comes no nearer to the floor than 0.06 m; position puts it lower");
+  EXPECT_EQ(warning_of({0.6, 0.06, 0.6}, false), "") << "it may stand on something else";
   // Depths up to 5 cm cause no warning.
-  EXPECT_EQ(doubts({-0.049}), "");
-  EXPECT_NE(doubts({-0.051}), "");
+  EXPECT_EQ(warning_of({-0.049}), "");
+  EXPECT_NE(warning_of({-0.051}), "");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ def vertices(ply):
     return list(vertex.iter_unpack(content[end:end + vertex.size * count]))
 
 
-def laid(uv):
+def picture_uv(uv):
     """Texture coordinates in the square picture as the keys define them: turned counter-clockwise about its corner."""
     angle = math.radians(ROTATION)
     x, y = uv[0] - 0.1, uv[1] - 0.05
@@ -89,7 +89,7 @@ def read_others(folder, turned):
         import numpy
         numpy.bool = bool  # Debian's importer uses a removed alias
         read["glTF"] = (lambda: bpy.ops.import_scene.gltf(filepath=os.path.join(folder, "g/s.glb")), turned,
-                        {"UVMap": metres["UVMap"], "UVMap.001": laid})
+                        {"UVMap": metres["UVMap"], "UVMap.001": picture_uv})
     except ImportError:
         print("glTF is left out: apt-get install python3-numpy")
     for name, (load, axes, layers) in read.items():
@@ -128,7 +128,7 @@ def measure(folder, up):
             for vertex, place in zip(mesh.vertices, expected):
                 worst = max(worst, (shown.matrix_world @ vertex.co - turned(place[:3])).length)
             if name == "cloth":
-                worst = max(worst, farthest(mesh, shown.matrix_world, expected, turned, {"picture": laid}))
+                worst = max(worst, farthest(mesh, shown.matrix_world, expected, turned, {"picture": picture_uv}))
     camera = scene.camera.matrix_world
     worst = max(worst, (camera.translation - turned((0.5, -4, 1.5))).length)
     aim = (turned((0, 0, 0.25)) - camera.translation).normalized()

@@ -242,7 +242,7 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
   EXPECT_EQ(backs.size(), 1u);  // the back of the other part equals its front
   EXPECT_NEAR(backs["red-dress"][1].get<double>(), std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-9);
   EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
-  EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_share), 1e-12);
+  EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_fraction), 1e-12);
   for (const char* file : {"red-dress.obj", "red-dress.pc2", "hidden.pc2"})
     EXPECT_TRUE(std::filesystem::exists(request_.folder / file)) << file;
 }

@@ -94,8 +94,8 @@ class Slurm:
         self.start(node, *self.before, "slurmd", "-D", "-c", "-N", node, "-f", self.configuration)
 
     def idle(self):
-        told = subprocess.run(["sinfo", "-h", "-N", "-o", "%N %T"], capture_output=True, text=True, check=False).stdout
-        return sum(line.split()[1] in ("idle", "mixed", "allocated") for line in told.splitlines())
+        nodes = subprocess.run(["sinfo", "-h", "-N", "-o", "%N %T"], capture_output=True, text=True, check=False).stdout
+        return sum(line.split()[1] in ("idle", "mixed", "allocated") for line in nodes.splitlines())
 
     @staticmethod
     def wait(condition, what, seconds=60):

@@ -24,7 +24,7 @@ TEST_P(Corpus, IsReadOrRefusedFileByFile) {
   EXPECT_GT(files, 0);
 }
 
-TEST_P(Corpus, ReaderTakesNothingAtAll) {
+TEST_P(Corpus, ReaderAcceptsEmptyInput) {
   EXPECT_NO_THROW(GetParam().read({}));
 }
 

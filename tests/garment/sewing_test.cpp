@@ -82,10 +82,10 @@ TEST(Garments, StartWithoutIntersectionsWithFrontsOutside) {
   for (const char* name : {"dress", "tshirt", "skirt"})
     for (double spacing : {0.04, 0.025, 0.0128}) {
       const Garment garment = sewn(name, spacing);
-      const support::JudgedObject object{name, true, garment.sheet.rest, garment.sheet.triangles};
-      const support::Judgement judgement = support::judge(std::span(&object, 1));
-      EXPECT_TRUE(judgement.pairs.empty()) << name << " at " << spacing << ": " << judgement.pairs.size();
-      EXPECT_TRUE(judgement.degenerate.empty()) << name;
+      const support::TestedObject object{name, true, garment.sheet.rest, garment.sheet.triangles};
+      const support::Intersections intersections = support::find_intersections(std::span(&object, 1));
+      EXPECT_TRUE(intersections.pairs.empty()) << name << " at " << spacing << ": " << intersections.pairs.size();
+      EXPECT_TRUE(intersections.degenerate.empty()) << name;
       // Each triangle faces away from the plane y = 0, which separates front from back.
       std::size_t outside = 0;
       for (const mesh::Triangle& t : garment.sheet.triangles) {
@@ -200,8 +200,8 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     }
     EXPECT_NEAR(area, 2 * 0.5 * 0.4, 1e-12) << spacing;
     EXPECT_GT(min_area, 0.02 * spacing * spacing) << "no needles, at " << spacing;
-    const support::JudgedObject object{"pillow", true, pillow.sheet.rest, pillow.sheet.triangles};
-    EXPECT_EQ(support::judge(std::span(&object, 1)).pairs.size(), 0U) << spacing;
+    const support::TestedObject object{"pillow", true, pillow.sheet.rest, pillow.sheet.triangles};
+    EXPECT_EQ(support::find_intersections(std::span(&object, 1)).pairs.size(), 0U) << spacing;
     const Garment open = sew_text(panels + three, spacing);
     EXPECT_EQ(openings(open.sheet), 1U) << spacing;
     EXPECT_EQ(euler_characteristic(open.sheet), 1) << "a disk, at " << spacing;

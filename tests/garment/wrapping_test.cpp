@@ -191,9 +191,9 @@ TEST_F(Wrapping, SlitsStartOpen) {
   for (const std::string edge : {"side", "right"})
     text += "[[seam]]\na = 'front." + edge + "'\nb = 'back." + edge + "'\n";
   const Garment garment = sew_text(text);
-  const std::array<support::JudgedObject, 1> object{
-      support::JudgedObject{.name = "skirt", .positions = garment.sheet.rest, .triangles = garment.sheet.triangles}};
-  EXPECT_TRUE(support::judge(object).pairs.empty());
+  const std::array<support::TestedObject, 1> object{
+      support::TestedObject{.name = "skirt", .positions = garment.sheet.rest, .triangles = garment.sheet.triangles}};
+  EXPECT_TRUE(support::find_intersections(object).pairs.empty());
 }
 
 TEST_F(Wrapping, MirrorImagesHaveTheOtherSide) {
@@ -324,12 +324,12 @@ TEST(ShippedPatterns, StartOnTheMannequinWithoutIntersections) {
     const auto loaded = scene::load(file, {"time.preroll=0", "time.duration=0"});
     ASSERT_TRUE(loaded.ok()) << loaded.describe();
     const environment::Environment environment(loaded.scene);
-    std::vector<support::JudgedObject> objects;
+    std::vector<support::TestedObject> objects;
     const model::Cloth& cloth = environment.model.cloths[0];
     const mesh::Mesh& body = environment.model.bodies.back().mesh;
     objects.push_back({"cloth", true, cloth.start, cloth.sheet.triangles});
     objects.push_back({"body", false, body.positions, body.topology.triangles});
-    EXPECT_TRUE(support::judge(objects).pairs.empty()) << name;
+    EXPECT_TRUE(support::find_intersections(objects).pairs.empty()) << name;
   }
 }
 

@@ -53,18 +53,18 @@ TEST(Sliding, FrictionOfABlockAtRestIsRight) {
   EXPECT_EQ(friction_error({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);
 }
 
-TEST(Sliding, MomentumThatIsMissingAlongFrictionAtItsLimitCounts) {
+TEST(Sliding, CountsTheResidualAlongFrictionAtItsLimit) {
   EXPECT_NEAR(friction_error({{0, 0, 10}, {-3, 0, 0}, 3}, {1, 0, 0}), 1, 1e-12);        // friction is too large
   EXPECT_NEAR(friction_error({{0, 0, 10}, {-2.9, 0, 0}, 3}, {0.1, 0, 0}), 0.1, 1e-12);  // the block should slide
   EXPECT_NEAR(friction_error({{0, 0, 10}, {-3, 0, 0}, 3}, {0, 5, 0}), 0, 1e-12);        // residual across the slip
 }
 
-TEST(Sliding, FrictionByALoadThatIsMissingItselfCounts) {
+TEST(Sliding, CountsFrictionDueToANormalForceInTheResidual) {
   // The floor pushes with 20 N, but the motion needs 10 N, so the friction limit is 3 N.
   EXPECT_NEAR(friction_error({{0, 0, 20}, {-4.4, 0, 0}, 6}, {0, 0, 10}), 1.4, 1e-12);
 }
 
-TEST(Sliding, AWallThatIsSlidAlongHoldsNothing) {
+TEST(Sliding, AWallAllowsSlidingButAPinHoldsItsBlock) {
   Mat3 along = Mat3::Identity();
   along(2, 2) = 0;
   const std::vector<solver::ParticleConstraint> wall{{1, along}}, pin{{1, Mat3::Zero()}};

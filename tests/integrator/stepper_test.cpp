@@ -91,7 +91,7 @@ TEST(Stepper, StepIsRememberedOnlyWhenAccepted) {
   }
 }
 
-TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
+TEST(Stepper, LeavesAFractionOfTheLocalErrorAndReportsIt) {
   // One free particle; a solve to rounding gives the exact end of the step.
   testing::HardeningSpring spring;
   const double h = 0.5;
@@ -111,7 +111,7 @@ TEST(Stepper, LeavesAShareOfItsOwnErrorAndSaysHowMuch) {
   }
 }
 
-TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
+TEST(Stepper, AllowsInvisibleResidualsUnlessAToleranceIsGiven) {
   // The particle is 1e-6 m from rest: this motion is below the visibility threshold.
   testing::HardeningSpring spring;
   const State now{{Vec3(1e-6, 0, 0)}, {Vec3::Zero()}};
@@ -133,7 +133,7 @@ class Sluggish final : public Spring {
 
 // After twenty iterations, a velocity is allowed that is not visible. Beside a tolerance of positions, the bound
 // follows from that tolerance, and like the other bounds it is multiplied by that of Newton's method.
-TEST(Stepper, LeavesOfASlowSolveBesideAToleranceOnlyItsShare) {
+TEST(Stepper, BoundsTheErrorOfASlowSolveByTheGivenTolerance) {
   Sluggish system;
   const State now{{Vec3::Zero()}, {Vec3::Zero()}};
   State next;
@@ -198,7 +198,7 @@ TEST(Stepper, SaysWhyAStepIsNotSolved) {
   EXPECT_EQ(verdict_of(Spring(40), 1, one), Verdict::solved);  // linear: one iteration is enough
 }
 
-TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
+TEST(Stepper, ReturnsUnfinishedAfterTheGivenIterationsAndContinuesFromThere) {
   testing::HardeningSpring spring;
   const State now{{{2, 0, 0}}, {{0, 3, 0}}};
   for (Method method : {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2}) {

@@ -30,7 +30,7 @@ std::string pattern(const std::string& name) {
 }
 
 std::size_t crossing_pairs(const frame::FrameSnapshot& snapshot) {
-  return support::judge(support::objects_of(snapshot)).pairs.size();
+  return support::find_intersections(support::objects_of(snapshot)).pairs.size();
 }
 
 /// Notes that `action` causes.

@@ -9,7 +9,7 @@
 namespace weft::render {
 namespace {
 
-TEST(SharedLibraries, ThatAreMissingAreNoFaultOfOurs) {
+TEST(SharedLibraries, ThatAreMissingAreAUsageError) {
   try {
     const SharedLibrary library("libweft_nowhere.so.1");
     FAIL() << "it was opened";

@@ -22,7 +22,7 @@ class Pictures : public MadeRuns {
     return run;
   }
 
-  static std::vector<long long> numbers(const Survey& found) {
+  static std::vector<long long> numbers(const PictureSummary& found) {
     std::vector<long long> all;
     for (const Tile& tile : found.tiles) all.push_back(tile.picture);
     return all;
@@ -34,7 +34,7 @@ TEST_F(Pictures, TilesAreEvenlySpacedAndFromEightToFifteenOfMany) {
   for (int count = 1; count <= 70; ++count) {
     RunFiles first = all;
     first.pictures.resize(static_cast<std::size_t>(count));
-    const std::vector<long long> tiles = numbers(survey(first));
+    const std::vector<long long> tiles = numbers(read_pictures(first));
     const std::size_t most = std::min<std::size_t>(static_cast<std::size_t>(count), 15);
     EXPECT_LE(tiles.size(), most);
     EXPECT_GE(tiles.size(), std::min<std::size_t>(most, 8)) << count;
@@ -49,7 +49,7 @@ TEST_F(Pictures, OfAVideoAreThoseThatWereEncoded) {
   write_video("a.mp4", 20);
   RunFiles run;
   run.video = folder_ / "a.mp4";
-  const Survey found = survey(run);
+  const PictureSummary found = read_pictures(run);
   EXPECT_EQ(found.count, 20);
   EXPECT_EQ(found.fps, 50);
   EXPECT_EQ(found.width, 64);
@@ -67,11 +67,11 @@ TEST_F(Pictures, OfAVideoAreThoseThatWereEncoded) {
 TEST_F(Pictures, BrokenFilesAreErrors) {
   RunFiles run = stills("s", 3);
   support::write_bytes(run.pictures[2], "no picture");
-  support::expect_error(ExitCode::asset_unreadable, "s_002.png", [&] { survey(run); });
+  support::expect_error(ExitCode::asset_unreadable, "s_002.png", [&] { read_pictures(run); });
   RunFiles video;
   video.video = folder_ / "a.mp4";
   write("a.mp4", "no video");
-  support::expect_error(ExitCode::asset_unreadable, "a.mp4", [&] { survey(video); });
+  support::expect_error(ExitCode::asset_unreadable, "a.mp4", [&] { read_pictures(video); });
 }
 
 TEST(SameMoment, IsTheNearestPictureOfTheOther) {

@@ -24,7 +24,7 @@ bool has_type(const json& value, const std::string& type) {
   throw std::logic_error("unknown type " + type);
 }
 
-class Judge {
+class SchemaChecker {
  public:
   std::string violation(const json& schema, const json& value, const std::string& path) {
     if (schema == true) return {};
@@ -103,7 +103,7 @@ json json_of_toml(const std::string& text) {
 }
 
 std::string schema_violation(const json& schema, const json& value) {
-  return Judge().violation(schema, value, "");
+  return SchemaChecker().violation(schema, value, "");
 }
 
 }  // namespace weft::scene

@@ -420,10 +420,10 @@ TEST(Mistakes, AreClearedAlsoThoseThatAreOnlyCounted) {
 TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {
   std::string key = "a";
   for (int i = 0; i < 1'000'000; ++i) key += ".a";
-  const std::string told =
+  const std::string expected =
       "s.toml:1:1: not TOML: expected at most 128 levels of lists, tables and dotted keys, got more\n";
-  EXPECT_EQ(load_text(key + " = 1\n", "s.toml").describe(), told);
-  EXPECT_EQ(load_text("time = {" + key + " = 1}\n", "s.toml").describe(), told);
+  EXPECT_EQ(load_text(key + " = 1\n", "s.toml").describe(), expected);
+  EXPECT_EQ(load_text("time = {" + key + " = 1}\n", "s.toml").describe(), expected);
   EXPECT_NE(load_text(kFloor, "s.toml", {"time={" + key + "=1}"}).describe(), "");
 }
 
@@ -437,18 +437,18 @@ TEST(Mistakes, OfANameThatCannotNameOutputsAreSaidBeforeAnythingElse) {
 }
 
 TEST(Mistakes, OfKeysThatAreTooNearAndOfPairsThatNeverMeetAreSaid) {
-  const auto told = [](const std::string& text) { return load_text(text, "s.toml").describe(); };
+  const auto mistakes_of = [](const std::string& text) { return load_text(text, "s.toml").describe(); };
   const std::string ball = "\n[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\n";
   const auto keys = [&](const char* time) {
-    return told(ball + "keys = [{time = 0, position = [0,0,0]}, {time = " + time + ", position = [0,0,1]}]\n");
+    return mistakes_of(ball + "keys = [{time = 0, position = [0,0,0]}, {time = " + time + ", position = [0,0,1]}]\n");
   };
   EXPECT_EQ(keys("1e-6"), "");
   EXPECT_NE(keys("1e-300").find("expected at least 1e-07 s after the key before, at 0 s, got 1e-300"),
             std::string::npos)
       << keys("1e-300");
   const auto pair = [&](const char* a, const char* b) {
-    return told(ball + "[[cloth]]\nname = \"c\"\n[[contact.pair]]\nfirst = \"" + a + "\"\nsecond = \"" + b +
-                "\"\nfriction = 0.1\n");
+    return mistakes_of(ball + "[[cloth]]\nname = \"c\"\n[[contact.pair]]\nfirst = \"" + a + "\"\nsecond = \"" + b +
+                       "\"\nfriction = 0.1\n");
   };
   EXPECT_EQ(pair("c", "ball"), "");
   EXPECT_EQ(pair("c", "c"), "");

@@ -96,7 +96,7 @@ TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
 // The garment has no weight during sewing, and falls freely afterwards.
 TEST_F(Garments, NothingFallsBeforeItIsSewn) {
   const scene::Scene scene = dressed("[time]\nduration = 1\n[physics]\nair_density = 0\n");
-  const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
+  const auto frames = support::run_scene(scene, {.counts_intersections = false, .keep_positions = true});
   const auto height = [&](std::size_t frame) {
     double sum = 0;
     for (const Vec3& x : frames[frame].cloths[0]) sum += x.z();

@@ -81,7 +81,7 @@ TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
     ASSERT_TRUE(simulation.run_preroll());
     for (int frame = 0; frame < 4; ++frame) {
       const frame::SnapshotPtr now = simulation.snapshot();
-      EXPECT_EQ(support::judge(support::objects_of(*now)).pairs.size(), 0U) << time << "frame " << frame;
+      EXPECT_EQ(support::find_intersections(support::objects_of(*now)).pairs.size(), 0U) << time << "frame " << frame;
       for (const auto& [inner, outer] : {std::pair{1, 2}, std::pair{2, 0}, std::pair{1, 0}}) {
         int inside = 0;
         for (const Vec3& p : now->states[outer].positions)
@@ -216,7 +216,7 @@ TEST_F(Layers, ThatCannotBePutOnLeaveWhatIsWornAsItWas) {
 }
 
 TEST_F(Layers, SavedInThePrerollGoOnAsIfNothingHadBeen) {
-  const testing::Continued run = testing::continue_runs(dressed("preroll = 0.36\n"), {10, {2, 3, 6}});
+  const testing::ContinuationResult run = testing::continue_runs(dressed("preroll = 0.36\n"), {10, {2, 3, 6}});
   EXPECT_EQ(run.difference, "");
 }
 

@@ -114,7 +114,7 @@ TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
 // The free part of the cloth follows the body.
 TEST_F(PinsOnACharacter, CarryCloth) {
   const scene::Scene scene = scene_of(kRigid, "[contact]\nobstacles = false\n");
-  const std::vector<Vec3> last = support::run_scene(scene, {.judged = false}).back().cloths[0];
+  const std::vector<Vec3> last = support::run_scene(scene, {.counts_intersections = false}).back().cloths[0];
   const Pinned pinned(scene);
   for (const auto& held : pinned.at(scene.time.duration)) {
     EXPECT_EQ(last[held.constraint.particle], held.x_end);

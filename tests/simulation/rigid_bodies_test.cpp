@@ -377,7 +377,8 @@ TEST(RigidBodies, DoNotThrowUpTheClothOnWhichTheyFall) {
       "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nsegments = 32\nradius = 0.1\nmass = 1\n"
       "position = [0, 0, 0.32]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
   double highest = 0;
-  for (const support::MeasuredFrame& frame : support::run_scene(scene, {.judged = false, .keep_positions = true})) {
+  for (const support::MeasuredFrame& frame :
+       support::run_scene(scene, {.counts_intersections = false, .keep_positions = true})) {
     if (frame.report.frame < 5) continue;  // the sheet lies on the floor by then
     for (const Vec3& x : frame.cloths.at(0)) highest = std::max(highest, x.z());
   }
@@ -454,7 +455,7 @@ TEST(RigidBodies, ThatDoNotCollideFallThroughClothAndFloors) {
   }
 }
 
-TEST(RigidBodies, ArePlannedAndDoubtedWithEulersMethod) {
+TEST(RigidBodies, AreInThePlanAndCauseAWarningWithEulersMethod) {
   const std::string ball = "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nmass = 1\n";
   const auto counts = [](const scene::Scene& scene) {
     return std::ranges::count_if(production::plan(scene), [](const production::PlanItem& item) {

@@ -33,7 +33,7 @@ TEST(RopeRuns, HaveTheSameBitsOnAnyNumberOfThreads) {
   std::vector<std::vector<Vec3>> ends;
   for (const int threads : {1, 2}) {
     set_thread_count(threads);
-    const auto last = support::run_scene(scene, {.judged = false}).back().cloths;
+    const auto last = support::run_scene(scene, {.counts_intersections = false}).back().cloths;
     std::vector<Vec3>& all = ends.emplace_back();
     for (const std::vector<Vec3>& cloth : last) all.insert(all.end(), cloth.begin(), cloth.end());
   }
@@ -58,7 +58,7 @@ TEST(RopeRuns, AreDrawnInToTheLengthOfTheirKeys) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 1.2\n[[rope]]\nname = \"line\"\nfrom = [0, 0, 0]\nto = [1, 0, 0]\ndiameter = 0.006\n"
       "pin = [{ at = 0 }]\nkeys = [{ time = 0.2, length = 1 }, { time = 1, length = 0.7 }]\n");
-  const std::vector<Vec3> x = support::run_scene(scene, {.judged = false}).back().cloths.at(0);
+  const std::vector<Vec3> x = support::run_scene(scene, {.counts_intersections = false}).back().cloths.at(0);
   double length = 0;
   for (std::size_t i = 1; i < x.size(); ++i) length += (x[i] - x[i - 1]).norm();
   EXPECT_NEAR(length, 0.7, 1e-3);  // tolerance: more than the stretch of cotton by the rope's own weight

@@ -14,7 +14,7 @@ namespace weft::simulation::testing {
 namespace {
 
 /// All observable results of a frame.
-struct Seen {
+struct FrameResults {
   std::vector<Vec3> positions, velocities;
   frame::SnapshotPtr snapshot;
   FrameReport report, initial;
@@ -41,31 +41,31 @@ bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) 
 }
 
 // Compares two frames. Returns the name of the first part that differs, or an empty string.
-std::string compare(const Seen& expected, const Seen& came) {
-  if (!same_bits<Vec3>(expected.positions, came.positions)) return "positions";
-  if (!same_bits<Vec3>(expected.velocities, came.velocities)) return "velocities";
-  if (!same_picture(*expected.snapshot, *came.snapshot)) return "what is shown";
-  if (figures(expected.report) != figures(came.report))
-    return fmt::format("report\n  {}\nin place of\n  {}", figures(came.report), figures(expected.report));
-  if (figures(expected.initial) != figures(came.initial)) return "initial report";
+std::string compare(const FrameResults& expected, const FrameResults& actual) {
+  if (!same_bits<Vec3>(expected.positions, actual.positions)) return "positions";
+  if (!same_bits<Vec3>(expected.velocities, actual.velocities)) return "velocities";
+  if (!same_picture(*expected.snapshot, *actual.snapshot)) return "what is shown";
+  if (figures(expected.report) != figures(actual.report))
+    return fmt::format("report\n  {}\nin place of\n  {}", figures(actual.report), figures(expected.report));
+  if (figures(expected.initial) != figures(actual.initial)) return "initial report";
   return "";
 }
 
 // Advances to the next frame, which may belong to the preroll.
-Seen next_frame(production::SceneSimulation& simulation) {
-  Seen seen;
+FrameResults next_frame(production::SceneSimulation& simulation) {
+  FrameResults results;
   if (simulation.snapshot()->frame < 0) {
     int asked = 0;
     simulation.run_preroll([&] { return asked++ == 0; });
   } else {
-    seen.report = simulation.advance();
+    results.report = simulation.advance();
   }
   const ParticleState state = simulation.state();
-  seen.positions.assign(state.positions.begin(), state.positions.end());
-  seen.velocities.assign(state.velocities.begin(), state.velocities.end());
-  seen.snapshot = simulation.snapshot();
-  seen.initial = simulation.initial_report();
-  return seen;
+  results.positions.assign(state.positions.begin(), state.positions.end());
+  results.velocities.assign(state.velocities.begin(), state.velocities.end());
+  results.snapshot = simulation.snapshot();
+  results.initial = simulation.initial_report();
+  return results;
 }
 
 std::string saved(const production::SceneSimulation& simulation) {
@@ -76,7 +76,8 @@ std::string saved(const production::SceneSimulation& simulation) {
 
 // Continues to the end from `state`, saved after frame k. Compares with `run`; returns the difference, or an empty
 // string.
-std::string go_on(const scene::Scene& scene, const std::string& state, int k, const std::vector<Seen>& run) {
+std::string continue_from_state(const scene::Scene& scene, const std::string& state, int k,
+                                const std::vector<FrameResults>& run) {
   production::SceneSimulation simulation(scene);
   simulation.restore(state);
   if (saved(simulation) != state) return fmt::format("the state after frame {}, restored, is saved as another one", k);
@@ -90,9 +91,9 @@ std::string go_on(const scene::Scene& scene, const std::string& state, int k, co
 
 }  // namespace
 
-Continued continue_runs(const scene::Scene& scene, const Interruptions& interruptions) {
-  Continued result;
-  std::vector<Seen> run;
+ContinuationResult continue_runs(const scene::Scene& scene, const Interruptions& interruptions) {
+  ContinuationResult result;
+  std::vector<FrameResults> run;
   production::SceneSimulation plain(scene), saving(scene);
   std::vector<std::string> states{saved(saving)};
   for (int k = 1; k <= interruptions.frames; ++k) {
@@ -112,7 +113,7 @@ Continued continue_runs(const scene::Scene& scene, const Interruptions& interrup
   const int threads = thread_count();
   if (interruptions.threads_after > 0) set_thread_count(interruptions.threads_after);
   for (int k : interruptions.saved_at)
-    if (result.difference.empty()) result.difference = go_on(scene, states[k], k, run);
+    if (result.difference.empty()) result.difference = continue_from_state(scene, states[k], k, run);
   set_thread_count(threads);
   return result;
 }

@@ -15,7 +15,7 @@ struct Interruptions {
 };
 
 /// Results of the comparison. The counts are those of the uninterrupted run: a test can check that its case occurs.
-struct Continued {
+struct ContinuationResult {
   std::string difference;  ///< the first difference, with its frames; empty if there is none
   int rejected_steps = 0, inexact_steps = 0, pinched_pairs = 0;
   int most_proximities = 0;
@@ -25,6 +25,6 @@ struct Continued {
 /// Runs the scene, runs it again while saving, and continues from each saved state in a new simulation to the end.
 /// Compares positions, velocities, contents of frames, and reports except for their times, bit by bit. Saving a
 /// restored state must give the same bytes.
-Continued continue_runs(const scene::Scene& scene, const Interruptions& interruptions);
+ContinuationResult continue_runs(const scene::Scene& scene, const Interruptions& interruptions);
 
 }  // namespace weft::simulation::testing

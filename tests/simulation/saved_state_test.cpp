@@ -16,8 +16,8 @@
 namespace weft::simulation {
 namespace {
 
+using testing::ContinuationResult;
 using testing::continue_runs;
-using testing::Continued;
 
 // A sheet falls on a ball, folds down its sides, and touches itself and the floor.
 constexpr const char* kDrape = R"(
@@ -207,7 +207,7 @@ std::ostream& operator<<(std::ostream& out, const Kind& kind) {
 
 class SavedState : public ::testing::TestWithParam<Kind> {};
 
-TEST_P(SavedState, GoesOnAsIfNothingHadBeen) {
+TEST_P(SavedState, ContinuesWithTheSameBits) {
   const scene::Scene scene = support::scene_of_text(GetParam().scene, GetParam().overrides);
   EXPECT_EQ(continue_runs(scene, GetParam().interruptions).difference, "");
 }
@@ -241,8 +241,8 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"preroll", kDrape, {"time.preroll=0.4"}, {14, {4, 9, 10, 12}}}),
     [](const auto& kind) { return std::string(kind.param.name); });
 
-TEST(SavedStates, OfPinchedClothKnowWhereItCameFromAndWhatWasSaid) {
-  const Continued pinched = continue_runs(support::scene_of_text(kThinJaws), {14, {4, 6, 8, 11}});
+TEST(SavedStates, OfPinchedClothKeepOriginsAndWarnings) {
+  const ContinuationResult pinched = continue_runs(support::scene_of_text(kThinJaws), {14, {4, 6, 8, 11}});
   EXPECT_EQ(pinched.difference, "");
   EXPECT_GT(pinched.pinched_pairs, 0);
 }
@@ -267,15 +267,15 @@ position = [0, 0.35, 0.6]
 )";
 
 TEST(SavedStates, OfAPinThatLagsKnowThatItDoes) {
-  const Continued lagging = continue_runs(support::scene_of_text(kLaggingPin), {16, {3, 5, 9, 14}});
+  const ContinuationResult lagging = continue_runs(support::scene_of_text(kLaggingPin), {16, {3, 5, 9, 14}});
   EXPECT_EQ(lagging.difference, "");
 }
 
-TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
+TEST(SavedStates, OfAPrerollKeepItsWarnings) {
   scene::Scene scene = support::scene_of_text(kThinJaws, {"time.preroll=0.6"});
   for (scene::Obstacle& jaw : scene.obstacles)
     for (scene::PoseKey& key : jaw.motion.keys) key.time -= 0.6;
-  const Continued pinched = continue_runs(scene, {16, {4, 8, 14, 15}});
+  const ContinuationResult pinched = continue_runs(scene, {16, {4, 8, 14, 15}});
   EXPECT_EQ(pinched.difference, "");
   production::SceneSimulation simulation(scene);
   simulation.run_preroll();
@@ -285,12 +285,12 @@ TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
 TEST(SavedStates, AfterRejectedAndInexactStepsGoOnTheSameWay) {
   scene::Scene scene = support::scene_of_text(
       kDrape, {"time.integrator=bdf2", "solver.newton_iterations=9", "solver.newton_tolerance=0.01"});
-  const Continued rejected = continue_runs(scene, {12, {5, 6, 8, 9}});
+  const ContinuationResult rejected = continue_runs(scene, {12, {5, 6, 8, 9}});
   EXPECT_EQ(rejected.difference, "");
   EXPECT_GT(rejected.rejected_steps, 0);
 
   scene = support::scene_of_text(kDrape, {"time.integrator=bdf2", "time.tolerance=1e-4", "solver.halvings=0"});
-  const Continued inexact = continue_runs(scene, {8, {2, 5, 6}});
+  const ContinuationResult inexact = continue_runs(scene, {8, {2, 5, 6}});
   EXPECT_EQ(inexact.difference, "");
   EXPECT_GT(inexact.inexact_steps, 0);
 }
@@ -388,7 +388,7 @@ size = [0.3, 0.3]
 particles = [9, 9]
 position = [0, 0, 1.83]
 )");
-  const Continued walked = continue_runs(scene, {9, {3, 7}});
+  const ContinuationResult walked = continue_runs(scene, {9, {3, 7}});
   EXPECT_EQ(walked.difference, "");
   EXPECT_GT(walked.most_proximities, 0);
 }

@@ -215,7 +215,7 @@ TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
   for (int k = 0; k <= 25; ++k) {
     if (k > 0) proximities += simulation.advance().proximities;
     const auto snapshot = simulation.snapshot();
-    EXPECT_EQ(support::judge(support::objects_of(*snapshot)).pairs.size(), 0u) << "frame " << k;
+    EXPECT_EQ(support::find_intersections(support::objects_of(*snapshot)).pairs.size(), 0u) << "frame " << k;
     lowest_so_far = std::min(lowest_so_far, lowest(sheet_of(snapshot)));
   }
   // The sheet fell, and the ball held it up.
@@ -275,7 +275,7 @@ TEST(Simulation, KeptClosestPointsFindTheFirstContactsThatTheDefaultFindsAndKeep
   int first = 0;  // proximities in the first frame with contacts; later ones differ
   for (int k = 1; k <= 13; ++k) {
     const int expected = simulation.advance().proximities, found = other.advance().proximities;
-    EXPECT_EQ(support::judge(support::objects_of(*other.snapshot())).pairs.size(), 0u) << "frame " << k;
+    EXPECT_EQ(support::find_intersections(support::objects_of(*other.snapshot())).pairs.size(), 0u) << "frame " << k;
     EXPECT_TRUE(first > 0 || std::abs(found - expected) <= 0.1 * expected) << "frame " << k << ": " << found;
     first = first == 0 ? expected : first;
   }

@@ -258,7 +258,7 @@ TEST(Rest, EndsWithTheFrameInWhichSomethingMovesOrIsLetGo) {
   EXPECT_NEAR(hung_at - mean_height(released), 6 * 9.81 * 0.02 * 0.02, 2e-4);
 }
 
-TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
+TEST(Rest, DetectsABodyThatMovesAndReturnsWithinAFrame) {
   const auto there_and_back = [](const Vec3& place) {
     return std::vector<scene::PoseKey>{{0, {place, Quat::Identity()}},
                                        {2.005, {place, Quat::Identity()}},
@@ -292,7 +292,7 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
 // A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction leaves velocities of some
 // micrometres per second whose sign alternates. Even the shortest steps leave as much, so the visibility threshold must
 // accept them.
-TEST(StepThatStalls, LeavesWhatNobodySees) {
+TEST(StepThatStalls, AcceptsInvisibleResiduals) {
   production::SceneSimulation simulation(support::scene_of_text(R"(
 time = { step = 0.002, integrator = 'bdf2' }
 [[cloth]]

@@ -113,7 +113,7 @@ TEST_F(StepProblems, KnowForcesByPositionAndVelocityOfEachCloth) {
     }
 }
 
-TEST_F(StepProblems, ChangeWhatForcesDependOnOnlyWhereTheyAreLinearised) {
+TEST_F(StepProblems, ChangeTheirMemoryOnlyWhenTheyLinearise) {
   StepProblem problem = this->problem();
   linearise(problem, x_);
   linearise(problem, moved(0, 0.1));
@@ -136,7 +136,7 @@ TEST_F(StepProblems, ChangeWhatForcesDependOnOnlyWhereTheyAreLinearised) {
   EXPECT_EQ(blocks(twin), blocks(problem));
 }
 
-TEST_F(StepProblems, PutTheMatrixTogetherAnewForAnotherRate) {
+TEST_F(StepProblems, ReassembleTheMatrixForAnotherRate) {
   StepProblem used = problem(), fresh = problem();
   linearise(used, x_, kRate);
   linearise(used, x_, 2 * kRate);
@@ -146,7 +146,7 @@ TEST_F(StepProblems, PutTheMatrixTogetherAnewForAnotherRate) {
   EXPECT_NE(blocks(used), blocks(fresh));
 }
 
-TEST_F(StepProblems, PutTheRowsOfAClothTogetherAnewWhereItHasMovedAndAllInEachStep) {
+TEST_F(StepProblems, ReassembleTheRowsOfMovedClothAndAllRowsInEachStep) {
   StepProblem used = problem();
   linearise(used, x_);
   const std::vector<Mat3> start = blocks(used);
@@ -185,7 +185,7 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   EXPECT_NE(problem.memory().contacts.normal_forces[0], lagging);  // the contact normal force of the start
 }
 
-TEST_F(StepProblems, FollowLoadsOfContactsThatAreOthersWithinAStep) {
+TEST_F(StepProblems, FollowNormalForcesAgainAfterContactsHaveChanged) {
   StepProblem problem = this->problem();
   for (int update = 0; update < 25; ++update) linearise(problem, moved(0, 0.01));
   EXPECT_GE(problem.memory().contacts.updates, numerics.newton.slow_after);
@@ -196,7 +196,7 @@ TEST_F(StepProblems, FollowLoadsOfContactsThatAreOthersWithinAStep) {
   EXPECT_NE(problem.memory().contacts.normal_forces[0], load);
 }
 
-TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
+TEST(PinnedProblem, ReassemblesTheMatrixWherePinsRelease) {
   for (const char* shape : {"quads", "crossed_triangles"}) {
     const scene::Scene scene =
         support::scene_of_text(std::string("[[cloth]]\nname = 'sheet'\nparticles = 5\nshape = '") + shape +
@@ -227,7 +227,7 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
 
 class SewnProblem : public support::TestFolder {};
 
-TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
+TEST_F(SewnProblem, RecomputesForcesWhenTheRestShapeHasChanged) {
   support::write_bytes(folder_ / "tube.toml", testing::kTube);
   const scene::Scene scene =
       support::scene_of_text("[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" +

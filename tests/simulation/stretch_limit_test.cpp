@@ -101,7 +101,8 @@ TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
 }
 
 TEST(StretchLimitInAScene, GoesOnFromASavedState) {
-  const testing::Continued continued = testing::continue_runs(support::scene_of_text(kImpact), {6, {0, 1, 2, 4}});
+  const testing::ContinuationResult continued =
+      testing::continue_runs(support::scene_of_text(kImpact), {6, {0, 1, 2, 4}});
   EXPECT_EQ(continued.difference, "");
 }
 
@@ -114,7 +115,7 @@ TEST(StretchLimitInAScene, IsKeptBeforeAPlateThatComesAt30MetresASecond) {
     EXPECT_LT(max_stretch_ratio(support::scene_of_text(struck_by_a_plate(gravity)), seen_warnings), 8) << gravity;
 }
 
-TEST(StretchLimitInAScene, TellsOnceWhereItCannotBeKept) {
+TEST(StretchLimitInAScene, WarnsOnceIfItCannotBeKept) {
   std::vector<std::string> seen_warnings;
   EXPECT_GT(max_stretch_ratio(support::scene_of_text(kPulledDown), seen_warnings), 4);
   ASSERT_EQ(seen_warnings.size(), 1U);

@@ -36,7 +36,7 @@ class Tearing : public support::TestFolder {
 };
 
 TEST_F(Tearing, SeamsBearTheWeightThatHangsOnThem) {
-  const auto frames = support::run_scene(strip(2 * kLoad), {.judged = false});
+  const auto frames = support::run_scene(strip(2 * kLoad), {.counts_intersections = false});
   const simulation::AttachmentLoad& seam = frames.back().report.attachments.at(0);
   EXPECT_EQ(seam.name, "strip: upper.low + lower.high");
   EXPECT_TRUE(seam.holds);
@@ -44,7 +44,7 @@ TEST_F(Tearing, SeamsBearTheWeightThatHangsOnThem) {
 }
 
 TEST_F(Tearing, SeamsPartAboveTheirLoadAndNotWhileTheyAreSewn) {
-  const auto frames = support::run_scene(strip(0.5 * kLoad), {.judged = false});
+  const auto frames = support::run_scene(strip(0.5 * kLoad), {.counts_intersections = false});
   EXPECT_FALSE(frames.back().report.attachments.at(0).holds);
   EXPECT_EQ(frames.back().report.attachments.at(0).load, 0);
   double lowest = 2;
@@ -56,7 +56,8 @@ TEST_F(Tearing, SeamsPartWhereTheLoadIsFirst) {
   // The weight hangs at one end of the lower edge.
   const scene::Scene scene = strip(30 * kLoad, "weight = [{ edge = 'lower.low', high = [0.3, 1], mass = 0.1 }]\n");
   bool was_torn_in_part = false;
-  for (const support::MeasuredFrame& frame : support::run_scene(scene, {.judged = false, .keep_positions = true})) {
+  for (const support::MeasuredFrame& frame :
+       support::run_scene(scene, {.counts_intersections = false, .keep_positions = true})) {
     const simulation::AttachmentLoad& seam = frame.report.attachments.at(0);
     double left = 2, right = 2;  // height of the lower corners [m]
     for (const Vec3& x : frame.cloths.at(0)) (x.x() < 0.1 ? left : right) = std::min(x.x() < 0.1 ? left : right, x.z());

@@ -129,7 +129,7 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
   }
 }
 
-TEST_F(SwingingSheet, WhatNewtonLeavesDoesNotDecideTheErrorAtATolerance) {
+TEST_F(SwingingSheet, TheNewtonResidualHardlyChangesTheErrorAtATolerance) {
   const SwingEnd& exact = reference();
   for (scene::Integrator integrator : kIntegrators) {
     for (double tolerance : {1e-4, 1e-6}) {

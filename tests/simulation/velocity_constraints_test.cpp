@@ -42,7 +42,8 @@ scene::Scene patch_on_slope(double angle, double friction) {
 std::vector<double> distances_down(const scene::Scene& scene, int frames) {
   const Vec3 down = scene.obstacles[0].pose.rotation * Vec3::UnitX();
   std::vector<double> distances;
-  for (const auto& frame : support::run_scene(scene, {.end = frames + 1, .judged = false, .keep_positions = true})) {
+  for (const auto& frame :
+       support::run_scene(scene, {.end = frames + 1, .counts_intersections = false, .keep_positions = true})) {
     double distance = 0;
     for (const Vec3& p : frame.cloths[0]) distance += down.dot(p) / static_cast<double>(frame.cloths[0].size());
     distances.push_back(distance);
@@ -125,7 +126,7 @@ TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
   for (double mu : {0.1, 0.3, 0.6}) {
     scene::Scene scene = patch_on_tray(
         mu, {{0, {}}, {0.4, {}}, {4.4, {Vec3::Zero(), Quat(Eigen::AngleAxisd(4 * kTurn, Vec3::UnitY()))}}});
-    const auto frames = support::run_scene(scene, {.end = 111, .judged = false, .keep_positions = true});
+    const auto frames = support::run_scene(scene, {.end = 111, .counts_intersections = false, .keep_positions = true});
     double distance = 0, speed = 0;  // of a block along the tray, computed with far shorter steps
     const double h = 1e-5;
     for (int step = 0; step < 440000; ++step) {
@@ -154,7 +155,7 @@ TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
       const double t = 0.01 * k, since = std::max(0.0, t - 0.2);
       keys.push_back({t, {{0.5 * acceleration * since * since, 0, 0}, Quat::Identity()}});
     }
-    const auto frames = support::run_scene(patch_on_tray(kMu, keys), {.end = 26, .judged = false});
+    const auto frames = support::run_scene(patch_on_tray(kMu, keys), {.end = 26, .counts_intersections = false});
     double distance = 0;
     for (const Vec3& x : frames.back().cloths[0])
       distance += x.x() / static_cast<double>(frames.back().cloths[0].size());

@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(By, ObstructedPin,
                          [](const auto& obstructed) { return std::string(obstructed.param.name); });
 
 // Pins move the lowest edge of a sheet down through the cloth of `more`, and back up.
-std::string hem_into(const std::string& more) {
+std::string pinned_hem_scene(const std::string& more) {
   return "[time]\nduration = 2.4\n[[cloth]]\nname = 'hem'\nsize = [0.3, 0.3]\nparticles = [13, 13]\nposition = [0, 0, "
          "0.95]\nmaterial = { fabric = 'cotton' }\nrotation = [-90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, "
          "1]\ninterpolation = 'linear'\nkeys = [{ time = 0 }, { time = 0.8, offset = [0, 0, -0.8] }, { time = 1.2, "
@@ -97,11 +97,11 @@ std::string taut(const std::string& name, const std::string& z) {
          "]\nmaterial = { fabric = 'cotton' }\n[[cloth.pin]]\nlow = [0, 0]\nhigh = [0, 1]\n[[cloth.pin]]\nlow = [1, "
          "0]\nhigh = [1, 1]\n";
 }
-const std::string kIntoATautSheet = hem_into(taut("taut", "0.6"));
-const std::string kIntoTwoLayers = hem_into(taut("one", "0.6") + taut("two", "0.595"));
+const std::string kIntoATautSheet = pinned_hem_scene(taut("taut", "0.6"));
+const std::string kIntoTwoLayers = pinned_hem_scene(taut("one", "0.6") + taut("two", "0.595"));
 // Gravity is 9.8 m/s²: at 9.81, one of fifteen values from 9.7 to 9.88 m/s², the hems hook and stay hooked.
 const std::string kIntoAnotherHem =
-    "[physics]\ngravity = [0, 0, -9.8]\n" + hem_into(
+    "[physics]\ngravity = [0, 0, -9.8]\n" + pinned_hem_scene(
                                                 "[[cloth]]\nname = 'other'\nsize = [0.3, 0.3]\nparticles = [13, "
                                                 "13]\nposition = [0, 0, 0.4]\nmaterial = { fabric = "
                                                 "'cotton' }\nrotation = [90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh "
@@ -165,7 +165,7 @@ TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
       "position = [0, 0, 0.15]\n[[cloth.pin]]\nlow = [0, 0]\nhigh = [0, 1]\nkeys = [{ time = 0 }, { time = 0.8, "
       "rotation = [90, 0, 0] }, { time = 1.6, rotation = [0, 0, 0] }]\n[[obstacle]]\nname = 'floor'\nshape = "
       "'plane'\n");
-  const auto frames = support::run_scene(scene, {.judged = false});
+  const auto frames = support::run_scene(scene, {.counts_intersections = false});
   EXPECT_GE(frames[20].report.lagging_particles, 4);
   EXPECT_EQ(frames.back().report.lagging_particles, 0);
   EXPECT_LT((frames.back().cloths[0].front() - Vec3(-0.25, -0.25, 0.15)).norm(), 1e-12);
@@ -177,7 +177,7 @@ TEST(LaggingPin, IsHeldAgainWhileItMovesOn) {
   const scene::Scene scene = support::scene_of_text(
       hanging(1, "keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.4, 0] }, { time = 1.1, offset = [0, -0.4, 0] }]",
               "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\nposition = [0, 0.4, 0.6]\n"));
-  const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
+  const auto frames = support::run_scene(scene, {.counts_intersections = false, .keep_positions = true});
   EXPECT_EQ(frames[10].report.lagging_particles, 13);
   // Frames from a quarter of a second after the target has left the box. The target moves by 40 mm per frame.
   for (std::size_t k = 19; k < frames.size(); ++k) {
@@ -243,7 +243,7 @@ TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
   const std::string keys = "keys = [{ time = 0 }, { time = 0.2, offset = [0.1, 0.6, 0.1], rotation = [0, 0, 60] }]\n";
   const auto distances = [&](const std::string& pin) {
     const scene::Scene scene = support::scene_of_text(hanging(0.2, keys + pin, ""));
-    const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
+    const auto frames = support::run_scene(scene, {.counts_intersections = false, .keep_positions = true});
     const std::vector<Vec3>& start = frames.front().cloths[0];
     const Vec3 middle(0, 0, 0.8);
     const Eigen::AngleAxisd turn(std::acos(0.5), Vec3::UnitZ());
@@ -279,7 +279,7 @@ TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
   for (std::size_t i = 0; i < by_offset.size(); ++i) EXPECT_LT((by_offset[i] - by_position[i]).norm(), 1e-6);
 }
 
-TEST(Doubts, NamePinsThatTakeOverParticlesFarFromTheirPlaces) {
+TEST(PinWarnings, NamePinsThatTakeOverParticlesFarFromTheirPlaces) {
   const auto of = [](const std::string& offset) {
     return production::find_warnings(support::scene_of_text(
         "time = { duration = 0.8, fps = 25 }\n[[cloth]]\nname = 'sheet'\nsize = [0.4, 0.4]\nparticles = [5, 5]\n"
@@ -293,7 +293,7 @@ TEST(Doubts, NamePinsThatTakeOverParticlesFarFromTheirPlaces) {
   EXPECT_NE(far[0].find("it takes over particles"), std::string::npos) << far[0];
 }
 
-TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
+TEST(PinWarnings, NamePinsThatJumpRushOrEnterObstacles) {
   const auto of = [](const std::string& text) { return production::find_warnings(support::scene_of_text(text)); };
   const auto entries = of(kIntoTheFloor);
   ASSERT_EQ(entries.size(), 1u);
@@ -337,7 +337,7 @@ TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
   EXPECT_NE(inside[1].find("enters 'box' at 0 s"), std::string::npos) << inside[1];
 }
 
-TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
+TEST(PinWarnings, NamePinsThatStretchTheClothBetweenThem) {
   const std::string lower = "[[cloth.pin]]\nlow = [0, 0]\nhigh = [1, 0]\ninterpolation = 'linear'\n";
   const auto of = [&](const std::string& upper_keys, const std::string& more) {
     return production::find_warnings(
@@ -361,7 +361,7 @@ TEST(Doubts, NamePinsThatDrawFartherApartThanTheClothIs) {
   EXPECT_NE(corner[0].find("; pin 0 holds the particles that both select"), std::string::npos) << corner[0];
 }
 
-TEST(Doubts, NamePinsThatFollowBodiesFartherApartThanTheClothIs) {
+TEST(PinWarnings, NamePinsThatFollowBodiesFartherApartThanTheClothIs) {
   const auto of = [](const std::string& rise) {
     return production::find_warnings(support::scene_of_text(
         hanging(1, "follow = 'above'",

@@ -143,15 +143,15 @@ inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
 
 /// Padded vectors, as the inner loops use them.
 template <class Real = double>
-std::vector<PaddedVec3<Real>> quads(std::span<const Vec3> x) {
+std::vector<PaddedVec3<Real>> padded_vectors(std::span<const Vec3> x) {
   std::vector<PaddedVec3<Real>> result;
   for (const Vec3& v : x) result.push_back(padded<Real>(v));
   return result;
 }
-template <class Quad>
-std::vector<Vec3> vectors(const std::vector<Quad>& x) {
+template <class Padded>
+std::vector<Vec3> vectors(const std::vector<Padded>& x) {
   std::vector<Vec3> result;
-  for (const Quad& q : x) result.push_back(vec3_of(q));
+  for (const Padded& q : x) result.push_back(vec3_of(q));
   return result;
 }
 

@@ -46,7 +46,7 @@ TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) 
   }
 }
 
-TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndConstraints) {
+TEST(ConjugateGradient, WithAggregatesAgreesWithTheDirectSolutionUnderContactsAndConstraints) {
   constexpr Index kRows = 40;
   for (const std::vector<Index>& counts : {std::vector<Index>{1}, {6}, {kRows}, {20, 6}, {kRows, 20, 10, 3}}) {
     Random random(static_cast<unsigned>(20 + counts.front()));
@@ -68,7 +68,7 @@ TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndCon
   }
 }
 
-TEST(ConjugateGradient, PartsAreSolvedAsIfAllOthersWereHeld) {
+TEST(ConjugateGradient, BlocksAreSolvedAsIfAllOthersWereHeld) {
   for (const std::vector<Index>& counts : {std::vector<Index>{}, {6}, {30, 6}}) {
     Random random(31);
     LinearSystem system = system_of_parts(random);
@@ -89,7 +89,7 @@ TEST(ConjugateGradient, PartsAreSolvedAsIfAllOthersWereHeld) {
   }
 }
 
-TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
+TEST(ConjugateGradient, ABlockWithANewVersionIsReadAgain) {
   Random random(33);
   LinearSystem system = system_of_parts(random);
   cut_groups(system, {30, 6});
@@ -103,7 +103,7 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
   EXPECT_EQ(norm(used, b), norm(fresh, b));
 }
 
-TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
+TEST(ConjugateGradient, AggregatesReduceTheIterationsOnAStiffChain) {
   // A chain of 200 particles. Its springs are a million times stiffer than those that hold each particle in place.
   constexpr Index kRows = 200;
   std::vector<std::pair<Index, Index>> links;
@@ -229,7 +229,7 @@ TEST(ConjugateGradient, KnowsTheErrorThatItLeavesFromItsOwnSteps) {
   }
 }
 
-TEST(ConjugateGradient, EndsWhereTheErrorIsSmallEnoughForEachPart) {
+TEST(ConjugateGradient, EndsWhenTheErrorOfEachBlockIsSmallEnough) {
   Random random(34);
   LinearSystem system = system_of_parts(random);
   const auto b = random.vectors(system.matrix.rows());
@@ -246,7 +246,7 @@ TEST(ConjugateGradient, EndsWhereTheErrorIsSmallEnoughForEachPart) {
   }
 }
 
-TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
+TEST(ConjugateGradient, ErrorsAreMeasuredInTheMassWeightedNorm) {
   // Particles of weight 1, half of them on springs of 1e8, half on springs of 1. In the mass-weighted norm only the
   // latter count, because the former hardly move.
   LinearSystem system;
@@ -334,7 +334,7 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
   }
 }
 
-TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
+TEST(ConjugateGradient, ContinuesInDoubleWhereSinglePrecisionIsNotEnough) {
   // Tolerances that single precision cannot meet, absolute and relative.
   for (const double stiffness : {1e3, 1e6}) {
     Random random(52);
@@ -354,7 +354,7 @@ TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
   }
 }
 
-TEST(ConjugateGradient, FreesAPrecisionThatManySolvesHaveNotUsed) {
+TEST(ConjugateGradient, FreesTheMemoryOfAPrecisionThatIsNoLongerUsed) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizer has its own malloc";
 #endif
@@ -377,7 +377,7 @@ TEST(ConjugateGradient, FreesAPrecisionThatManySolvesHaveNotUsed) {
   EXPECT_LT(bytes_after_solve(0.1), 0.9 * of_single + 0.1 * of_both);
 }
 
-TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTheThreads) {
+TEST(ConjugateGradient, TranslationIsExactInSinglePrecisionHoweverStiffTheThreads) {
   Random random(53);
   LinearSystem system = sheet(1e6, random);
   system.constraints.clear();

@@ -15,7 +15,7 @@ using testing::Random;
 using testing::system_of_parts;
 
 // Sums of an earlier matrix must not be used after the step, because a run that resumes after the step lacks them.
-TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
+TEST(ConjugateGradient, AggregateSumsAreReusedOnRequestInBothPrecisions) {
   Random random(37);
   LinearSystem system = system_of_parts(random);
   cut_groups(system, {30, 6});

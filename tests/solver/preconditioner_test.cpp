@@ -120,7 +120,7 @@ Eigen::VectorXd apply(Preconditioner<Real>& preconditioner, const std::vector<Ve
   std::vector<std::size_t> all(blocks);
   std::iota(all.begin(), all.end(), std::size_t{0});
   std::vector<PaddedVec3<Real>> z(r.size());
-  preconditioner.apply(testing::quads<Real>(r), z, all);
+  preconditioner.apply(testing::padded_vectors<Real>(r), z, all);
   return testing::flat(testing::vectors(z));
 }
 

@@ -21,7 +21,7 @@ using Triangle = Kernel::Triangle_3;
 
 /// A face with the data that intersection tests need.
 struct Face {
-  JudgedFace id;
+  TestedFace id;
   std::array<Index, 3> vertices;
   std::array<Point, 3> corners;
   bool is_segment() const { return vertices[1] == vertices[2] && vertices[0] != vertices[1]; }
@@ -34,7 +34,7 @@ struct Face {
 
 using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Face*>;
 
-Point to_point(const JudgedObject& object, Index vertex) {
+Point to_point(const TestedObject& object, Index vertex) {
   if (vertex < 0 || static_cast<std::size_t>(vertex) >= object.positions.size()) {
     throw std::invalid_argument(object.name + ": a face names vertex " + std::to_string(vertex) + " of " +
                                 std::to_string(object.positions.size()));
@@ -49,11 +49,11 @@ Point to_point(const JudgedObject& object, Index vertex) {
 // Faces of the scene: those of cloths, of obstacles, and those without area.
 struct Faces {
   std::vector<Face> cloth, obstacles;
-  std::vector<JudgedFace> degenerate;
+  std::vector<TestedFace> degenerate;
 
-  explicit Faces(std::span<const JudgedObject> objects) {
+  explicit Faces(std::span<const TestedObject> objects) {
     for (std::size_t o = 0; o < objects.size(); ++o) {
-      const JudgedObject& object = objects[o];
+      const TestedObject& object = objects[o];
       for (std::size_t f = 0; f < object.triangles.size(); ++f) {
         if (!object.passed_through.empty() && object.passed_through[f] != 0) continue;
         Face face{{o, static_cast<Index>(f)}, object.triangles[f], {}};
@@ -124,26 +124,26 @@ bool intersect(const Face& a, const Face& b) {
 
 }  // namespace
 
-Judgement judge(std::span<const JudgedObject> objects) {
+Intersections find_intersections(std::span<const TestedObject> objects) {
   Faces faces(objects);
   std::vector<Box> cloth = boxes_of(faces.cloth);
   std::vector<Box> obstacles = boxes_of(faces.obstacles);
 
-  Judgement judgement;
+  Intersections intersections;
   const auto test = [&](const Box& box_a, const Box& box_b) {
     const Face &a = *box_a.handle(), &b = *box_b.handle();
-    if (intersect(a, b)) judgement.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
+    if (intersect(a, b)) intersections.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
   };
   // Both calls reorder the boxes and report each pair of overlapping closed boxes once.
   CGAL::box_intersection_d(cloth.begin(), cloth.end(), obstacles.begin(), obstacles.end(), test);
   CGAL::box_self_intersection_d(cloth.begin(), cloth.end(), test);
-  std::sort(judgement.pairs.begin(), judgement.pairs.end());
-  judgement.degenerate = std::move(faces.degenerate);
-  return judgement;
+  std::sort(intersections.pairs.begin(), intersections.pairs.end());
+  intersections.degenerate = std::move(faces.degenerate);
+  return intersections;
 }
 
-std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot) {
-  std::vector<JudgedObject> objects;
+std::vector<TestedObject> objects_of(const frame::FrameSnapshot& snapshot) {
+  std::vector<TestedObject> objects;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     objects.push_back({surface.name,
@@ -153,9 +153,9 @@ std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot) {
   return objects;
 }
 
-std::vector<PairCount> count_by_objects(const Judgement& judgement, std::span<const JudgedObject> objects) {
+std::vector<PairCount> count_by_objects(const Intersections& intersections, std::span<const TestedObject> objects) {
   std::map<std::pair<std::string, std::string>, std::size_t> counts;
-  for (const IntersectingPair& pair : judgement.pairs) {
+  for (const IntersectingPair& pair : intersections.pairs) {
     const auto names = std::minmax(objects[pair.a.object].name, objects[pair.b.object].name);
     ++counts[{names.first, names.second}];
   }

@@ -59,11 +59,11 @@ void measure_speeds(MeasuredFrame& frame, const std::vector<std::vector<Vec3>>& 
   if (count > 0) frame.rms_speed = std::sqrt(sum_sq / static_cast<double>(count));
 }
 
-void judge_frame(MeasuredFrame& frame, const frame::FrameSnapshot& snapshot) {
+void count_intersections(MeasuredFrame& frame, const frame::FrameSnapshot& snapshot) {
   const auto objects = objects_of(snapshot);
-  const Judgement judgement = judge(objects);
-  frame.pairs = judgement.pairs.size();
-  for (const auto& [a, b, count] : count_by_objects(judgement, objects))
+  const Intersections intersections = find_intersections(objects);
+  frame.pairs = intersections.pairs.size();
+  for (const auto& [a, b, count] : count_by_objects(intersections, objects))
     frame.between += (frame.between.empty() ? "" : ", ") + a + "-" + b + " " + std::to_string(count);
 }
 
@@ -84,7 +84,7 @@ std::vector<MeasuredFrame> run_scene(const scene::Scene& scene, const RunPlan& p
       measure_speeds(frame, frames.back().cloths, scene.time.fps);
       if (!plan.keep_positions) frames.back().cloths.clear();
     }
-    if (plan.judged && k >= plan.judge_from) judge_frame(frame, *snapshot);
+    if (plan.counts_intersections && k >= plan.intersections_from) count_intersections(frame, *snapshot);
     if (each) each(frame);
     frames.push_back(std::move(frame));
   }

@@ -15,7 +15,7 @@ namespace weft::support {
 /// Measurements of a frame.
 struct MeasuredFrame {
   simulation::FrameReport report;
-  std::size_t pairs = 0;     ///< intersecting pairs, see judge(); 0 if the frame is not judged
+  std::size_t pairs = 0;     ///< intersecting pairs, see find_intersections(); 0 if they are not counted
   std::string between;       ///< the objects of these pairs, "ball-sheet 3, sheet-sheet 1"
   double max_stretch = 1;    ///< largest length / rest length of weft and warp edges; without a grid 1 + max_strain
   std::string stretched_at;  ///< object and place of that edge, "sheet (0.1, 0, 0.3)"; empty if there is none
@@ -24,11 +24,11 @@ struct MeasuredFrame {
   std::vector<std::vector<Vec3>> cloths;  ///< positions [m], one list per cloth
 };
 
-/// The frames of a scene to simulate, to judge and to keep.
+/// The frames of a scene to simulate, to test and to keep.
 struct RunPlan {
-  int end = -1;        ///< frame after the last one; negative: the whole scene
-  int judge_from = 0;  ///< first frame that is judged
-  bool judged = true;
+  int end = -1;                ///< frame after the last one; negative: the whole scene
+  int intersections_from = 0;  ///< first frame whose intersections are counted
+  bool counts_intersections = true;
   bool keep_positions = false;  ///< else only the last frame has `cloths`
 };
 

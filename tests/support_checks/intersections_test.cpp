@@ -16,15 +16,15 @@ const Triangles kOneFace = {{0, 1, 2}};
 // A right triangle in the plane z = 0 with its right-angled corner at the origin.
 const std::vector<Vec3> kFloor = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
-JudgedObject cloth(const std::vector<Vec3>& positions, const Triangles& triangles = kOneFace) {
+TestedObject cloth(const std::vector<Vec3>& positions, const Triangles& triangles = kOneFace) {
   return {"cloth", true, positions, triangles};
 }
-JudgedObject obstacle(const std::vector<Vec3>& positions, const Triangles& triangles = kOneFace) {
+TestedObject obstacle(const std::vector<Vec3>& positions, const Triangles& triangles = kOneFace) {
   return {"obstacle", false, positions, triangles};
 }
 
-std::size_t pairs_of(const std::vector<JudgedObject>& objects) {
-  return judge(objects).pairs.size();
+std::size_t pairs_of(const std::vector<TestedObject>& objects) {
+  return find_intersections(objects).pairs.size();
 }
 
 // Number of pairs for two faces of one cloth without a common vertex.
@@ -48,21 +48,22 @@ std::vector<Vec3> hanging(double z) {
   return {{0.25, 0.25, z}, {0.25, 0.25, z + 1}, {0.5, 0.25, z + 1}};
 }
 
-TEST(Judge, CrossingTrianglesAreOnePairWithItsFaces) {
+TEST(FindIntersections, CrossingTrianglesAreOnePairWithItsFaces) {
   const std::vector<Vec3> spike = hanging(-0.5);
-  const Judgement judgement = judge(std::vector<JudgedObject>{cloth(kFloor), cloth(spike)});
-  ASSERT_EQ(judgement.pairs.size(), 1u);
-  EXPECT_EQ(judgement.pairs[0], (IntersectingPair{{0, 0}, {1, 0}}));
+  const Intersections intersections = find_intersections(std::vector<TestedObject>{cloth(kFloor), cloth(spike)});
+  ASSERT_EQ(intersections.pairs.size(), 1u);
+  EXPECT_EQ(intersections.pairs[0], (IntersectingPair{{0, 0}, {1, 0}}));
   EXPECT_EQ(pairs_between(kFloor, spike), 1u);
 }
 
-TEST(Judge, PiecesOfRopeThatPassThroughAFaceOrMeetAreFound) {
+TEST(FindIntersections, PiecesOfRopeThatPassThroughAFaceOrMeetAreFound) {
   const Triangles chain = {{0, 1, 1}, {1, 2, 2}, {2, 3, 3}};
   const std::vector<Vec3> through = {{0.2, 0.2, 1}, {0.2, 0.2, 0.5}, {0.2, 0.2, -0.5}, {0.2, 0.2, -1}};
-  const Judgement judgement = judge(std::vector<JudgedObject>{cloth(through, chain), cloth(kFloor)});
-  ASSERT_EQ(judgement.pairs.size(), 1u);
-  EXPECT_EQ(judgement.pairs[0], (IntersectingPair{{0, 1}, {1, 0}}));
-  EXPECT_TRUE(judgement.degenerate.empty());
+  const Intersections intersections =
+      find_intersections(std::vector<TestedObject>{cloth(through, chain), cloth(kFloor)});
+  ASSERT_EQ(intersections.pairs.size(), 1u);
+  EXPECT_EQ(intersections.pairs[0], (IntersectingPair{{0, 1}, {1, 0}}));
+  EXPECT_TRUE(intersections.degenerate.empty());
   // A loop whose last piece crosses the first one, and a loop whose last piece only comes near it.
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 0}}, chain)}), 1u);
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 1e-9}}, chain)}), 0u);
@@ -70,14 +71,14 @@ TEST(Judge, PiecesOfRopeThatPassThroughAFaceOrMeetAreFound) {
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {0.5, 0, 0}, {0.5, 1, 0}}, chain)}), 2u);
 }
 
-TEST(Judge, TouchingCountsAndTheLeastGapDoesNot) {
+TEST(FindIntersections, TouchingCountsAndTheLeastGapDoesNot) {
   EXPECT_EQ(pairs_between(kFloor, hanging(0)), 1u);
   EXPECT_EQ(pairs_between(kFloor, hanging(1e-12)), 0u);
   EXPECT_EQ(pairs_between(kFloor, hanging(-1e-12)), 1u);
   EXPECT_EQ(pairs_between(kFloor, hanging(std::numeric_limits<double>::denorm_min())), 0u);
 }
 
-TEST(Judge, TouchingOnASlantedPlaneIsDecidedExactly) {
+TEST(FindIntersections, TouchingOnASlantedPlaneIsDecidedExactly) {
   // The triangle is in the plane x + y + z = 0.75, exactly; changing the last digit of z moves the point off it.
   const std::vector<Vec3> slanted = {{0.75, 0, 0}, {0, 0.75, 0}, {0, 0, 0.75}};
   const auto above = [](double z) { return std::vector<Vec3>{{0.25, 0.25, z}, {1, 1, 1}, {1, 1.25, 1}}; };
@@ -86,7 +87,7 @@ TEST(Judge, TouchingOnASlantedPlaneIsDecidedExactly) {
   EXPECT_EQ(pairs_between(slanted, above(std::nextafter(0.25, 0))), 1u);
 }
 
-TEST(Judge, CoplanarTrianglesIntersectWhereTheyOverlap) {
+TEST(FindIntersections, CoplanarTrianglesIntersectWhereTheyOverlap) {
   EXPECT_EQ(pairs_between(kFloor, {{0.1, 0.1, 0}, {0.2, 0.1, 0}, {0.1, 0.2, 0}}), 1u) << "one inside the other";
   EXPECT_EQ(pairs_between(kFloor, {{0.5, 0.1, 0}, {2, 0.1, 0}, {2, 0.2, 0}}), 1u) << "overlap";
   EXPECT_EQ(pairs_between(kFloor, {{1, 0, 0}, {2, 0, 0}, {2, 1, 0}}), 1u) << "a corner in common";
@@ -94,13 +95,13 @@ TEST(Judge, CoplanarTrianglesIntersectWhereTheyOverlap) {
   EXPECT_EQ(pairs_between(kFloor, {{0, 0, 1e-12}, {1, 0, 1e-12}, {0, 1, 1e-12}}), 0u) << "on top of each other";
 }
 
-TEST(Judge, FacesThatShareAnEdgeAreSkipped) {
+TEST(FindIntersections, FacesThatShareAnEdgeAreSkipped) {
   const std::vector<Vec3> folded = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, 0}};
   EXPECT_EQ(pairs_of({cloth(folded, {{0, 1, 2}, {1, 0, 3}})}), 0u);
   EXPECT_EQ(pairs_of({cloth(folded, {{0, 1, 2}, {2, 1, 0}})}), 0u);
 }
 
-TEST(Judge, FacesThatShareAVertexIntersectIfAnOppositeEdgeCrosses) {
+TEST(FindIntersections, FacesThatShareAVertexIntersectIfAnOppositeEdgeCrosses) {
   const Triangles fan = {{0, 1, 2}, {0, 3, 4}};
   const auto pairs = [&](const Vec3& p3, const Vec3& p4) {
     return pairs_of({cloth({kFloor[0], kFloor[1], kFloor[2], p3, p4}, fan)});
@@ -114,11 +115,11 @@ TEST(Judge, FacesThatShareAVertexIntersectIfAnOppositeEdgeCrosses) {
   EXPECT_EQ(pairs({0.2, 0.1, 0}, {0.1, 0.2, 0}), 1u) << "coplanar, on top of each other";
 }
 
-TEST(Judge, TheSameIndexInTwoObjectsIsNotASharedVertex) {
+TEST(FindIntersections, TheSameIndexInTwoObjectsIsNotASharedVertex) {
   EXPECT_EQ(pairs_of({cloth(kFloor), cloth(kFloor)}), 1u);
 }
 
-TEST(Judge, ObstaclesMayIntersectEachOther) {
+TEST(FindIntersections, ObstaclesMayIntersectEachOther) {
   const std::vector<Vec3> spike = hanging(-0.5);
   EXPECT_EQ(pairs_of({obstacle(kFloor), obstacle(spike)}), 0u);
   std::vector<Vec3> both = kFloor;
@@ -126,19 +127,19 @@ TEST(Judge, ObstaclesMayIntersectEachOther) {
   EXPECT_EQ(pairs_of({obstacle(both, {{0, 1, 2}, {3, 4, 5}})}), 0u);
 }
 
-TEST(Judge, FacesWithoutAreaAreNamedAndNotJudged) {
+TEST(FindIntersections, FacesWithoutAreaAreNamedAndNotTested) {
   const std::vector<Vec3> needle = {{0.2, 0.2, -1}, {0.2, 0.2, 0}, {0.2, 0.2, 1}};
-  const Judgement judgement = judge(std::vector<JudgedObject>{cloth(kFloor), obstacle(needle)});
-  EXPECT_TRUE(judgement.pairs.empty());
-  ASSERT_EQ(judgement.degenerate.size(), 1u);
-  EXPECT_EQ(judgement.degenerate[0], (JudgedFace{1, 0}));
+  const Intersections intersections = find_intersections(std::vector<TestedObject>{cloth(kFloor), obstacle(needle)});
+  EXPECT_TRUE(intersections.pairs.empty());
+  ASSERT_EQ(intersections.degenerate.size(), 1u);
+  EXPECT_EQ(intersections.degenerate[0], (TestedFace{1, 0}));
 }
 
-TEST(Judge, BrokenInputIsRefused) {
+TEST(FindIntersections, BrokenInputIsRefused) {
   std::vector<Vec3> positions = kFloor;
   positions[1].x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(judge(std::vector<JudgedObject>{cloth(positions)}), std::invalid_argument);
-  EXPECT_THROW(judge(std::vector<JudgedObject>{cloth(kFloor, {{0, 1, 3}})}), std::invalid_argument);
+  EXPECT_THROW(find_intersections(std::vector<TestedObject>{cloth(positions)}), std::invalid_argument);
+  EXPECT_THROW(find_intersections(std::vector<TestedObject>{cloth(kFloor, {{0, 1, 3}})}), std::invalid_argument);
 }
 
 // A wavy sheet of n × n quads over the unit square, at height z.
@@ -158,7 +159,7 @@ std::pair<std::vector<Vec3>, Triangles> sheet(int n, double z, double wave) {
   return {positions, triangles};
 }
 
-TEST(Judge, TheBoxesMissNothingThatAllPairsFind) {
+TEST(FindIntersections, TheBoxesMissNothingThatAllPairsFind) {
   const auto [flat, flat_faces] = sheet(12, 0, 0);
   const auto [wavy, wavy_faces] = sheet(9, 0.01, 0.1);
   std::size_t all_pairs = 0;
@@ -171,7 +172,7 @@ TEST(Judge, TheBoxesMissNothingThatAllPairsFind) {
   EXPECT_EQ(pairs_of({cloth(wavy, wavy_faces)}), 0u) << "a wavy sheet does not intersect itself";
 }
 
-TEST(Judge, SnapshotsAreJudgedByKindAndCountedByName) {
+TEST(FindIntersections, SnapshotsAreTestedByKindAndCountedByName) {
   const auto surface = [](const char* name, frame::ObjectKind kind) {
     auto made = std::make_shared<frame::Surface>();
     made->name = name;
@@ -185,7 +186,7 @@ TEST(Judge, SnapshotsAreJudgedByKindAndCountedByName) {
   snapshot.states = {{kFloor, {}}, {hanging(-0.5), {}}, {hanging(-0.25), {}}};
   const auto objects = objects_of(snapshot);
   const std::vector<PairCount> expected = {{"ball", "sheet", 1}, {"body", "sheet", 1}};
-  EXPECT_EQ(count_by_objects(judge(objects), objects), expected);
+  EXPECT_EQ(count_by_objects(find_intersections(objects), objects), expected);
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_F(JudgeToolTest, ObstaclesAreNotHeldAgainstEachOther) {
   EXPECT_EQ(run("--obstacle ball --obstacle half_pipe").exit_code, 0);
 }
 
-// The first face of a hand passes through the sheet and is excluded: it comes last in the file and is not judged.
+// The first face of a hand passes through the sheet and is excluded: it comes last in the file and is not tested.
 TEST_F(JudgeToolTest, FacesThatClothPassesThroughAreLeftOut) {
   write_floor("sheet_00000.ply");
   const std::vector<Vec3> places{{0.25, 0.25, -0.1}, {0.25, 0.25, 1}, {0.5, 0.25, 1}, {0.25, 0.5, 1}};

@@ -25,7 +25,7 @@ using namespace run_error;
 
 constexpr double kSteps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s]
 // Reference runs use an eighth of the shortest step, and a tenth of newton_tolerance.
-constexpr double kTruthCut = 8, kTruthNewton = 0.1;
+constexpr double kReferenceStepDivisor = 8, kReferenceNewtonRatio = 0.1;
 constexpr double kShift = 1e-6;  // start noise of the second half of the reference runs [m]
 constexpr double kFactor = 3;    // goal: estimates are within this factor of the true error
 
@@ -78,8 +78,8 @@ scene::Scene scene_of(const Case& one) {
 /// Reference runs of the scene: both second-order methods, each from the start and from a start with noise of a
 /// micrometre. If the motion is chaotic, they are samples of possible results.
 std::vector<Trajectory> reference_runs_of(scene::Scene scene) {
-  scene.time.step = std::end(kSteps)[-1] / kTruthCut;
-  scene.solver.newton_tolerance *= kTruthNewton;
+  scene.time.step = std::end(kSteps)[-1] / kReferenceStepDivisor;
+  scene.solver.newton_tolerance *= kReferenceNewtonRatio;
   std::vector<Trajectory> references;
   for (double shift : {0.0, kShift}) {
     for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += shift;

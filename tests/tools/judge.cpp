@@ -57,30 +57,32 @@ void check_complete(const Frames& frames, const Request& request) {
 }
 
 // Prints the intersections of one frame; returns its number of pairs.
-std::size_t judge_frame(int frame, const std::map<std::string, std::filesystem::path>& files, const Request& request) {
+std::size_t print_intersections(int frame, const std::map<std::string, std::filesystem::path>& files,
+                                const Request& request) {
   std::vector<support::PlyMesh> meshes;
   for (const auto& [name, file] : files) meshes.push_back(support::read_ply(file));
-  std::vector<support::JudgedObject> objects;
+  std::vector<support::TestedObject> objects;
   for (const auto& [name, file] : files) {
     const bool is_obstacle = std::count(request.obstacles.begin(), request.obstacles.end(), name) > 0;
     const support::PlyMesh& mesh = meshes[objects.size()];
     const auto met = std::span(mesh.triangles).first(mesh.triangles.size() - mesh.passed_through);
     objects.push_back({name, !is_obstacle, mesh.positions, met});
   }
-  const support::Judgement judgement = support::judge(objects);
-  std::printf("frame %d: %zu intersecting pairs", frame, judgement.pairs.size());
-  for (const auto& [a, b, count] : support::count_by_objects(judgement, objects)) {
+  const support::Intersections intersections = support::find_intersections(objects);
+  std::printf("frame %d: %zu intersecting pairs", frame, intersections.pairs.size());
+  for (const auto& [a, b, count] : support::count_by_objects(intersections, objects)) {
     std::printf(", %s-%s %zu", a.c_str(), b.c_str(), count);
   }
-  if (!judgement.degenerate.empty()) std::printf(" (%zu faces without area left out)", judgement.degenerate.size());
+  if (!intersections.degenerate.empty())
+    std::printf(" (%zu faces without area left out)", intersections.degenerate.size());
   std::printf("\n");
   if (request.list) {
-    for (const auto& [a, b] : judgement.pairs) {
+    for (const auto& [a, b] : intersections.pairs) {
       std::printf("  %s face %d, %s face %d\n", objects[a.object].name.c_str(), a.face, objects[b.object].name.c_str(),
                   b.face);
     }
   }
-  return judgement.pairs.size();
+  return intersections.pairs.size();
 }
 
 }  // namespace
@@ -111,7 +113,7 @@ int main(int argc, char** argv) {
     const Frames frames = find_frames(request);
     check_complete(frames, request);
     std::size_t total = 0;
-    for (const auto& [frame, files] : frames) total += judge_frame(frame, files, request);
+    for (const auto& [frame, files] : frames) total += print_intersections(frame, files, request);
     std::printf("%zu frames: %zu intersecting pairs\n", frames.size(), total);
     return total == 0 ? 0 : 1;
   } catch (const std::exception& error) {

@@ -134,13 +134,13 @@ int main(int argc, char** argv) {
   app.add_option("SCENE", request.scenes)->required()->check(CLI::ExistingFile);
   app.add_option("--set", request.overrides, "KEY=VALUE; repeatable")->expected(1)->take_all();
   app.add_option("--end", request.plan.end, "frame after the last one");
-  app.add_option("--judge-from", request.plan.judge_from, "first frame whose intersections are counted");
+  app.add_option("--judge-from", request.plan.intersections_from, "first frame whose intersections are counted");
   app.add_flag("--unjudged", unjudged, "counts no intersections");
   app.add_flag("--table", table, "prints a row for each scene, no frames");
   app.add_option("--every", request.every, "prints each Nth frame and those with intersections");
   app.add_option("--threads", request.threads, "0: all cores");
   CLI11_PARSE(app, argc, argv);
-  request.plan.judged = !unjudged;
+  request.plan.counts_intersections = !unjudged;
   weft::set_thread_count(request.threads);
   bool intersect = false;
   if (table) fmt::print("{}", kTableHead);

@@ -45,8 +45,8 @@ void add_obstacle(scene::Scene& scene, const char* name, scene::Shape shape, con
   scene.obstacles.push_back(obstacle);
 }
 
-std::size_t judged_pairs(const frame::FrameSnapshot& snapshot) {
-  return support::judge(support::objects_of(snapshot)).pairs.size();
+std::size_t count_intersections(const frame::FrameSnapshot& snapshot) {
+  return support::find_intersections(support::objects_of(snapshot)).pairs.size();
 }
 
 std::string refusal(const scene::Scene& scene) {
@@ -67,20 +67,20 @@ double max_displacement(const frame::FrameSnapshot& a, const frame::FrameSnapsho
   return max_distance;
 }
 
-/// Expects that the given start intersects, and that neither the first frame nor the next three do, by the exact judge.
-/// Expects that the scene is refused without `start`.
+/// Expects that the given start intersects, and that neither the first frame nor the next three do, by exact
+/// predicates. Expects that the scene is refused without `start`.
 frame::SnapshotPtr expect_untangled(const scene::Scene& scene, std::size_t least_before = 1) {
   const frame::SnapshotPtr given = production::view_start(scene).snapshot;
-  EXPECT_GE(judged_pairs(*given), least_before);
+  EXPECT_GE(count_intersections(*given), least_before);
   scene::Scene as_given = scene;
   for (scene::Cloth& cloth : as_given.cloths) cloth.start = scene::ClothStart::as_given;
   EXPECT_NE(refusal(as_given).find("start = \"untangle\""), std::string::npos);
   production::SceneSimulation simulation(scene);
   const frame::SnapshotPtr first = simulation.snapshot();
-  EXPECT_EQ(judged_pairs(*first), 0U);
+  EXPECT_EQ(count_intersections(*first), 0U);
   for (int frame = 0; frame < 3; ++frame) {
     simulation.advance();
-    EXPECT_EQ(judged_pairs(*simulation.snapshot()), 0U) << "frame " << frame + 1;
+    EXPECT_EQ(count_intersections(*simulation.snapshot()), 0U) << "frame " << frame + 1;
   }
   return first;
 }
@@ -178,7 +178,7 @@ TEST(UntangledStart, WhatMayNotBeMovedIsNot) {
   scene.cloths[0].start = scene::ClothStart::as_given;
   const frame::SnapshotPtr given = production::view_start(scene).snapshot,
                            first = production::SceneSimulation(scene).snapshot();
-  EXPECT_EQ(judged_pairs(*first), 0U);
+  EXPECT_EQ(count_intersections(*first), 0U);
   EXPECT_EQ(first->states[0].positions, given->states[0].positions);
   EXPECT_NE(first->states[1].positions, given->states[1].positions);
 }
@@ -210,7 +210,7 @@ TEST(UntangledStart, HasTheSameBitsForAnyNumberOfThreads) {
   set_thread_count(4);
   const frame::SnapshotPtr four = production::SceneSimulation(scene).snapshot();
   set_thread_count(0);
-  EXPECT_EQ(judged_pairs(*one), 0U);
+  EXPECT_EQ(count_intersections(*one), 0U);
   for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(one->states[s].positions, four->states[s].positions);
 }
 

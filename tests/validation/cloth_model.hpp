@@ -125,8 +125,8 @@ class ClothModel {
   }
 
   struct Mode {
-    double frequency;  ///< ω [rad/s]
-    double share;      ///< fraction of the mass that a uniform push would set in motion in this mode [1]
+    double frequency;      ///< ω [rad/s]
+    double mass_fraction;  ///< fraction of the mass that a uniform push would set in motion in this mode [1]
   };
 
   /// The vibrations of lowest frequency, in ascending order: K φ = ω² M φ by subspace iteration (Bathe, "Finite Element

@@ -27,7 +27,7 @@ SphereDrape drape_with(double step_factor, double start_noise = 0) {
   scene::Scene scene = testing::scene_of({"sphere_drape", 1, -1});
   scene.time.step *= step_factor;
   scene.cloths[0].start_noise = start_noise;
-  const auto frames = support::run_scene(scene, {.judged = false});
+  const auto frames = support::run_scene(scene, {.counts_intersections = false});
   SphereDrape drape;
   for (const support::MeasuredFrame& frame : frames) {
     drape.stretch = std::max(drape.stretch, frame.max_stretch);

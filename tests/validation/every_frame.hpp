@@ -42,7 +42,7 @@ inline scene::Scene scene_of(const SceneRun& run) {
   return scene;
 }
 
-/// Judges each frame with exact predicates, prints the number of intersections and expects none.
+/// Tests each frame with exact predicates, prints the number of intersections and expects none.
 inline void expect_no_intersections(const SceneRun& run) {
 #ifndef NDEBUG
   GTEST_SKIP() << "takes hours with sanitizers";

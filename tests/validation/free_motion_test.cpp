@@ -105,7 +105,7 @@ TEST(ReleasedCloth, FallsAsFromAStart) {
   }
 }
 
-TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
+TEST(SteadyAir, TerminalVelocityDoesNotDependOnTheStep) {
   for (scene::Integrator integrator : testing::kIntegrators)
     for (double drag : {1.0, 2.0})
       for (double step : {0.04, 0.01, 0.0025}) {

@@ -52,7 +52,7 @@ scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
 
 // The upright strip, sagging in its own plane, is in equilibrium for any weight. The out-of-plane Jacobian decides
 // whether the equilibrium is stable.
-bool stands(ClothShape shape, const Strip& cells, double gamma) {
+bool is_stable(ClothShape shape, const Strip& cells, double gamma) {
   testing::ClothModel model(upright_strip(shape, cells, gamma));
   model.find_rest(model.free_along({0, 2}));
   return model.stable(model.free_along({1}));
@@ -60,11 +60,11 @@ bool stands(ClothShape shape, const Strip& cells, double gamma) {
 
 double onset(ClothShape shape, const Strip& cells) {
   double low = 10, high = 40;
-  EXPECT_TRUE(stands(shape, cells, low));
-  EXPECT_FALSE(stands(shape, cells, high));
+  EXPECT_TRUE(is_stable(shape, cells, low));
+  EXPECT_FALSE(is_stable(shape, cells, high));
   while (high - low > 5e-3) {
     const double middle = 0.5 * (low + high);
-    (stands(shape, cells, middle) ? low : high) = middle;
+    (is_stable(shape, cells, middle) ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -100,7 +100,7 @@ TEST(LateralBuckling, HardlyDependsOnTheCellsAcross) {
 constexpr Strip kOfRun{20, 2};
 
 /// Maximum distance from its plane after a run of 5 s, for a strip with an initial push of 1 mm/s.
-double way_aside(double gamma) {
+double sideways_displacement(double gamma) {
   scene::Scene scene = upright_strip(ClothShape::quads, kOfRun, gamma);
   scene.time = {.duration = 5, .fps = 10, .step = 0.05};
   scene.solver.newton_tolerance = 1e-6;
@@ -116,7 +116,7 @@ double way_aside(double gamma) {
 
 TEST(LateralBuckling, StripOfARunFallsAsideWhereItsJacobianSays) {
   const double at = onset(ClothShape::quads, kOfRun);
-  const double below = way_aside(0.9 * at), above = way_aside(1.1 * at);
+  const double below = sideways_displacement(0.9 * at), above = sideways_displacement(1.1 * at);
   std::printf("aside after 5 s: %.2e m at 0.9, %.2e m at 1.1 of the onset\n", below, above);
   EXPECT_LT(below, 1e-3);
   EXPECT_GT(above, 1e-2);

@@ -37,7 +37,7 @@ class ManyContacts : public support::TestFolder {
     return fmt::format("[[cloth]]\nname = 'tube'\nshape = 'mesh'\nrest = 'mesh'\nfile = '{}'\n", file.string());
   }
 
-  /// Runs the scene and judges all frames with exact predicates. Without contact the same scene must have
+  /// Runs the scene and tests all frames with exact predicates. Without contact the same scene must have
   /// intersections, otherwise the test would show nothing. One of its 80 to 120 steps may be halved. (This happens to
   /// the ribbons in one of six starts, 0.7 mm apart in height.)
   static void expect_apart(const std::string& text) {
@@ -56,7 +56,7 @@ class ManyContacts : public support::TestFolder {
     std::size_t pairs = 0;
     for (int frame = 1; frame < free.frame_count() && pairs == 0; ++frame) {
       simulation.advance();
-      pairs = support::judge(support::objects_of(*simulation.snapshot())).pairs.size();
+      pairs = support::find_intersections(support::objects_of(*simulation.snapshot())).pairs.size();
     }
     EXPECT_GT(pairs, 0U);
   }

@@ -29,7 +29,7 @@ TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
       rope("line",
            "points = [[-0.5, 0, 0], [0, 0, -0.559], [0.5, 0, 0]]\nlength = 1.5\nsegments = 60\ndiameter = 0.006\n"
            "mass = 0.05\nstretch = 2000\nbend = 0\ndrag = 4\ndamping = 0.05\npin = [{ at = 0 }, { at = 1 }]\n"));
-  const std::vector<Vec3> x = support::run_scene(scene, {.judged = false}).back().cloths.at(0);
+  const std::vector<Vec3> x = support::run_scene(scene, {.counts_intersections = false}).back().cloths.at(0);
   // sinh(u) / u = length / span.
   double u = 1;
   for (int k = 0; k < 50; ++k) u -= (std::sinh(u) - kLength / kSpan * u) / (std::cosh(u) - kLength / kSpan);
@@ -51,7 +51,8 @@ TEST(Ropes, SwingWithTheFrequencyOfATautString) {
            "stretch = 100\nbend = 0\ndamping = 0\nvelocity = [0, 0, 0.02]\npin = [{ at = 0 }, { at = 1 }]\n"));
   std::vector<double> crossings;
   double before = 0;
-  for (const MeasuredFrame& frame : support::run_scene(scene, {.judged = false, .keep_positions = true})) {
+  for (const MeasuredFrame& frame :
+       support::run_scene(scene, {.counts_intersections = false, .keep_positions = true})) {
     double amplitude = 0;
     for (const Vec3& x : frame.cloths.at(0)) amplitude += x.z() * std::sin(std::numbers::pi * x.x());
     const double t = frame.report.frame / 250.0;
@@ -72,7 +73,8 @@ TEST(Ropes, FallFreelyHoweverTheyBendAndSwingWithinThemselves) {
       rope("lasso",
            "points = [[0, 0, 0], [0.2, 0.1, 0], [0.3, -0.1, 0.1], [0.5, 0, 0.2]]\nsmooth = true\nlength = 0.7\n"
            "diameter = 0.006\nvelocity = [1, 0.5, 2]\n"));
-  const std::vector<MeasuredFrame> frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
+  const std::vector<MeasuredFrame> frames =
+      support::run_scene(scene, {.counts_intersections = false, .keep_positions = true});
   const std::vector<double> lengths = scene::start_shape(scene.ropes[0], scene.up).lengths;
   const auto centre = [&](const std::vector<Vec3>& x) {
     Vec3 sum = Vec3::Zero();
@@ -111,7 +113,8 @@ scene::Scene over_a_drum(double light, double heavy) {
 
 // How far the heavy end descends between 0.1 s, when the rope has stretched, and 0.8 s [m].
 double descent(const scene::Scene& scene) {
-  const std::vector<MeasuredFrame> frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
+  const std::vector<MeasuredFrame> frames =
+      support::run_scene(scene, {.counts_intersections = false, .keep_positions = true});
   return frames[2].cloths.at(0).back().z() - frames.back().cloths.at(0).back().z();
 }
 

@@ -46,7 +46,7 @@ std::string half_pipe(const std::string& integrator, double angle) {
 /// Fraction of the energy of its fall that the patch has as kinetic energy at the bottom.
 double kept_at_the_bottom(const std::string& integrator) {
   double max_energy = 0, fall = 0, bottom = 0;
-  run_scene(scene_of_text(half_pipe(integrator, 15)), {.judged = false, .keep_positions = true},
+  run_scene(scene_of_text(half_pipe(integrator, 15)), {.counts_intersections = false, .keep_positions = true},
             [&](const MeasuredFrame& frame) {
               const Vec3 at = centre(frame.cloths[0]);
               if (frame.report.frame == 0) bottom = 1 - std::hypot(at.y(), 1 - at.z()), fall = at.z() - bottom;
@@ -69,7 +69,7 @@ TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
 // the air and rise to 0.72 of its drop; to 0.54, if those vertices also acted at full stiffness.)
 TEST(SlidingContact, RisesAgainInAHalfPipeIfItIsFast) {
   double start = 0, bottom = 1, rise = 0;
-  run_scene(scene_of_text(half_pipe("bdf2", 75)), {.judged = false, .keep_positions = true},
+  run_scene(scene_of_text(half_pipe("bdf2", 75)), {.counts_intersections = false, .keep_positions = true},
             [&](const MeasuredFrame& frame) {
               const double height = centre(frame.cloths[0]).z();
               if (frame.report.frame == 0) start = height;
@@ -90,7 +90,7 @@ TEST(SlidingContact, FlatSheetDoesNotBounceOffATable) {
           "material = { fabric = \"cotton\" }\n[[obstacle]]\nname = \"table\"\nshape = \"box\"\nsize = [2, 2, 0.2]\n"
           "position = [0, 0, -0.1]\n");
       double largest = 0, last = 0;
-      run_scene(scene, {.judged = false}, [&](const MeasuredFrame& frame) {
+      run_scene(scene, {.counts_intersections = false}, [&](const MeasuredFrame& frame) {
         largest = std::max(largest, frame.report.kinetic_energy);
         last = std::max(frame.report.kinetic_energy, frame.report.frame > 0.33 * fps ? last : 0.0);
       });
@@ -120,7 +120,7 @@ TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
     std::vector<Vec3> momentum_h;  // momentum times the frame's length, per frame [kg m]
     Vec3 before = Vec3::Zero();
     double rubbed = 0;
-    run_scene(scene, {.judged = true, .keep_positions = true}, [&](const MeasuredFrame& frame) {
+    run_scene(scene, {.counts_intersections = true, .keep_positions = true}, [&](const MeasuredFrame& frame) {
       Vec3 sum = Vec3::Zero();
       for (std::size_t c = 0; c < 2; ++c) {
         const int n = c == 0 ? 11 : 13;
@@ -158,7 +158,9 @@ scene::Scene napkin(int turn) {
 
 // The solver's residual depends on the axes; the run reports it within a factor of three (`weft bench estimates`).
 TEST(SlidingContact, MovesTheSameWhereverTheAxesPoint) {
-  const auto run = [](int turn) { return run_scene(napkin(turn), {.judged = false, .keep_positions = true}); };
+  const auto run = [](int turn) {
+    return run_scene(napkin(turn), {.counts_intersections = false, .keep_positions = true});
+  };
   const auto straight = run(0), turned = run(90);
   double reported = 0;  // error reported by both runs [m]
   for (std::size_t k = 0; k < straight.size(); ++k) {
@@ -174,7 +176,7 @@ TEST(SlidingContact, MovesTheSameWhereverTheAxesPoint) {
 // twice its strain with finer tolerances.
 TEST(SlidingContact, TheSolverLeavesLessThanAThirdOfTheErrorOfTheSteps) {
   double steps = 0, solver = 0, strain = 0;
-  for (const MeasuredFrame& frame : run_scene(napkin(0), {.judged = true})) {
+  for (const MeasuredFrame& frame : run_scene(napkin(0), {.counts_intersections = true})) {
     steps += frame.report.error_estimate;
     solver += frame.report.solver_error;
     strain = std::max(strain, frame.report.max_strain);

@@ -67,7 +67,7 @@ scene::Scene pressed_strip(double depth, double friction) {
 }
 
 /// How far the tip moves in the second after its release [m].
-double way_of_tip(const scene::Scene& scene) {
+double tip_displacement(const scene::Scene& scene) {
   production::SceneSimulation simulation(scene);
   for (int k = 0; k < kReleased + static_cast<int>(kFps); ++k) simulation.advance();
   return std::abs(testing::sheet_of(simulation.snapshot())[1].y());
@@ -75,13 +75,13 @@ double way_of_tip(const scene::Scene& scene) {
 
 TEST(StickSlip, TipSlipsTwoPercentBelowTheFrictionThatTheElasticaNeeds) {
   for (const Point& point : kElastica)
-    EXPECT_GT(way_of_tip(pressed_strip(point.depth, 0.98 * point.friction)), 2e-3) << "depth " << point.depth;
+    EXPECT_GT(tip_displacement(pressed_strip(point.depth, 0.98 * point.friction)), 2e-3) << "depth " << point.depth;
 }
 
 TEST(StickSlip, TipSticksTwoPercentAboveTheFrictionThatTheElasticaNeeds) {
   // README, "stick speed": sticking contacts creep by up to 2e-4 m/s.
   for (const Point& point : kElastica)
-    EXPECT_LT(way_of_tip(pressed_strip(point.depth, 1.02 * point.friction)), 2e-4) << "depth " << point.depth;
+    EXPECT_LT(tip_displacement(pressed_strip(point.depth, 1.02 * point.friction)), 2e-4) << "depth " << point.depth;
 }
 
 }  // namespace

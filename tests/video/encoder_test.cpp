@@ -305,7 +305,7 @@ TEST_F(EncoderTest, SettingsOutOfRangeAreNamed) {
   EXPECT_TRUE(files().empty());
 }
 
-TEST_F(EncoderTest, FramesOfAnotherSizeAreOurOwnFault) {
+TEST_F(EncoderTest, FramesOfAnotherSizeAreAnInternalError) {
   Encoder encoder(folder_ / "a.mp4", small());
   expect_error(ExitCode::internal, "frame 0: expected 128x64 pixels, got 64x64",
                [&] { encoder.add(image::Image(64, 64)); });

@@ -34,7 +34,7 @@ constexpr double kMinNewtonTolerance = 1e-8, kDecade = 0.1;
 // newton_tolerance of the runs of Axis::mesh, relative to the scene's: their error must be that of the mesh.
 constexpr double kMeshNewtonRatio = 1e-2;
 // A tenfold newton_tolerance matters little if it changes the result by at most this fraction of the error due to the
-// step; see Run::step_decides and tighten().
+// step; see Run::is_step_limited and tighten().
 constexpr double kMaxSolverChangeRatio = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
@@ -78,9 +78,9 @@ Errors spread_of(const Sample& sample) {
 }
 
 // One call of measure_accuracy().
-class Campaign {
+class AccuracyMeasurement {
  public:
-  Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan);
+  AccuracyMeasurement(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan);
   Accuracy measure();
 
  private:
@@ -112,14 +112,14 @@ class Campaign {
 
   SamplePtr sample(const Setting& setting) const;
   SamplePtr run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same = {});
-  SamplePtr made(const Setting& setting);
+  SamplePtr run_or_throw(const Setting& setting);
   Errors tighten(Setting& twice, SamplePtr& coarse);
   SamplePtr measure_candidate(Candidate& candidate);
   void measure_references();
   SamplePtr measure_grid(Integrator integrator, double step);
   void measure_steps(Integrator integrator);
   std::vector<double> tolerances_of(Integrator integrator) const;
-  bool decides(const Run& run, const Run& tighter) const;
+  bool is_step_limited(const Run& run, const Run& tighter) const;
   void measure_tolerances(Integrator integrator);
   void measure_linear();
   void measure_meshes();
@@ -136,7 +136,7 @@ class Campaign {
   double work_ = 0, work_done_ = 0;  // expected and finished work; see work_of()
 };
 
-Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
+AccuracyMeasurement::AccuracyMeasurement(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
     : scene_(scene), each_(each), plan_(plan) {
   result_.contact = production::can_collide(scene);
   result_.starts = plan.starts.value_or(result_.contact ? kMinStartsWithContact : 1);
@@ -164,7 +164,7 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const Accurac
   result_.of_scene.tolerance = scene.time.tolerance;
 }
 
-scene::Scene Campaign::scene_with(const Setting& setting) const {
+scene::Scene AccuracyMeasurement::scene_with(const Setting& setting) const {
   scene::Scene scene = scene_;
   scene.time.integrator = setting.integrator;
   scene.time.step = setting.step;
@@ -178,7 +178,7 @@ scene::Scene Campaign::scene_with(const Setting& setting) const {
 // Expected number of steps, times the number of particles relative to the scene. If the setting has a tolerance t, the
 // assumed step is kSteps[0] times the scene's at t = kLargestTolerance, and proportional to t^(1/2) for Euler and to
 // t^(1/3) for the others.
-double Campaign::work_of(const Setting& setting) const {
+double AccuracyMeasurement::work_of(const Setting& setting) const {
   const double root = setting.integrator == Integrator::implicit_euler ? 2 : 3;
   const double step = setting.tolerance
                           ? kSteps[0] * scene_step_ * std::pow(*setting.tolerance / kLargestTolerance, 1 / root)
@@ -187,7 +187,7 @@ double Campaign::work_of(const Setting& setting) const {
 }
 
 // Runs a setting from all starts. Throws if one of the runs fails.
-Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
+AccuracyMeasurement::SamplePtr AccuracyMeasurement::sample(const Setting& setting) const {
   const run_error::FollowLimits limits{
       .steps = setting.tolerance ? std::min(kMaxStepRatio, reference_step_divisor()) * steps_of(finest_)
                                  : kMaxStepRatio * std::max(steps_of(finest_), steps_of(setting.step))};
@@ -211,7 +211,8 @@ Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
 
 // Runs the setting of `run`, and stores its cost and its errors against `against` in `run`. If the run fails, stores
 // the reason in `run` and returns nullptr.
-Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same) {
+AccuracyMeasurement::SamplePtr AccuracyMeasurement::run(Run& run, const SamplePtr& against,
+                                                        const std::vector<std::size_t>& same) {
   SamplePtr made;
   try {
     made = sample(run.setting);
@@ -232,7 +233,7 @@ Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std:
 }
 
 // Runs a setting of a reference. Throws if the run fails.
-Campaign::SamplePtr Campaign::made(const Setting& setting) {
+AccuracyMeasurement::SamplePtr AccuracyMeasurement::run_or_throw(const Setting& setting) {
   Run tried{.setting = setting};
   SamplePtr sample = run(tried, nullptr);
   if (!sample) throw Error(ExitCode::simulation_failed, "{}", tried.failure);
@@ -245,28 +246,28 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
 // `coarse`: run of `twice`; replaced by the last successful run. Returns the last change. Throws if
 // the run after the first division fails, or if a run with twice the step of `twice` fails. If the newton_tolerance is
 // at kMinNewtonTolerance already, returns the change from ten times its value.
-Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
-  const Quantity decides = deciding_quantity(result_);
+Errors AccuracyMeasurement::tighten(Setting& twice, SamplePtr& coarse) {
+  const Quantity quantity = deciding_quantity(result_);
   const double order = expected_order({.setting = twice});
   if (twice.newton_tolerance <= kMinNewtonTolerance) {
     Setting looser = twice;
     looser.newton_tolerance /= kDecade;
-    return difference(*made(looser), *coarse);
+    return difference(*run_or_throw(looser), *coarse);
   }
   for (Errors change{};;) {
     Run tighter{.setting = twice};
     tighter.setting.newton_tolerance = tighter_newton_tolerance(twice.newton_tolerance, kDecade);
     const SamplePtr sample = run(tighter, coarse);
     // A failed run is accepted only after an earlier division has given a change to return.
-    if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
+    if (!sample && at(change, quantity) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
     if (!sample) return change;
     change = tighter.errors;
     twice = tighter.setting;
     coarse = sample;
     Setting four_times = twice;
     four_times.step *= 2;
-    const double step = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
-    const bool exact = at(change, decides) <= std::max(kMaxSolverChangeRatio * step, at(sample->spread, decides));
+    const double step = at(difference(*coarse, *run_or_throw(four_times)), quantity) / std::pow(2, order);
+    const bool exact = at(change, quantity) <= std::max(kMaxSolverChangeRatio * step, at(sample->spread, quantity));
     if (exact || twice.newton_tolerance <= kMinNewtonTolerance) return change;
   }
 }
@@ -274,14 +275,14 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
 // Runs a candidate for the reference and estimates its errors. Chooses newton_tolerance at twice
 // the step, because such runs take about half the time. If a run fails, stores the reason in
 // `candidate` and returns nullptr.
-Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
+AccuracyMeasurement::SamplePtr AccuracyMeasurement::measure_candidate(Candidate& candidate) {
   try {
     Setting twice = candidate.setting;
     twice.step *= 2;
-    SamplePtr coarse = made(twice);
+    SamplePtr coarse = run_or_throw(twice);
     candidate.solver = tighten(twice, coarse);
     candidate.setting.newton_tolerance = twice.newton_tolerance;
-    SamplePtr fine = made(candidate.setting);
+    SamplePtr fine = run_or_throw(candidate.setting);
     candidate.step = difference(*coarse, *fine);
     for (double& error : candidate.step) error /= error_ratio(candidate.setting.integrator, 2) - 1;
     candidate.spread = fine->spread;
@@ -293,15 +294,15 @@ Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   }
 }
 
-void Campaign::measure_references() {
+void AccuracyMeasurement::measure_references() {
   const double step = finest_ / reference_step_divisor();
   Candidate first{as_in_scene(best_, step)}, second{as_in_scene(other_, step)};
   reference_ = measure_candidate(first);
   SamplePtr second_sample = measure_candidate(second);
   if (!reference_ && !second_sample)
     throw Error(ExitCode::simulation_failed, "the reference run failed: {}", first.failure);
-  const Quantity decides = deciding_quantity(result_);
-  if (!reference_ || (second_sample && at(second.uncertainty(), decides) < at(first.uncertainty(), decides))) {
+  const Quantity quantity = deciding_quantity(result_);
+  if (!reference_ || (second_sample && at(second.uncertainty(), quantity) < at(first.uncertainty(), quantity))) {
     std::swap(first, second);
     std::swap(reference_, second_sample);
   }
@@ -317,14 +318,15 @@ void Campaign::measure_references() {
   result_.second = std::move(second);
 }
 
-bool Campaign::decides(const Run& run, const Run& tighter) const {
+bool AccuracyMeasurement::is_step_limited(const Run& run, const Run& tighter) const {
   const Quantity q = deciding_quantity(result_);
   return run.change <= std::max(kMaxSolverChangeRatio * error_of(tighter, q), result_.uncertainty_of(tighter, q));
 }
 
-// Runs one fixed step. Divides newton_tolerance by ten for each run, from the scene's value until Run::step_decides,
-// but not below kMinNewtonTolerance. Stops if a run fails. Returns the run with step_decides; nullptr if there is none.
-Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
+// Runs one fixed step. Divides newton_tolerance by ten for each run, from the scene's value until Run::is_step_limited,
+// but not below kMinNewtonTolerance. Stops if a run fails. Returns the run with is_step_limited; nullptr if there is
+// none.
+AccuracyMeasurement::SamplePtr AccuracyMeasurement::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
   const Quantity q = deciding_quantity(result_);
@@ -336,8 +338,8 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
     if (runs.size() > 1) {
       Run& before = runs[runs.size() - 2];
       before.change = at(difference(*samples[runs.size() - 2], *samples.back()), q);
-      before.step_decides = decides(before, runs.back());
-      if (before.step_decides) break;
+      before.is_step_limited = is_step_limited(before, runs.back());
+      if (before.is_step_limited) break;
     }
     if (setting.newton_tolerance <= kMinNewtonTolerance) break;
     setting.newton_tolerance = tighter_newton_tolerance(setting.newton_tolerance, kDecade);
@@ -345,15 +347,15 @@ Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (samples[k]) runs[k].solver_error = at(difference(*samples[k], **tightest), q);
-  const auto decided = std::ranges::find_if(runs, &Run::step_decides);
-  SamplePtr exact = decided == runs.end() ? nullptr : samples[static_cast<std::size_t>(decided - runs.begin())];
+  const auto found = std::ranges::find_if(runs, &Run::is_step_limited);
+  SamplePtr exact = found == runs.end() ? nullptr : samples[static_cast<std::size_t>(found - runs.begin())];
   result_.runs.insert(result_.runs.end(), std::make_move_iterator(runs.begin()), std::make_move_iterator(runs.end()));
   return exact;
 }
 
 // Measures all fixed steps. Then adds the CrossCheck of the run with the shortest step, if the conditions of CrossCheck
 // hold.
-void Campaign::measure_steps(Integrator integrator) {
+void AccuracyMeasurement::measure_steps(Integrator integrator) {
   SamplePtr before, last;
   double step_before = 0, step_last = 0;
   for (const double step : steps_) {
@@ -373,7 +375,7 @@ void Campaign::measure_steps(Integrator integrator) {
 
 // Values of time.tolerance: those of the plan, or else values half a decade apart. For the scene's integrator, also the
 // scene's own tolerance.
-std::vector<double> Campaign::tolerances_of(Integrator integrator) const {
+std::vector<double> AccuracyMeasurement::tolerances_of(Integrator integrator) const {
   std::set<double, std::greater<>> tolerances;
   for (int k = 0; !plan_.tolerances && k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k)
     tolerances.insert(kLargestTolerance * std::pow(10.0, -0.5 * k));
@@ -382,7 +384,7 @@ std::vector<double> Campaign::tolerances_of(Integrator integrator) const {
   return {tolerances.begin(), tolerances.end()};
 }
 
-void Campaign::measure_tolerances(Integrator integrator) {
+void AccuracyMeasurement::measure_tolerances(Integrator integrator) {
   for (const double tolerance : tolerances_of(integrator)) {
     Run tried{.axis = Axis::tolerance, .setting = as_in_scene(integrator, scene_step_)};
     tried.setting.tolerance = tolerance;
@@ -393,7 +395,7 @@ void Campaign::measure_tolerances(Integrator integrator) {
   }
 }
 
-void Campaign::measure_linear() {
+void AccuracyMeasurement::measure_linear() {
   for (double tolerance : kLinearTolerances) {
     Run tried{.axis = Axis::linear, .setting = as_in_scene(scene_.time.integrator, scene_step_)};
     tried.setting.linear_tolerance = tolerance;
@@ -404,7 +406,7 @@ void Campaign::measure_linear() {
 
 // Runs meshes from fine to coarse. Compares each with the mesh that has twice the cells along each side, if that mesh
 // was run. Lists the results from coarse to fine.
-void Campaign::measure_meshes() {
+void AccuracyMeasurement::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // twice a key is exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
   std::set<double, std::greater<>> asked, all(std::begin(kRefinements), std::end(kRefinements));  // finest first
@@ -431,7 +433,7 @@ void Campaign::measure_meshes() {
   }
 }
 
-Accuracy Campaign::measure() {
+Accuracy AccuracyMeasurement::measure() {
   // Rough estimate of the work: for each step, three values of newton_tolerance; for all other axes together, half of
   // that; for each reference, three runs at its step.
   constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
@@ -453,7 +455,7 @@ Accuracy Campaign::measure() {
 }  // namespace
 
 Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan) {
-  return Campaign(scene, each, plan).measure();
+  return AccuracyMeasurement(scene, each, plan).measure();
 }
 
 }  // namespace weft::bench

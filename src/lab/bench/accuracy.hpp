@@ -30,7 +30,7 @@ struct Setting {
 
 /// The parameter that varies in a series of runs. Along a series, the error should fall.
 enum class Axis {
-  grid,       ///< fixed steps; for each, runs divide newton_tolerance by ten until Run::step_decides or 1e-8
+  grid,       ///< fixed steps; for each, runs divide newton_tolerance by ten until Run::is_step_limited or 1e-8
   tolerance,  ///< time.tolerance varies, with the solver settings of the scene
   linear,     ///< solver.linear_tolerance varies, at the scene's step
   mesh,       ///< the number of cells varies; error: difference to the run with twice the cells along each side
@@ -52,7 +52,7 @@ struct Run {
   double change = std::numeric_limits<double>::quiet_NaN(), solver_error = change;
   /// Only for Axis::grid: whether the step, not the solver, determines the error. True if `change` is at most a tenth
   /// of the error of the run with a tenth of this newton_tolerance, or at most the uncertainty of that error.
-  bool step_decides = false;
+  bool is_step_limited = false;
   /// Cost of the run from the first start; but the CPU time is the minimum over all starts. If
   /// there is only one start and its run takes less than 0.3 s of CPU time, it is run twice, and
   /// the smaller time counts.
@@ -88,13 +88,13 @@ struct Candidate {
 };
 
 /// Check of the reference by the run of an integrator with the shortest fixed step that was measured. The check is made
-/// only if Run::step_decides is true for this run and for a run with a longer step.
+/// only if Run::is_step_limited is true for this run and for a run with a longer step.
 struct CrossCheck {
   scene::Integrator integrator = scene::Integrator::implicit_euler;
   double step = 0;      ///< [s]
   Errors difference{};  ///< difference to the reference
-  /// Uncertainty of this run: its difference to the run with the next longer step and Run::step_decides, extrapolated
-  /// with half of the order (with contact, with an order of 0.5), plus Run::spread.
+  /// Uncertainty of this run: its difference to the run with the next longer step and Run::is_step_limited,
+  /// extrapolated with half of the order (with contact, with an order of 0.5), plus Run::spread.
   Errors uncertainty{};
 };
 
@@ -129,8 +129,8 @@ struct Accuracy {
   std::vector<const Run*> series(Axis axis, scene::Integrator integrator) const;
   /// The successful run with the scene's own settings; nullptr if there is none.
   const Run* scene_setting_run() const;
-  /// The runs of Axis::grid and of this integrator with Run::step_decides: at most one for each step.
-  std::vector<const Run*> decided(scene::Integrator integrator) const;
+  /// The runs of Axis::grid and of this integrator with Run::is_step_limited: at most one for each step.
+  std::vector<const Run*> step_limited_runs(scene::Integrator integrator) const;
 };
 
 /// The quantities to report. Without contact: position, velocity and some functionals; with contact: only functionals.

@@ -77,7 +77,7 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy) {
   for (Quantity q : quantities_of(accuracy)) {
     Panel panel{fmt::format("{}: {}", title, name_of(q)), "CPU time [s]", error_label(q), {}, {}};
     panel.unresolved_below = 3 * at(accuracy.uncertainty, q);
-    add_curves(panel, q, "step decides", Marker::circle, false, deciding(accuracy), cpu_of);
+    add_curves(panel, q, "step decides", Marker::circle, false, step_limited_runs(accuracy), cpu_of);
     add_curves(panel, q, "scene's", Marker::square, true, with_solver_of_scene(accuracy), cpu_of);
     add_curves(panel, q, "tolerance", Marker::triangle, false, runs_of_axis(accuracy, Axis::tolerance), cpu_of);
     panels.push_back(std::move(panel));
@@ -90,7 +90,7 @@ std::string settings_svg(const std::string& title, const Accuracy& accuracy) {
   const auto milliseconds = [](const Run& run) { return 1e3 * run.setting.step; };
   Panel steps{title + ": fixed steps", "step [ms]", error_label(q), {}, {}};
   steps.unresolved_below = 3 * at(accuracy.uncertainty, q);
-  add_curves(steps, q, "step decides", Marker::circle, false, deciding(accuracy), milliseconds);
+  add_curves(steps, q, "step decides", Marker::circle, false, step_limited_runs(accuracy), milliseconds);
   add_curves(steps, q, "scene's", Marker::square, true, with_solver_of_scene(accuracy), milliseconds);
   Panel solver{title + ": solver", "newton_tolerance", fmt::format("left by the solver [{}]", unit_of(q)), {}, {}};
   for (Integrator integrator : kIntegrators) add_tolerances(solver, accuracy, integrator);

@@ -69,7 +69,7 @@ Table runs_table(const Accuracy& accuracy, const std::vector<const Run*>& runs, 
   return table;
 }
 
-// Errors and CPU times: one row per step, one column per newton_tolerance. * marks runs with Run::step_decides.
+// Errors and CPU times: one row per step, one column per newton_tolerance. * marks runs with Run::is_step_limited.
 Table grid_table(const Accuracy& accuracy, Integrator integrator) {
   const auto runs = accuracy.series(Axis::grid, integrator);
   std::set<double, std::greater<>> steps, tolerances;
@@ -88,7 +88,7 @@ Table grid_table(const Accuracy& accuracy, Integrator integrator) {
         row.emplace_back("failed");
       } else {
         row.push_back(fmt::format("{}{} ({:.2g} s)", error_text(accuracy, **found, deciding_quantity(accuracy)),
-                                  (*found)->step_decides ? " *" : "", (*found)->work.cpu_s));
+                                  (*found)->is_step_limited ? " *" : "", (*found)->work.cpu_s));
       }
     }
     table.push_back(std::move(row));
@@ -192,10 +192,10 @@ std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis) {
   return runs;
 }
 
-std::vector<const Run*> deciding(const Accuracy& accuracy) {
+std::vector<const Run*> step_limited_runs(const Accuracy& accuracy) {
   std::vector<const Run*> runs;
   for (Integrator integrator : kIntegrators)
-    for (const Run* run : accuracy.decided(integrator)) runs.push_back(run);
+    for (const Run* run : accuracy.step_limited_runs(integrator)) runs.push_back(run);
   return runs;
 }
 
@@ -231,7 +231,7 @@ Table accuracy_table(const Accuracy& accuracy) {
                                  std::to_string(run.work.linear_iterations),
                                  fmt::format("{:.6g}", run.work.cpu_s),
                                  fmt::format("{:.3g}", expected_order(run)),
-                                 run.step_decides ? "yes" : "no",
+                                 run.is_step_limited ? "yes" : "no",
                                  number(run.change),
                                  number(run.solver_error),
                                  starts_text(run)};
@@ -247,7 +247,7 @@ Table accuracy_table(const Accuracy& accuracy) {
 
 std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy, const std::string& work_plot,
                               const std::string& settings_plot) {
-  const Quantity decides = deciding_quantity(accuracy);
+  const Quantity quantity = deciding_quantity(accuracy);
   std::string text = fmt::format(
       "# Error against run time: {}\n\n**{}**\n\n{}\n![Errors against CPU time]({})\n\n![Steps, solver and "
       "mesh]({})\n\n{:.3g} s in {} frames. {}Energies are relative to the {:.3g} J in play. In parentheses the "
@@ -262,21 +262,21 @@ std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy
                         accuracy.starts)
           : std::string("Position and velocity: root of the mean square over the mass, the largest of all "
                         "frames, as with energy; energy drift and centre of mass: of the last frame. "),
-      accuracy.largest_energy, reference_text(accuracy), label(decides));
+      accuracy.largest_energy, reference_text(accuracy), label(quantity));
   for (Integrator integrator : kIntegrators)
     if (!accuracy.series(Axis::grid, integrator).empty()) text += markdown(grid_table(accuracy, integrator)) + "\n";
   const auto section = [&](const char* heading, const std::vector<const Run*>& runs, bool with_orders = true) {
     if (!runs.empty()) text += fmt::format("## {}\n\n{}\n", heading, markdown(runs_table(accuracy, runs, with_orders)));
   };
-  section("The front: no run is both cheaper and more exact", front(accuracy, decides), false);
-  section("Fixed steps, solved so exactly that the step decides", deciding(accuracy));
+  section("The front: no run is both cheaper and more exact", pareto_front(accuracy, quantity), false);
+  section("Fixed steps, solved so exactly that the step decides", step_limited_runs(accuracy));
   section("Fixed steps, with the solver settings of the scene", with_solver_of_scene(accuracy));
   section("Steps chosen by time.tolerance", runs_of_axis(accuracy, Axis::tolerance));
   section("linear_tolerance, at the scene's step", runs_of_axis(accuracy, Axis::linear), false);
   section("Meshes: difference to the mesh with twice the cells along each side", runs_of_axis(accuracy, Axis::mesh));
   if (accuracy.starts > 1)
     text += fmt::format("## What the start decides\n\nError of the {} of single starts against the reference.\n\n{}\n",
-                        label(decides), markdown(starts_table(accuracy)));
+                        label(quantity), markdown(starts_table(accuracy)));
   return text + failures_text(accuracy) +
          "The preconditioner of the linear solver is chosen by the program; `bench_solver` compares solvers.\n";
 }

@@ -11,8 +11,8 @@ namespace weft::bench {
 
 /// All runs of one axis, of all integrators.
 std::vector<const Run*> runs_of_axis(const Accuracy& accuracy, Axis axis);
-/// The runs of Axis::grid with Run::step_decides, of all integrators.
-std::vector<const Run*> deciding(const Accuracy& accuracy);
+/// The runs of Axis::grid with Run::is_step_limited, of all integrators.
+std::vector<const Run*> step_limited_runs(const Accuracy& accuracy);
 /// The runs of Axis::grid with the newton_tolerance of the scene, of all integrators.
 std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy);
 
@@ -30,7 +30,7 @@ std::string settings_svg(const std::string& title, const Accuracy& accuracy);
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target);
 /// The Pareto front of Axis::grid and Axis::tolerance, cheapest first: the runs for which no other run is both cheaper
 /// and, counting error plus uncertainty, more exact.
-std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity);
+std::vector<const Run*> pareto_front(const Accuracy& accuracy, Quantity quantity);
 
 /// One line: which setting to use, its cost, and the cost of the scene's setting. The target is an error of 1 % of the
 /// cloth's size.

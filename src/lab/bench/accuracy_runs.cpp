@@ -60,10 +60,10 @@ std::vector<const Run*> Accuracy::series(Axis axis, Integrator integrator) const
   return found;
 }
 
-std::vector<const Run*> Accuracy::decided(Integrator integrator) const {
+std::vector<const Run*> Accuracy::step_limited_runs(Integrator integrator) const {
   std::vector<const Run*> found;
   for (const Run* run : series(Axis::grid, integrator))
-    if (run->step_decides) found.push_back(run);
+    if (run->is_step_limited) found.push_back(run);
   return found;
 }
 

@@ -66,14 +66,14 @@ std::string keys_text(const Setting& s) {
                      s.newton_tolerance);
 }
 
-std::string off_text(const Accuracy& accuracy, const Run& run, Quantity quantity) {
+std::string deviation_text(const Accuracy& accuracy, const Run& run, Quantity quantity) {
   return fmt::format("{:.2g} CPU s, the {} off by at most {:.2g} mm{}", run.work.cpu_s, name_of(quantity),
                      1e3 * bound_of(accuracy, run, quantity), quantity == Quantity::centre ? " in the last frame" : "");
 }
 
-std::string stands_text(const Accuracy& accuracy, const Run* stands, Quantity quantity) {
-  if (stands == nullptr) return "the settings of the scene were not measured, or do not reach its end";
-  return fmt::format("the settings of the scene take {}", off_text(accuracy, *stands, quantity));
+std::string scene_setting_text(const Accuracy& accuracy, const Run* scene_run, Quantity quantity) {
+  if (scene_run == nullptr) return "the settings of the scene were not measured, or do not reach its end";
+  return fmt::format("the settings of the scene take {}", deviation_text(accuracy, *scene_run, quantity));
 }
 
 std::string cheapest_text(const Accuracy& accuracy, Quantity quantity, double target) {
@@ -87,7 +87,7 @@ std::string cheapest_text(const Accuracy& accuracy, Quantity quantity, double ta
                      error_of(*best, quantity));
 }
 
-std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
+std::string cheapest_settings_text(const Accuracy& accuracy, Quantity quantity) {
   const double uncertainty = at(accuracy.uncertainty, quantity);
   std::string text;
   for (double target : kTargets) {
@@ -138,14 +138,14 @@ std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Ru
 
 std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
   Line line;
-  for (const Run* run : front(accuracy, quantity))
+  for (const Run* run : pareto_front(accuracy, quantity))
     if (accuracy.resolved(*run, quantity)) line.add(*run, quantity);
   std::string each;
   for (Integrator integrator : kIntegrators) {
     if (accuracy.series(Axis::grid, integrator).empty() && accuracy.series(Axis::tolerance, integrator).empty())
       continue;
     each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator),
-                        digit_of_series(accuracy, accuracy.decided(integrator), quantity),
+                        digit_of_series(accuracy, accuracy.step_limited_runs(integrator), quantity),
                         digit_of_series(accuracy, accuracy.series(Axis::tolerance, integrator), quantity));
   }
   return fmt::format(
@@ -157,7 +157,7 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
 
 // Errors due to step, solver and mesh with the settings of the scene. If the scene has time.tolerance, the error due to
 // the step includes that due to the solver.
-std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
+std::string error_parts_text(const Accuracy& accuracy, Quantity quantity) {
   std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {
     if (run.failed()) continue;
@@ -171,7 +171,7 @@ std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
         run.setting.step != accuracy.of_scene.step)
       continue;
     if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance) left["the solver"] = run.solver_error;
-    if (run.step_decides) left["the step"] = error_of(run, quantity);
+    if (run.is_step_limited) left["the step"] = error_of(run, quantity);
   }
   const auto text = [&](const char* source) {
     const auto found = left.find(source);
@@ -206,7 +206,7 @@ const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) 
   return best;
 }
 
-std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
+std::vector<const Run*> pareto_front(const Accuracy& accuracy, Quantity quantity) {
   std::vector<const Run*> by_time, front;
   for (const Run& run : accuracy.runs)
     if (is_candidate(run)) by_time.push_back(&run);
@@ -245,33 +245,34 @@ std::string recommendation(const Accuracy& accuracy) {
   const double target = kTargetErrorRatio * accuracy.cloth_size;
   const std::string wanted = fmt::format("{:.2g} mm (1 % of the cloth's size)", 1e3 * target);
   const Run* best = cheapest(accuracy, quantity, target);
-  const Run* stands = accuracy.scene_setting_run();
+  const Run* scene_run = accuracy.scene_setting_run();
   if (best == nullptr) {
-    const auto exact = front(accuracy, quantity);
+    const auto exact = pareto_front(accuracy, quantity);
     if (exact.empty()) return "No setting that was tried reaches the end of the scene.";
     const bool reaches = bound_of(accuracy, *exact.back(), quantity) <= target;
     return fmt::format(
         "No setting that was tried is known to keep the {} within {}. The most exact one is {}: {}{}; {}.",
-        name_of(quantity), wanted, keys_text(exact.back()->setting), off_text(accuracy, *exact.back(), quantity),
+        name_of(quantity), wanted, keys_text(exact.back()->setting), deviation_text(accuracy, *exact.back(), quantity),
         reaches ? ", which may be chance, as runs that are solved more exactly are farther off" : "",
-        stands_text(accuracy, stands, quantity));
+        scene_setting_text(accuracy, scene_run, quantity));
   }
   best = most_exact_at_cost(accuracy, quantity, target, best->work.cpu_s);
-  if (stands != nullptr && stands->work.cpu_s <= kEqualRatio * best->work.cpu_s &&
-      certainly_reaches(accuracy, *stands, quantity, target))
+  if (scene_run != nullptr && scene_run->work.cpu_s <= kEqualRatio * best->work.cpu_s &&
+      certainly_reaches(accuracy, *scene_run, quantity, target))
     return fmt::format(
         "Keep the settings of the scene, {}: {}, for an accuracy of {}. No other takes less than {:.2g} CPU s.",
-        keys_text(stands->setting), off_text(accuracy, *stands, quantity), wanted,
-        std::min(stands->work.cpu_s, best->work.cpu_s));
+        keys_text(scene_run->setting), deviation_text(accuracy, *scene_run, quantity), wanted,
+        std::min(scene_run->work.cpu_s, best->work.cpu_s));
   return fmt::format("Use {}: {}, for an accuracy of {}; {}.", keys_text(best->setting),
-                     off_text(accuracy, *best, quantity), wanted, stands_text(accuracy, stands, quantity));
+                     deviation_text(accuracy, *best, quantity), wanted,
+                     scene_setting_text(accuracy, scene_run, quantity));
 }
 
 std::string conclusion(const Accuracy& accuracy) {
   const Quantity quantity = deciding_quantity(accuracy);
   if (is_still(accuracy)) return "";
-  return which_setting(accuracy, quantity) + " " + cost_of_a_digit(accuracy, quantity) + " " +
-         what_is_left(accuracy, quantity) + "\n";
+  return cheapest_settings_text(accuracy, quantity) + " " + cost_of_a_digit(accuracy, quantity) + " " +
+         error_parts_text(accuracy, quantity) + "\n";
 }
 
 }  // namespace weft::bench

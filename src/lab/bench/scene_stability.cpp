@@ -100,16 +100,16 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   return true;
 }
 
-// Adds the faults of a frame (see TrialVerdict) to `broken`.
-void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
-  if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
-  if (report.stretch_ratio > simulation::kMaxStretchRatio) broken.insert("cloth is stretched beyond its max_stretch");
-  if (report.pinched_pairs > 0) broken.insert("cloth is caught in an obstacle");
-  if (report.lagging_particles > 0) broken.insert("a pin is held back");
+// Adds the faults of a frame (see TrialVerdict) to `faults`.
+void add_faults(const simulation::FrameReport& report, std::set<std::string>& faults) {
+  if (report.min_distance <= 0 && report.frame > 0) faults.insert("surfaces touch or pass through each other");
+  if (report.stretch_ratio > simulation::kMaxStretchRatio) faults.insert("cloth is stretched beyond its max_stretch");
+  if (report.pinched_pairs > 0) faults.insert("cloth is caught in an obstacle");
+  if (report.lagging_particles > 0) faults.insert("a pin is held back");
   for (const std::string& warning : report.warnings) {
-    if (warning.find("more than at the start") != std::string::npos) broken.insert("energy comes from nowhere");
+    if (warning.find("more than at the start") != std::string::npos) faults.insert("energy comes from nowhere");
     if (warning.find("the solver has left forces") != std::string::npos)
-      broken.insert("the solver leaves the motion unsolved");
+      faults.insert("the solver leaves the motion unsolved");
   }
 }
 
@@ -120,14 +120,14 @@ bool is_finite(const production::SceneSimulation& simulation) {
 // Runs the scene until it ends, fails, becomes too slow, or `stop` interrupts it. Records the results in `trial`.
 void run(const scene::Scene& scene, double max_cpu_s, const std::function<bool()>& stop, Trial& trial) {
   const double begin = process_cpu_seconds();
-  std::set<std::string> broken;
+  std::set<std::string> faults;
   const auto note = [&](const simulation::FrameReport& report) {
     trial.steps += report.steps;
     trial.rejected_steps += report.rejected_steps;
     trial.newton_iterations += report.newton_iterations;
     trial.max_strain = std::max(trial.max_strain, report.max_strain);
-    find_broken(report, broken);
-    trial.broken.assign(broken.begin(), broken.end());
+    add_faults(report, faults);
+    trial.new_faults.assign(faults.begin(), faults.end());
   };
   const auto may_continue = [&] {
     if (stop()) throw Error(ExitCode::interrupted, "interrupted");
@@ -171,9 +171,10 @@ Trial try_factors(const scene::Scene& scene, const Factors& factors, double max_
     trial.reason = error.what();
   }
   trial.cpu_s = process_cpu_seconds() - begin;
-  trial.mends = trial.verdict == TrialVerdict::holds && trial.broken.empty();
-  std::erase_if(trial.broken, [&](const std::string& what) { return std::ranges::count(known, what) > 0; });
-  if (trial.verdict == TrialVerdict::holds && !trial.broken.empty()) trial.verdict = TrialVerdict::warned;
+  // Up to here, `new_faults` also contains the known faults.
+  trial.is_free_of_faults = trial.verdict == TrialVerdict::holds && trial.new_faults.empty();
+  std::erase_if(trial.new_faults, [&](const std::string& what) { return std::ranges::count(known, what) > 0; });
+  if (trial.verdict == TrialVerdict::holds && !trial.new_faults.empty()) trial.verdict = TrialVerdict::warned;
   return trial;
 }
 
@@ -258,7 +259,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
   const double max_cpu_s = kSlowRatio * result.as_is.cpu_s + kSlowSeconds;
   for (const Factors& factors : plan) {
     try {
-      result.trials.push_back(try_factors(scene, factors, max_cpu_s, result.as_is.broken, stop));
+      result.trials.push_back(try_factors(scene, factors, max_cpu_s, result.as_is.new_faults, stop));
     } catch (const Error& error) {
       if (error.code() != ExitCode::interrupted) throw;
       break;

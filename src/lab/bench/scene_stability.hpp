@@ -47,10 +47,10 @@ std::string_view describe(TrialVerdict verdict);
 struct Trial {
   Factors factors{1, 1, 1, 1, 1, 1};
   TrialVerdict verdict = TrialVerdict::holds;
-  std::vector<std::string> broken = {};  ///< new faults
-  bool mends = false;                    ///< whether the trial ran to the end without any fault, new or not
-  std::string reason = {};               ///< error message, if the verdict is `refused` or `impossible`
-  double step = 0;                       ///< time step [s]; 0 if time.tolerance chooses it
+  std::vector<std::string> new_faults = {};  ///< see TrialVerdict
+  bool is_free_of_faults = false;            ///< whether the trial ran to the end without any fault, new or not
+  std::string reason = {};                   ///< error message, if the verdict is `refused` or `impossible`
+  double step = 0;                           ///< time step [s]; 0 if time.tolerance chooses it
   int frames = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
   double max_strain = 0;  ///< maximum over all frames
   double cpu_s = 0;

@@ -36,7 +36,7 @@ double newton_of(const Trial& trial) {
 
 std::string what_of(const Trial& trial) {
   std::string text;
-  for (const std::string& what : trial.broken) text += (text.empty() ? "" : ", ") + what;
+  for (const std::string& what : trial.new_faults) text += (text.empty() ? "" : ", ") + what;
   if (trial.verdict == TrialVerdict::too_slow)
     text = fmt::format("given up after {} frames and {:.2g} CPU s{}{}", trial.frames, trial.cpu_s,
                        text.empty() ? "" : "; ", text);
@@ -84,7 +84,8 @@ std::string margin_sentence(const SceneStability& stability) {
   if (as_is.verdict != TrialVerdict::holds) {
     const Trial* cure = nullptr;
     for (const Trial& trial : stability.trials)
-      if (trial.mends && (cure == nullptr || distance(trial.factors) < distance(cure->factors))) cure = &trial;
+      if (trial.is_free_of_faults && (cure == nullptr || distance(trial.factors) < distance(cure->factors)))
+        cure = &trial;
     std::string text = fmt::format("The scene as it is breaks ({}: {})", describe(as_is.verdict), what_of(as_is));
     for (std::size_t a = 0; cure != nullptr && a < kVariedValues; ++a)
       if (cure->factors[a] != 1)
@@ -195,17 +196,17 @@ std::string trial_svg(const std::string& title, const SceneStability& stability)
 std::string scene_stability_markdown(const std::string& title, const SceneStability& stability,
                                      const std::string& picture) {
   double cpu_s = stability.as_is.cpu_s;
-  int broken = 0;
+  int broken_runs = 0;
   for (const Trial& trial : stability.trials) {
     cpu_s += trial.cpu_s;
-    broken += trial.breaks();
+    broken_runs += trial.breaks();
   }
   return fmt::format(
       "# Stability of {}\n\n{}\n\n![map]({})\n\n{} runs of {} frames, {:.0f} CPU s; {} of them break. Factors are on "
       "the values of the scene; something counts as broken that is not so in the scene as it is.\n\n{}\n## All "
       "runs\n\n{}",
-      title, margin_sentence(stability), link_to(picture), stability.trials.size() + 1, stability.frames, cpu_s, broken,
-      markdown(margin_table(stability)), markdown(trial_table(stability)));
+      title, margin_sentence(stability), link_to(picture), stability.trials.size() + 1, stability.frames, cpu_s,
+      broken_runs, markdown(margin_table(stability)), markdown(trial_table(stability)));
 }
 
 }  // namespace weft::bench

@@ -77,7 +77,7 @@ std::string milliseconds(double ms) {
   return ms < 999.5 ? fmt::format("{:.3g}", ms) : grouped(std::lround(ms));
 }
 
-std::string how_cost_grows(const std::vector<const SpeedRun*>& sizes) {
+std::string cost_growth_text(const std::vector<const SpeedRun*>& sizes) {
   const SpeedRun &small = *sizes.front(), &large = *sizes.back();
   const auto cost = [](const SpeedRun& run) { return cpu_ms(run, run.all()); };
   const auto stages = stages_of({&large});
@@ -96,7 +96,7 @@ std::string how_cost_grows(const std::vector<const SpeedRun*>& sizes) {
                      sizes.size() > 2 && last_power ? fmt::format(", in the end {:.2f}", *last_power) : "");
 }
 
-std::string what_threads_gain(const std::vector<SpeedRun>& runs) {
+std::string thread_gain_text(const std::vector<SpeedRun>& runs) {
   std::vector<std::string> gains;
   int most = 0;
   bool same = true;
@@ -114,13 +114,13 @@ std::string what_threads_gain(const std::vector<SpeedRun>& runs) {
                      same ? "the same bits with any number" : "NOT the same bits");
 }
 
-std::string what_memory_takes(const std::vector<const SpeedRun*>& sizes) {
+std::string memory_text(const std::vector<const SpeedRun*>& sizes) {
   const SpeedRun& large = *sizes.back();
   return fmt::format("{} particles take {:.0f} MB, {:.2g} kB each.", grouped(large.particles),
                      static_cast<double>(large.peak_memory) / 1e6, large.bytes_a_particle() / 1e3);
 }
 
-std::string how_far_from_the_bound(const std::vector<const SpeedRun*>& sizes) {
+std::string bound_text(const std::vector<const SpeedRun*>& sizes) {
   const SpeedRun& large = *sizes.back();
   const double bound = memory_bound_s(large), takes = solving(large).wall_s;
   if (!(bound > 0 && takes > 0)) return {};
@@ -334,8 +334,8 @@ Table speed_table(const std::vector<SpeedRun>& runs) {
 std::string conclusion(const std::vector<SpeedRun>& runs) {
   const auto sizes = over_sizes(runs);
   if (sizes.empty()) return "No run succeeded.\n";
-  std::vector<std::string> sentences{how_cost_grows(sizes), what_threads_gain(runs), what_memory_takes(sizes),
-                                     how_far_from_the_bound(sizes)};
+  std::vector<std::string> sentences{cost_growth_text(sizes), thread_gain_text(runs), memory_text(sizes),
+                                     bound_text(sizes)};
   std::erase(sentences, "");
   return fmt::format("{}\n", fmt::join(sentences, " "));
 }

@@ -20,9 +20,9 @@ double mechanical_energy(const simulation::FrameReport& report) {
 }
 
 /// Checks positions and energy of a run in each frame, and records the largest speed and energy gain.
-class Watch {
+class RunMonitor {
  public:
-  Watch(const scene::Scene& scene, const production::SceneSimulation& simulation, const EnergyLimit& limit)
+  RunMonitor(const scene::Scene& scene, const production::SceneSimulation& simulation, const EnergyLimit& limit)
       : cloths_(scene.cloths.size()), fps_(scene.time.fps), limit_(limit), before_(simulation.snapshot()) {
     const simulation::FrameReport start = simulation.initial_report();
     start_energy_ = mechanical_energy(start);
@@ -64,7 +64,7 @@ class Watch {
 
 void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcome& outcome) {
   production::SceneSimulation simulation(scene);
-  Watch watch(scene, simulation, limit);
+  RunMonitor monitor(scene, simulation, limit);
   bool warned = false;
   for (int k = 0; k < frames; ++k) {
     const simulation::FrameReport report = simulation.advance();
@@ -74,7 +74,7 @@ void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcom
     outcome.rejected_steps += report.rejected_steps;
     outcome.newton_iterations += report.newton_iterations;
     outcome.max_strain = report.max_strain;
-    if (!watch.check_frame(report, simulation.snapshot(), outcome)) {
+    if (!monitor.check_frame(report, simulation.snapshot(), outcome)) {
       outcome.verdict = Verdict::not_finite;
       return;
     }

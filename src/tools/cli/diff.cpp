@@ -25,7 +25,8 @@ namespace fs = std::filesystem;
 using compare::FileComparison;
 using Outcome = FileComparison::Outcome;
 
-FileComparison only_one(const std::string& name, const fs::path& reference, const fs::path& test, Outcome outcome) {
+FileComparison missing_file_result(const std::string& name, const fs::path& reference, const fs::path& test,
+                                   Outcome outcome) {
   FileComparison result;
   result.name = name;
   result.reference = reference;
@@ -50,8 +51,8 @@ struct Pair {
   DiffLimits::Rules rules = {};
 
   FileComparison compare(const DiffOptions& options) const {
-    if (!reference) return only_one(name, options.reference, test, Outcome::no_reference);
-    if (!has_test) return only_one(name, *reference, test, Outcome::no_test);
+    if (!reference) return missing_file_result(name, options.reference, test, Outcome::no_reference);
+    if (!has_test) return missing_file_result(name, *reference, test, Outcome::no_test);
     FileComparison result = compare::compare_files(*reference, test, rules.limits, rules.mask);
     result.name = name;
     return result;

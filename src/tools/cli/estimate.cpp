@@ -36,23 +36,23 @@ Estimate estimate_run(const scene::Scene& scene, const render::Settings& setting
 
   begin = process_cpu_seconds();
   const auto enough = [&] {
-    return estimate.tried > 0 && (wall.seconds() > seconds || estimate.tried >= kMaxTrialFrames);
+    return estimate.trial_frames > 0 && (wall.seconds() > seconds || estimate.trial_frames >= kMaxTrialFrames);
   };
   // run_preroll() calls its argument before each frame, so no frame has been simulated at the first call.
   int asked = -1;
   const bool shown = simulation.run_preroll([&] {
-    estimate.tried = ++asked;
+    estimate.trial_frames = ++asked;
     return !enough();
   });
   frame::SnapshotPtr before;
   if (shown) {
-    estimate.tried = preroll;
-    for (int frame = 1; frame < scene.frame_count() && !enough(); ++frame, ++estimate.tried) {
+    estimate.trial_frames = preroll;
+    for (int frame = 1; frame < scene.frame_count() && !enough(); ++frame, ++estimate.trial_frames) {
       before = simulation.snapshot();
       simulation.advance();
     }
   }
-  estimate.simulate = (process_cpu_seconds() - begin) / std::max(1, estimate.tried);
+  estimate.simulate = (process_cpu_seconds() - begin) / std::max(1, estimate.trial_frames);
 
   const frame::SnapshotPtr picture = shown ? simulation.snapshot() : production::view_start(scene).snapshot;
   render::Renderer renderer(settings);
@@ -69,7 +69,7 @@ std::string describe(const Estimate& estimate) {
       "about {} of CPU time to simulate, {} to draw, {:.0f} MB of memory, estimated from {} frame{}; contacts that "
       "begin later can double or triple this",
       duration_text(estimate.simulate_total()), duration_text(estimate.draw_total()),
-      1e-6 * static_cast<double>(estimate.peak), estimate.tried, estimate.tried == 1 ? "" : "s");
+      1e-6 * static_cast<double>(estimate.peak), estimate.trial_frames, estimate.trial_frames == 1 ? "" : "s");
 }
 
 }  // namespace weft::cli

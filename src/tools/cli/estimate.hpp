@@ -12,9 +12,9 @@ namespace weft::cli {
 
 /// What a trial has measured, and how many frames and pictures the whole run has.
 struct Estimate {
-  int tried = 0;             ///< frames simulated for the estimate; 0 only if the run simulates none
+  int trial_frames = 0;      ///< frames simulated for the estimate; 0 only if the run simulates none
   double setup = 0;          ///< set-up before the first frame [CPU s]
-  double simulate = 0;       ///< simulation per frame, mean of the frames tried [CPU s]
+  double simulate = 0;       ///< simulation per frame, mean of these frames [CPU s]
   double draw = 0;           ///< drawing per picture [CPU s]
   int simulated = 0;         ///< frames that the run simulates: the preroll, and those after frame 0
   int drawn = 0;             ///< pictures of the whole run

@@ -123,7 +123,7 @@ class Farm {
       SweepJob& job = plan_.jobs[i];
       job.drawn = resolve_frames(options_.frames, job.frame_count);
       plan_.part = std::max(plan_.part, (job.drawn.count() + 999) / 1000);
-      if (!job.twin && !job.is_done()) plan_.submitted.push_back(i);
+      if (!job.equal_job && !job.is_done()) plan_.submitted.push_back(i);
     }
     if (plan_.submitted.empty() && is_reported()) {
       log::info(fmt::format("{}: all runs are done", folder_.string()));

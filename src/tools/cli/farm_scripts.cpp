@@ -37,7 +37,8 @@ std::string quoted(const std::vector<std::string>& words) {
 }
 
 // The options of `passed_on` whose names are in `names`, with their values.
-std::vector<std::string> chosen(const std::vector<std::string>& passed_on, std::initializer_list<const char*> names) {
+std::vector<std::string> select_options(const std::vector<std::string>& passed_on,
+                                        std::initializer_list<const char*> names) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < passed_on.size(); ++i) {
     const bool has_value = i + 1 < passed_on.size() && !passed_on[i + 1].starts_with("--");
@@ -105,8 +106,9 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
   const std::string threads = std::to_string(options.threads);
   // The simulation task needs size and camera too, since the cache stores them.
   define("simulate", with({"simulate", fs::absolute(sweep.scene).string(), "--threads", threads},
-                          chosen(passed_on, {"--size", "--camera", "--error"})));
-  define("draw", with({"render", "--threads", threads}, chosen(passed_on, {"--size", "--camera", "--quality"})));
+                          select_options(passed_on, {"--size", "--camera", "--error"})));
+  define("draw",
+         with({"render", "--threads", threads}, select_options(passed_on, {"--size", "--camera", "--quality"})));
   define("join", {"join"});
   define("report", report_words(sweep));
   text +=
@@ -117,7 +119,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
       "exec >>\"farm/log/$label.log\" 2>&1\n\n"
       "case $run in\n";
   for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
-    if (plan.jobs[i].twin) continue;
+    if (plan.jobs[i].equal_job) continue;
     const SweepJob& job = plan.jobs[i];
     std::vector<std::string> words;
     for (const std::string& set : job.overrides()) words.insert(words.end(), {"--set", set});
@@ -133,13 +135,13 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
 std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
   std::string text = fmt::format(
       "#!/bin/sh\n# Hands the tasks of this folder to Slurm; their numbers go to farm/jobs.\ncd {}\n"
-      "give() {{ sbatch --cpus-per-task={} --mem={}M{} \"$@\"; }}\n{}",
+      "run_sbatch() {{ sbatch --cpus-per-task={} --mem={}M{} \"$@\"; }}\n{}",
       quoted(fs::absolute(options.sweep.output).lexically_normal().string()), options.threads, plan.needs.memory,
       quoted(options.for_scheduler), embedded("submit.sh"));
   const auto out = std::back_inserter(text);
   std::string after;
   if (!plan.archive.empty()) {
-    fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
+    fmt::format_to(out, "submit_task unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
     after = " --dependency=\"afterok:$unpack\"";
   }
   // The simulations of up to kMaxArrayTasks runs form one job array. The drawing tasks of a run wait only for the
@@ -150,18 +152,19 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     std::size_t end = at;
     for (; end < plan.submitted.size() && plan.submitted[end] - base < kMaxArrayTasks; ++end)
       offsets.push_back(plan.submitted[end] - base);
-    fmt::format_to(out, "hand_in simulate 'simulate {}+' --time={} --array={}{}\nsimulate=$job\n", base,
+    fmt::format_to(out, "submit_task simulate 'simulate {}+' --time={} --array={}{}\nsimulate=$job\n", base,
                    plan.needs.simulate_minutes, array_text(offsets), after);
     for (; at < end; ++at) {
       const std::size_t run = plan.submitted[at];
-      fmt::format_to(out,
-                     "hand_in draw_{0} 'draw {0}' --time={1} --array=0-{2} --dependency=\"afterok:${{simulate}}_{3}\"\n"
-                     "hand_in join_{0} 'join {0}' --time={1} --dependency=\"afterok:$job\"\njoins=$joins:$job\n",
-                     run, plan.needs.draw_minutes, plan.parts(run) - 1, run - base);
+      fmt::format_to(
+          out,
+          "submit_task draw_{0} 'draw {0}' --time={1} --array=0-{2} --dependency=\"afterok:${{simulate}}_{3}\"\n"
+          "submit_task join_{0} 'join {0}' --time={1} --dependency=\"afterok:$job\"\njoins=$joins:$job\n",
+          run, plan.needs.draw_minutes, plan.parts(run) - 1, run - base);
     }
   }
   if (!plan.submitted.empty()) after = " --dependency=\"afterany$joins\"";
-  fmt::format_to(out, "hand_in report report --time={}{}\n", plan.needs.draw_minutes, after);
+  fmt::format_to(out, "submit_task report report --time={}{}\n", plan.needs.draw_minutes, after);
   return text;
 }
 

@@ -43,14 +43,14 @@ MadeFrame SceneSource::next() {
 
 MadeFrame SceneSource::read_stored() {
   cache::CachedFrame cached = store_.earlier().read(next_);
-  bool fresh = cached.scene_hash != scene_.hash;
-  if (fresh || has_lens(scene_)) {
+  bool needs_storing = cached.scene_hash != scene_.hash;
+  if (needs_storing || has_lens(scene_)) {
     if (!simulation_) prepare_simulation();
     frame::SnapshotPtr now = simulation_->with_looks(*cached.snapshot);
-    fresh = fresh || !has_same_lenses(*now, *cached.snapshot);
-    if (fresh) cached.snapshot = std::move(now);
+    needs_storing = needs_storing || !has_same_lenses(*now, *cached.snapshot);
+    if (needs_storing) cached.snapshot = std::move(now);
   }
-  return {std::move(cached.snapshot), std::move(cached.report), fresh};
+  return {std::move(cached.snapshot), std::move(cached.report), needs_storing};
 }
 
 MadeFrame SceneSource::simulate() {

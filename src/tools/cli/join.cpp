@@ -171,7 +171,7 @@ class Film {
     if (size(piece) != size(first())) refuse("size", size(piece), size(first()));
     if (piece.step != first().step) refuse("step", fmt::format("{}", piece.step), fmt::format("{}", first().step));
     for (const int frame : piece.frames)
-      if (const auto [other, fresh] = where_.emplace(frame, piece.file); !fresh)
+      if (const auto [other, is_new] = where_.emplace(frame, piece.file); !is_new)
         throw Error(ExitCode::usage, "frame {} is in both {} and {}", frame, other->second.string(),
                     piece.file.string());
   }

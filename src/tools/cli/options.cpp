@@ -93,7 +93,7 @@ BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options
 
 SweepOptions checked(SweepOptions sweep) {
   // With --report, a sweep needs no changes, since a farm may run a single unchanged scene.
-  if (sweep.axes.empty() && sweep.list.empty() && !sweep.gather)
+  if (sweep.axes.empty() && sweep.list.empty() && !sweep.only_report)
     throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
   return sweep;
 }
@@ -160,7 +160,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "join") return parser.join;
   if (name == "sweep") return checked(parser.sweep);
   if (name == "farm") return checked(parser.farm);
-  if (name == "new") return parser.fresh;
+  if (name == "new") return parser.new_scene;
   if (name == "watch") return checked(parser.watch);
   if (name == "completion") return PrintText{completion(parser.app, parser.shell)};
   if (name == "man") return PrintText{manual(parser.app)};
@@ -169,7 +169,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "diff") return parser.diff;
   if (name == "accept") return parser.accept;
   if (name == "review") return parser.review;
-  if (name == "export") return parser.exported;
+  if (name == "export") return parser.export_frames;
   return parser.doctor;
 }
 

@@ -107,7 +107,7 @@ struct SweepOptions {
   SceneOptions pictures;               ///< size, camera and quality of `passed_on`; the rest is not set
   int jobs = 1;                        ///< number of concurrent runs
   std::optional<int> frame;            ///< picture of each video shown on the sheet, from 0; default: the last
-  bool gather = false;                 ///< only make the sheet, the table and the page of existing runs
+  bool only_report = false;            ///< only make the sheet, the table and the page of existing runs
   bool overwrite = false;
 };
 

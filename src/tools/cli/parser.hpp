@@ -20,7 +20,7 @@ struct Parser {
   JoinOptions join;
   SweepOptions sweep;
   FarmOptions farm;
-  NewOptions fresh;
+  NewOptions new_scene;
   WatchOptions watch;
   std::string shell;  // argument of weft completion
   SchemaOptions schema;
@@ -30,7 +30,7 @@ struct Parser {
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;
-  ExportOptions exported;
+  ExportOptions export_frames;
 
   Parser();
 

@@ -8,7 +8,7 @@ namespace weft::cli {
 namespace {
 
 // Returns `text` if it is one of `words`; otherwise throws Error(usage) with the most similar word.
-std::string chosen(const char* name, const std::string& text, const std::vector<std::string>& words) {
+std::string check_choice(const char* name, const std::string& text, const std::vector<std::string>& words) {
   if (std::ranges::find(words, text) != words.end()) return text;
   throw Error(ExitCode::usage, "{}: expected {}, got {}{}", name, fmt::join(words, ", "), text,
               did_you_mean(text, words));
@@ -20,14 +20,14 @@ void Parser::add_new() {
   CLI::App& command = *app.add_subcommand("new", "Write a first scene to start from");
   command
       .add_option(
-          "NAME", fresh.name,
+          "NAME", new_scene.name,
           "Name of the scene: writes NAME.toml, and the schema beside it; with --template ci, name of the folder")
       ->required()
       ->type_name("");
   add_value(command, "--template", fmt::format("{}", fmt::join(template_names(), "|")).c_str(),
-            fmt::format("Kind of scene [{}]", fresh.kind),
-            [this](const std::string& text) { fresh.kind = chosen("--template", text, template_names()); });
-  command.add_flag("--overwrite", fresh.overwrite, "Replace a scene that exists already");
+            fmt::format("Kind of scene [{}]", new_scene.kind),
+            [this](const std::string& text) { new_scene.kind = check_choice("--template", text, template_names()); });
+  command.add_flag("--overwrite", new_scene.overwrite, "Replace a scene that exists already");
   command.footer(
       "\nExample:\n"
       "  weft new dress --template cape && weft watch dress.toml\n"
@@ -82,7 +82,7 @@ void Parser::add_completion() {
       .add_option_function<std::string>(
           "SHELL",
           [this](const std::string& text) {
-            shell = chosen("SHELL", text, {"bash", "zsh", "fish"});
+            shell = check_choice("SHELL", text, {"bash", "zsh", "fish"});
           },
           "Shell for which the script is")
       ->required()

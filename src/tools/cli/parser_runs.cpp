@@ -67,7 +67,8 @@ void Parser::add_sweep() {
               parse_integer("--threads", text, 1, kMaxThreads);
               sweep.passed_on.insert(sweep.passed_on.end(), {"--threads", text});
             });
-  command.add_flag("--report", sweep.gather, "Run nothing; only make sheet, table and page of the runs that exist");
+  command.add_flag("--report", sweep.only_report,
+                   "Run nothing; only make sheet, table and page of the runs that exist");
   command.add_flag("--overwrite", sweep.overwrite, "Repeat all runs, finished ones included");
   command.footer(
       "\nExamples:\n"

@@ -76,8 +76,8 @@ void Parser::add_bench() {
             [this](const std::string& text) { bench.output = text; });
   command.add_flag("--overwrite", bench.overwrite, "Replace files that exist already");
   using Kind = BenchOptions::Kind;
-  const auto only_of = [&](std::vector<Kind> kinds, const char* name, const char* value, const char* description,
-                           std::function<void(const std::string&)> read) {
+  const auto add_option_for = [&](std::vector<Kind> kinds, const char* name, const char* value, const char* description,
+                                  std::function<void(const std::string&)> read) {
     add_value(command, name, value, description, [this, name, read, kinds](const std::string& text) {
       read(text);
       bench_options.push_back({name, kinds});
@@ -85,31 +85,34 @@ void Parser::add_bench() {
   };
   const auto of_speed = [&](const char* name, const char* value, const char* description,
                             std::function<void(const std::string&)> read) {
-    only_of({Kind::speed}, name, value, description, std::move(read));
+    add_option_for({Kind::speed}, name, value, description, std::move(read));
   };
-  only_of({Kind::accuracy}, "--integrators", "NAME,NAME,...",
-          "For accuracy: values of time.integrator [implicit_euler,implicit_midpoint,bdf2]",
-          [this](const std::string& text) {
-            bench.plan.integrators = parse_list<scene::Integrator>(
-                "--integrators", text,
-                [](const char* option, const std::string& part) { return parse_choice(option, part, kIntegrators); });
-          });
-  only_of({Kind::speed, Kind::accuracy}, "--steps", "F,F,...",
-          "For speed and accuracy: factors on time.step, for speed also on time.tolerance [0.5,1,2; for accuracy 0.125 "
-          "to 4]",
-          [this](const std::string& text) {
-            bench.steps = parse_list<double>("--steps", text, parse_factor);
-            bench.plan.steps = bench.steps;
-          });
-  only_of(
+  add_option_for({Kind::accuracy}, "--integrators", "NAME,NAME,...",
+                 "For accuracy: values of time.integrator [implicit_euler,implicit_midpoint,bdf2]",
+                 [this](const std::string& text) {
+                   bench.plan.integrators = parse_list<scene::Integrator>(
+                       "--integrators", text, [](const char* option, const std::string& part) {
+                         return parse_choice(option, part, kIntegrators);
+                       });
+                 });
+  add_option_for(
+      {Kind::speed, Kind::accuracy}, "--steps", "F,F,...",
+      "For speed and accuracy: factors on time.step, for speed also on time.tolerance [0.5,1,2; for accuracy 0.125 "
+      "to 4]",
+      [this](const std::string& text) {
+        bench.steps = parse_list<double>("--steps", text, parse_factor);
+        bench.plan.steps = bench.steps;
+      });
+  add_option_for(
       {Kind::accuracy}, "--tolerances", "M,M,...|none", "For accuracy: values of time.tolerance in m [1e-3 downwards]",
       [this](const std::string& text) { bench.plan.tolerances = parse_values("--tolerances", text, parse_length); });
-  only_of({Kind::accuracy}, "--meshes", "F,F,...|none",
-          "For accuracy: factors on the cells along each side [0.25,0.5,1]",
-          [this](const std::string& text) { bench.plan.meshes = parse_values("--meshes", text, parse_factor); });
-  only_of({Kind::accuracy}, "--starts", "N",
-          "For accuracy: runs of each setting, with starts that differ by 1 µm [1; with contact 3]",
-          [this](const std::string& text) { bench.plan.starts = parse_integer("--starts", text, 1, kMaxStarts); });
+  add_option_for({Kind::accuracy}, "--meshes", "F,F,...|none",
+                 "For accuracy: factors on the cells along each side [0.25,0.5,1]",
+                 [this](const std::string& text) { bench.plan.meshes = parse_values("--meshes", text, parse_factor); });
+  add_option_for(
+      {Kind::accuracy}, "--starts", "N",
+      "For accuracy: runs of each setting, with starts that differ by 1 µm [1; with contact 3]",
+      [this](const std::string& text) { bench.plan.starts = parse_integer("--starts", text, 1, kMaxStarts); });
   of_speed("--sizes", "F,F,...", "For speed: factors on the particles along each side [0.5,1,2,4]",
            [this](const std::string& text) { bench.sizes = parse_list<double>("--sizes", text, parse_factor); });
   of_speed("--threads", "N,N,...", "For speed: numbers of threads [1 and all cores]", [this](const std::string& text) {
@@ -144,16 +147,17 @@ void Parser::add_diff() {
   add_value(command, "--pixel-tolerance", "N",
             fmt::format("Levels, out of 255, by which a pixel may differ [{}]", limit),
             [&limit](const std::string& text) { limit = parse_integer("--pixel-tolerance", text, 0, 255); });
-  const auto add_share = [&](const char* name, double& most, const char* what) {
+  const auto add_fraction = [&](const char* name, double& most, const char* what) {
     add_value(command, name, "X", fmt::format("{} [{}]", what, most),
               [name, &most](const std::string& text) { most = parse_fraction(name, text); });
   };
-  add_share("--pixel-budget", diff.limits.pixel_budget,
-            "Fraction of pixels that may differ by more than --pixel-tolerance; with the default, a pixel at an edge "
-            "counts a fortieth");
-  add_share("--max-flip", diff.limits.flip,
-            "Maximum mean of FLIP, 0 (looks the same) to 1; the default grows below 640x360 pixels");
-  add_share("--max-spot", diff.limits.spot, "Maximum of FLIP at any pixel");
+  add_fraction(
+      "--pixel-budget", diff.limits.pixel_budget,
+      "Fraction of pixels that may differ by more than --pixel-tolerance; with the default, a pixel at an edge "
+      "counts a fortieth");
+  add_fraction("--max-flip", diff.limits.flip,
+               "Maximum mean of FLIP, 0 (looks the same) to 1; the default grows below 640x360 pixels");
+  add_fraction("--max-spot", diff.limits.spot, "Maximum of FLIP at any pixel");
   add_value(command, "--heatmap", "FILE.png|DIR",
             "Also write a picture of the differences; for a video, of its worst frame",
             [this](const std::string& text) { diff.heatmap = text; });
@@ -215,16 +219,16 @@ void Parser::add_review() {
 
 void Parser::add_export() {
   CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
-  command.add_option("CACHE", exported.cache, "Folder of the cache that weft simulate wrote")
+  command.add_option("CACHE", export_frames.cache, "Folder of the cache that weft simulate wrote")
       ->required()
       ->type_name("");
   add_value(command, "--format", "ply|obj|pc2|gltf|usd|usdz|blender", "Format of the files [gltf]",
-            [this](const std::string& text) { exported.format = parse_choice("--format", text, kFormats); });
-  command.add_option("-o,--output", exported.output, "Folder of the files")->required()->type_name("DIR");
+            [this](const std::string& text) { export_frames.format = parse_choice("--format", text, kFormats); });
+  command.add_option("-o,--output", export_frames.output, "Folder of the files")->required()->type_name("DIR");
   add_value(command, "--frames", "A:B[:STEP]", "Frames A to B - 1, counted from 0 [all]",
-            [this](const std::string& text) { exported.frames = parse_frames(text); });
-  add_partial(command, exported.partial);
-  command.add_flag("--overwrite", exported.overwrite, "Replace files that exist already");
+            [this](const std::string& text) { export_frames.frames = parse_frames(text); });
+  add_partial(command, export_frames.partial);
+  command.add_flag("--overwrite", export_frames.overwrite, "Replace files that exist already");
   command.footer(
       "\nExamples:\n"
       "  weft export band.cache --format gltf -o band\n"

@@ -14,19 +14,20 @@ namespace {
 namespace fs = std::filesystem;
 
 // Removes a slash at the end.
-fs::path plain(const fs::path& path) {
+fs::path without_trailing_slash(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
 }  // namespace
 
 std::string PathLedger::resolved(const fs::path& path) {
-  const fs::path absolute = fs::absolute(plain(path)), folder = absolute.parent_path(), name = absolute.filename();
+  const fs::path absolute = fs::absolute(without_trailing_slash(path)), folder = absolute.parent_path(),
+                 name = absolute.filename();
   std::error_code error;
   const bool leads_elsewhere = name == "." || name == ".." || fs::is_symlink(absolute, error);
   if (leads_elsewhere || folder == absolute) {
     const fs::path canonical = fs::weakly_canonical(absolute, error);
-    return error ? absolute.lexically_normal().string() : plain(canonical).string();
+    return error ? absolute.lexically_normal().string() : without_trailing_slash(canonical).string();
   }
   auto known = folders_.find(folder.string());
   if (known == folders_.end()) known = folders_.emplace(folder.string(), resolved(folder)).first;
@@ -95,7 +96,7 @@ void PathLedger::register_output_folder(const std::string& option, const fs::pat
 void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
                               const std::function<bool(const fs::path&)>& is_own) const {
   for (const Output& output : outputs_) {
-    const bool is_gone_on_with = own.contains(output.name);
+    const bool is_continued = own.contains(output.name);
     for (const fs::path& file : output.files) {
       std::error_code error;  // if the path cannot be accessed, writing it reports the error
       if (fs::is_directory(file, error))
@@ -110,7 +111,7 @@ void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
         continue;
       }
       if (!output.content.empty() && holds(file, output.content)) continue;
-      if (is_gone_on_with && is_own(file)) continue;
+      if (is_continued && is_own(file)) continue;
       throw Error(ExitCode::output_failed, "{}: exists already; give --overwrite to replace it, or another name",
                   file.string());
     }

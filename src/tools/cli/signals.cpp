@@ -23,11 +23,11 @@ std::array<struct sigaction, kSignals.size()> g_previous;
 
 // Signal handlers make only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
 
-void say(std::string_view text) {
+void write_message(std::string_view text) {
   if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // if standard error is closed, nothing can be done
 }
 
-[[noreturn]] void end_at_once(int) {
+[[noreturn]] void exit_now(int) {
   remove_temporary_files();
   ::_exit(static_cast<int>(ExitCode::interrupted));
 }
@@ -37,12 +37,12 @@ void on_signal(int signal) {
   long long first = 0;
   if (stop_requested_at.compare_exchange_strong(first, now)) {
     g_requested = true;
-    say("\n");
-    say(g_promise);
-    say("; press again to quit at once\n");
+    write_message("\n");
+    write_message(g_promise);
+    write_message("; press again to quit at once\n");
   } else if (now - first > kRepeatWindow) {
-    say("\nquit at once; unfinished files are removed\n");
-    end_at_once(signal);
+    write_message("\nquit at once; unfinished files are removed\n");
+    exit_now(signal);
   }
 }
 
@@ -63,7 +63,7 @@ void install(void (*handler)(int), std::array<struct sigaction, kSignals.size()>
 
 void end_on_signals() {
   std::array<struct sigaction, kSignals.size()> ignored;
-  install(end_at_once, ignored);
+  install(exit_now, ignored);
 }
 
 StopSignals::StopSignals(std::string_view promise) {

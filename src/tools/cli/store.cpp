@@ -110,7 +110,7 @@ void Store::note_outputs(std::set<std::string> outputs) const {
 
 // Ends storing. Keeps the stored frames if --resume can use them: if the output then fails too, for example because the
 // disk is full, these frames are the only result.
-void Store::give_up(const std::string& reason) {
+void Store::stop_storing(const std::string& reason) {
   log::warn(reason + "; the run continues, but if it is interrupted, frames from here on must be simulated again");
   writer_.reset();
   if (!can_resume()) lock_.clear();
@@ -127,7 +127,7 @@ void Store::attempt(const Write& write) {
     // If the user has removed the folder of the output, the run must end.
     std::error_code ignored;
     if (need_ == Need::required || !std::filesystem::exists(folder().parent_path(), ignored)) throw;
-    give_up(error.what());
+    stop_storing(error.what());
   }
   time_ += {wall.seconds(), thread_cpu_seconds() - cpu};
 }
@@ -138,17 +138,18 @@ void Store::open(std::vector<frame::ObjectInfo> objects) {
     writer_ = std::make_unique<cache::Writer>(lock_, manifest_, scene_text_);
   } catch (const Error& error) {
     if (need_ == Need::required) throw;
-    give_up(error.what());
+    stop_storing(error.what());
   }
 }
 
 void Store::keep(const MadeFrame& frame) {
-  if (frame.fresh)
+  if (frame.needs_storing)
     attempt([&] {
       std::error_code error;
       const std::filesystem::space_info space = std::filesystem::space(folder(), error);
       if (need_ == Need::helpful && !error && space.available < bytes())
-        return give_up(fmt::format("{}: the disk is nearly full; its space is left to the output", folder().string()));
+        return stop_storing(
+            fmt::format("{}: the disk is nearly full; its space is left to the output", folder().string()));
       writer_->add(*frame.snapshot, frame.report);
     });
   simulation_ = frame.simulation;

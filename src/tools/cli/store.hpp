@@ -21,7 +21,7 @@ namespace weft::cli {
 struct MadeFrame {
   frame::SnapshotPtr snapshot;
   simulation::FrameReport report;
-  bool fresh = false;  ///< not in the cache yet, or stored there with looks that have changed since
+  bool needs_storing = false;  ///< not in the cache yet, or stored there with looks that have changed since
   const production::SceneSimulation* simulation = nullptr;  ///< the simulation, which is in the state of this frame;
                                                             ///< null if `snapshot` was read
 };
@@ -70,7 +70,7 @@ class Store {
   /// Starts storing frames of these objects. While make_film() runs, only its simulating thread may call open() and the
   /// functions below.
   void open(std::vector<frame::ObjectInfo> objects);
-  /// Stores the frame if it is fresh. Calls save_if_cheap() if the frame is simulated.
+  /// Stores the frame if MadeFrame::needs_storing. Calls save_if_cheap() if the frame is simulated.
   void keep(const MadeFrame& frame);
   /// Reads a frame that this run or an earlier one has stored.
   frame::SnapshotPtr stored(int frame);
@@ -92,7 +92,7 @@ class Store {
 
  private:
   void note_former_looks(const cache::Manifest& found);
-  void give_up(const std::string& reason);
+  void stop_storing(const std::string& reason);
   template <class Write>
   void attempt(const Write& write);
 

@@ -33,7 +33,7 @@ constexpr auto kProcessPollPause = 20'000;  // [microseconds]
 struct Job : SweepJob {
   pid_t process = -1;
   ExitCode code = ExitCode::ok;
-  bool tried = false;
+  bool was_reached = false;
 
   fs::path log() const { return folder / "run.log"; }
 
@@ -42,11 +42,11 @@ struct Job : SweepJob {
   /// missing, or the statistics belong to another scene.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
-    const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
+    const auto reported = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
     constexpr std::array kFailures{ExitCode::internal,          ExitCode::usage,         ExitCode::scene_invalid,
                                    ExitCode::asset_unreadable,  ExitCode::output_failed, ExitCode::frames_missing,
                                    ExitCode::simulation_failed, ExitCode::interrupted};
-    return std::ranges::find(kFailures, told) != kFailures.end() ? told : ExitCode::frames_missing;
+    return std::ranges::find(kFailures, reported) != kFailures.end() ? reported : ExitCode::frames_missing;
   }
 
   std::string last_log_line() const {
@@ -64,14 +64,14 @@ class Sweep {
     plan_ = read_sweep(options_, paths_);
     for (const SweepJob& job : plan_) jobs_.push_back({job});
     check_sweep_folder(options_, paths_, true);
-    if (options_.gather && !fs::exists(options_.output / review::kSweepName))
+    if (options_.only_report && !fs::exists(options_.output / review::kSweepName))
       throw Error(ExitCode::asset_unreadable, "{}: expected the folder of a sweep, whose runs --report gathers",
                   options_.output.string());
   }
 
   ExitCode make() {
-    if (!options_.gather) {
-      if (options_.overwrite) forget_results();
+    if (!options_.only_report) {
+      if (options_.overwrite) remove_results();
       write_sweep_index(options_, plan_);
       run_all();
     }
@@ -84,7 +84,7 @@ class Sweep {
   /// Removes statistics and videos of all runs, by which a sweep and `weft run --resume` recognise finished runs.
   /// Without this, if the sweep is stopped, the next sweep would accept results that were made with earlier options, or
   /// videos whose statistics are missing.
-  void forget_results() const {
+  void remove_results() const {
     std::error_code none;  // what cannot be removed is reported by the run that replaces it
     for (const Job& job : jobs_)
       for (const fs::path& file : {job.stats(), job.video()})
@@ -108,22 +108,22 @@ class Sweep {
   void run_all() {
     std::vector<Job*> running;
     std::size_t next = 0, ended = 0;
-    bool told = false;
+    bool has_sent_signals = false;
     while (next < jobs_.size() || !running.empty()) {
       if (stop_.requested()) {
         next = jobs_.size();
         // A terminal signals the whole process group, but other senders may signal this process alone. So each run gets
         // SIGTERM from here.
-        if (!std::exchange(told, true))
+        if (!std::exchange(has_sent_signals, true))
           for (const Job* job : running) ::kill(job->process, SIGTERM);
       }
       while (next < jobs_.size() && static_cast<int>(running.size()) < options_.jobs) {
         Job& job = jobs_[next++];
-        job.tried = true;
-        const bool done = !job.twin && !options_.overwrite && job.is_done();
-        if (job.twin || done) {
+        job.was_reached = true;
+        const bool done = !job.equal_job && !options_.overwrite && job.is_done();
+        if (job.equal_job || done) {
           log::info(fmt::format("[{}/{}] {}: {}", ++ended, jobs_.size(), label_of(job.run),
-                                done ? "done already" : "the same scene as " + label_of(jobs_[*job.twin].run)));
+                                done ? "done already" : "the same scene as " + label_of(jobs_[*job.equal_job].run)));
           continue;
         }
         start(job);
@@ -147,8 +147,10 @@ class Sweep {
   std::vector<SweepResult> collect() const {
     std::vector<SweepResult> results;
     for (const Job& job : jobs_) {
-      const Job& made = job.twin ? jobs_[*job.twin] : job;
-      const ExitCode code = options_.gather ? made.outcome() : made.tried ? made.code : ExitCode::interrupted;
+      const Job& made = job.equal_job ? jobs_[*job.equal_job] : job;
+      const ExitCode code = options_.only_report ? made.outcome()
+                            : made.was_reached   ? made.code
+                                                 : ExitCode::interrupted;
       results.push_back({job.run, made.video(), read_json_or_null(made.stats()), code});
     }
     return results;
@@ -179,10 +181,10 @@ class Sweep {
       if (fs::is_regular_file(options_.output / file)) made.emplace_back(file);
     log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));
     if (failed == results.end()) return ExitCode::ok;
-    log::info(
-        fmt::format("weft: {} of {} runs {}:", count, results.size(), options_.gather ? "are not done" : "failed"));
+    log::info(fmt::format("weft: {} of {} runs {}:", count, results.size(),
+                          options_.only_report ? "are not done" : "failed"));
     for (const SweepResult& result : results)
-      if (result.code != ExitCode::ok && options_.gather)
+      if (result.code != ExitCode::ok && options_.only_report)
         log::info(fmt::format("  {}", label_of(result.run)));
       else if (result.code != ExitCode::ok)
         log::info(fmt::format("  {}: exit code {}, {}", label_of(result.run), static_cast<int>(result.code),

@@ -65,8 +65,8 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
     const auto& cameras = loaded.scene.cameras;
     job.may_find_camera = cameras.empty() || std::ranges::any_of(cameras, scene::is_computed, &scene::Camera::kind);
     job.folder = options.output / job.run.name;
-    const auto [twin, fresh] = known.emplace(job.scene_hash, i);
-    if (!fresh) job.twin = twin->second;
+    const auto [first, is_new] = known.emplace(job.scene_hash, i);
+    if (!is_new) job.equal_job = first->second;
     if (i == 0) add_inputs(paths, loaded.scene);
   }
   if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, "{}", fmt::join(mistakes, "\n"));
@@ -98,7 +98,7 @@ void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>&
   for (const SweepJob& job : jobs) {
     Json set = Json::object();
     for (const auto& [key, value] : job.run.changes) set[key] = value;
-    runs.push_back({{"folder", (job.twin ? jobs[*job.twin] : job).run.name},
+    runs.push_back({{"folder", (job.equal_job ? jobs[*job.equal_job] : job).run.name},
                     {"scene", job.scene},
                     {"simulated_frames", job.simulated_count()},
                     {"drawn_frames", job.drawn.count()},

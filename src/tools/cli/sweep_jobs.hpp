@@ -19,7 +19,7 @@ namespace weft::cli {
 struct SweepJob {
   SweepRun run;
   std::uint64_t scene_hash = 0;
-  std::optional<std::size_t> twin = {};  ///< index of an earlier run with the same scene, whose results are used
+  std::optional<std::size_t> equal_job = {};  ///< index of an earlier job with the same scene, whose results are used
   std::filesystem::path folder = {};
   std::string scene = {};       ///< its name
   int frame_count = 1;          ///< of the scene

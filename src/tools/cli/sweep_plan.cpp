@@ -164,7 +164,7 @@ std::string short_name(const std::string& key, const std::set<std::string>& keys
 }
 
 // Removes or replaces characters that shells, file systems and name patterns interpret.
-std::string plain(const std::string& text) {
+std::string safe_name(const std::string& text) {
   std::string name;
   for (const char c : text) {
     if (std::isalnum(static_cast<unsigned char>(c)) || std::string_view("._+-,=").find(c) != std::string_view::npos)
@@ -177,7 +177,8 @@ std::string plain(const std::string& text) {
 
 std::string file_name(const Changes& difference) {
   std::string name;
-  for (const auto& [key, value] : difference) name += (name.empty() ? "" : "_") + plain(key) + "=" + plain(value);
+  for (const auto& [key, value] : difference)
+    name += (name.empty() ? "" : "_") + safe_name(key) + "=" + safe_name(value);
   return name.substr(0, kMaxNameBytes);
 }
 

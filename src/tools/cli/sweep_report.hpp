@@ -15,7 +15,7 @@ namespace weft::cli {
 
 struct SweepResult {
   SweepRun run;
-  std::filesystem::path video;   ///< of this run or, if SweepJob::twin names an equal run, of that run
+  std::filesystem::path video;   ///< of this run or, if SweepJob::equal_job names another, of that one
   nlohmann::ordered_json stats;  ///< null if the run wrote none
   ExitCode code = ExitCode::ok;
 };

@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Whether an output has the expected metadata; the OpenGL implementation may differ.
-bool agrees(const Metadata& found, Metadata expected) {
+bool has_expected_metadata(const Metadata& found, Metadata expected) {
   expected.erase("gl");
   // Weft writes these entries only if the setting has a value. If the current setting has no value,
   // the output must not have the entry.
@@ -36,7 +36,7 @@ State state_of_video(const fs::path& file, const FrameRange& frames, const rende
   // Some codecs pad odd sizes to even ones.
   const auto near = [](int found, int wanted) { return found == wanted || found == wanted + wanted % 2; };
   const bool fits = near(decoder.width(), settings.width) && near(decoder.height(), settings.height);
-  if (!fits || !agrees(decoder.metadata(), std::move(expected))) return State::other;
+  if (!fits || !has_expected_metadata(decoder.metadata(), std::move(expected))) return State::other;
   int count = 0;
   while (decoder.next()) ++count;
   return count == frames.count() ? State::whole : State::part;
@@ -55,7 +55,7 @@ State state_of_picture(const fs::path& file, int frame, const render::Settings& 
     if (read_start(file, kBitDepthPlace + 1).back() != (settings.needs_image16 ? 16 : 8)) return State::other;
   }
   const bool fits = found.width == settings.width && found.height == settings.height;
-  return fits && agrees(found.metadata, std::move(expected)) ? State::whole : State::other;
+  return fits && has_expected_metadata(found.metadata, std::move(expected)) ? State::whole : State::other;
 }
 
 bool is_file(const fs::path& file) {

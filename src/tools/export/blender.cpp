@@ -17,14 +17,14 @@ Json list(const Vec3& vector) {
   return {vector.x(), vector.y(), vector.z()};
 }
 
-Json light_json(const frame::Light& light, double share) {
+Json light_json(const frame::Light& light, double fraction) {
   const bool sun = light.kind == frame::Light::Kind::sun;
   return {{"name", light.name},
           {"kind", sun ? "sun" : "spot"},
           {"position", list(sun ? Vec3(0, 0, 0) : light.position)},
           {"direction", list(sun ? light.direction : Vec3(light.target - light.position))},
           {"color", list(image::linear_from_srgb(light.color))},
-          {"strength", light.intensity * share},
+          {"strength", light.intensity * fraction},
           {"cone_angle", light.cone_angle},
           {"softness", light.softness}};
 }
@@ -85,14 +85,14 @@ BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& 
            {"objects", Json::array()},
            {"cameras", Json::array()},
            {"lights", Json::array()},
-           {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_share}}}};
+           {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_fraction}}}};
   for (const auto& surface : first.surfaces)
     film_["objects"].push_back({{"name", surface->name},
                                 {"visible", surface->visible},
                                 {"pictures", pictures_json(*surface)},
                                 {"backs", backs_json(*surface)}});
   for (const frame::Light& light : lighting.lights)
-    film_["lights"].push_back(light_json(light, 1 - lighting.sky_share));
+    film_["lights"].push_back(light_json(light, 1 - lighting.sky_fraction));
 }
 
 void BlenderScript::add(int frame, const std::vector<View>& views) {

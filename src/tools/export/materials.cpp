@@ -34,21 +34,21 @@ const std::array<double, 256>& linear_of_bytes() {
   return kTable;
 }
 
-std::uint8_t byte_of(double share) {
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0)));
+std::uint8_t byte_of(double fraction) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(fraction, 0.0, 1.0)));
 }
 
-// Combines a texel with the surface's colour in linear space, as the renderer does. `laid`: receives red, green, blue
+// Combines a texel with the surface's colour in linear space, as the renderer does. `output`: receives red, green, blue
 // and alpha.
-void blend_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* laid) {
+void blend_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* output) {
   const double opacity = texel[3] / 255.0;
   for (int c = 0; c < 3; ++c) {
     const double light = linear_of_bytes()[texel[c]];
     const double shown = picture.alpha == Alpha::over_color ? picture.color[c] * (1 - opacity) + light * opacity
                                                             : picture.color[c] * light;
-    laid[c] = byte_of(image::srgb_from_linear(shown));
+    output[c] = byte_of(image::srgb_from_linear(shown));
   }
-  laid[3] = picture.alpha == Alpha::cutout ? texel[3] : 255;
+  output[3] = picture.alpha == Alpha::cutout ? texel[3] : 255;
 }
 
 bool is_same(const PictureFile& a, const PictureFile& b) {
@@ -113,20 +113,20 @@ bool look_alike(const Material& a, const Material& b) {
 
 std::string PictureFile::png() const {
   const int rim_x = rim_u ? 1 : 0, rim_y = rim_v ? 1 : 0;
-  image::Picture laid{texture->width + 2 * rim_x, texture->height + 2 * rim_y, {}};
-  laid.rgba.resize(4 * static_cast<std::size_t>(laid.width) * static_cast<std::size_t>(laid.height));
+  image::Picture output{texture->width + 2 * rim_x, texture->height + 2 * rim_y, {}};
+  output.rgba.resize(4 * static_cast<std::size_t>(output.width) * static_cast<std::size_t>(output.height));
   constexpr std::array<std::uint8_t, 4> kNothing{};
-  for (int y = 0; y < laid.height; ++y)
-    for (int x = 0; x < laid.width; ++x) {
+  for (int y = 0; y < output.height; ++y)
+    for (int x = 0; x < output.width; ++x) {
       const int from_x = x - rim_x, from_y = y - rim_y;
       const bool inside = from_x >= 0 && from_y >= 0 && from_x < texture->width && from_y < texture->height;
       const std::size_t from = inside ? 4 * (static_cast<std::size_t>(from_y) * texture->width + from_x) : 0;
-      const std::size_t to = 4 * (static_cast<std::size_t>(y) * laid.width + x);
-      blend_texel(*this, inside ? &texture->rgba[from] : kNothing.data(), &laid.rgba[to]);
+      const std::size_t to = 4 * (static_cast<std::size_t>(y) * output.width + x);
+      blend_texel(*this, inside ? &texture->rgba[from] : kNothing.data(), &output.rgba[to]);
     }
-  if (alpha == Alpha::cutout) return image::png_bytes(laid);
-  image::Image opaque(laid.width, laid.height);
-  for (std::size_t i = 0; i < opaque.rgb.size(); ++i) opaque.rgb[i] = laid.rgba[i / 3 * 4 + i % 3];
+  if (alpha == Alpha::cutout) return image::png_bytes(output);
+  image::Image opaque(output.width, output.height);
+  for (std::size_t i = 0; i < opaque.rgb.size(); ++i) opaque.rgb[i] = output.rgba[i / 3 * 4 + i % 3];
   return image::png_bytes(opaque);
 }
 

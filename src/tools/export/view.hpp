@@ -23,7 +23,7 @@ struct View {
 struct Lighting {
   std::vector<frame::Light> lights = {};
   Vec3 sky_color = Vec3::Ones();  ///< linear
-  double sky_share = 0.45;        ///< fraction of all light that comes from the sky; the lights provide the rest
+  double sky_fraction = 0.45;     ///< fraction of all light that comes from the sky; the lights provide the rest
 };
 
 }  // namespace weft::exporter

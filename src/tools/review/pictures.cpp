@@ -65,8 +65,8 @@ compare::Plane<float> shrink_to_largest(const compare::Plane<float>& plane, int 
 
 }  // namespace
 
-Survey survey(const RunFiles& run) {
-  Survey found;
+PictureSummary read_pictures(const RunFiles& run) {
+  PictureSummary found;
   Reader reader(run);
   found.fps = reader.fps();
   // Keeps every stride-th picture. Doubles the stride when there are kMaxTiles tiles, since the number of pictures is

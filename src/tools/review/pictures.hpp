@@ -18,7 +18,7 @@ struct Tile {
 };
 
 /// Result of one pass over the pictures of a run.
-struct Survey {
+struct PictureSummary {
   std::vector<Tile> tiles;    ///< evenly spaced: all pictures if there are fewer than 16, else 8 to 15
   long long count = 0;        ///< number of pictures
   double fps = 0;             ///< frame rate of a video [1/s]; 0 if the file does not state it, and for stills
@@ -26,7 +26,7 @@ struct Survey {
 };
 
 /// Reads all pictures of a run. Throws Error(asset_unreadable) if any picture cannot be read.
-Survey survey(const RunFiles& run);
+PictureSummary read_pictures(const RunFiles& run);
 
 /// Comparison of a picture of a run with the picture of its reference at the same time.
 struct PairComparison {

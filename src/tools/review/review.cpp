@@ -223,7 +223,7 @@ class Page {
   // frame rate of a video, from the pictures instead of the statistics.
   void add_tiles(Entry& entry) const {
     if (entry.json["pictures"]["kind"] == "none") return;
-    const Survey found = survey(*entry.run);
+    const PictureSummary found = read_pictures(*entry.run);
     if (!entry.run->stats.empty() && found.count != entry.times.count) {
       entry.problem(fmt::format("{} picture{} can be read, the statistics name {}", found.count,
                                 found.count == 1 ? "" : "s", entry.times.count));

@@ -188,7 +188,7 @@ TEST(ContactSet, MotionAlongTheNormalIsNoSlip) {
   EXPECT_LT(friction.norm(), 1e-12);
 }
 
-TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKeepsIt) {
+TEST(ContactSet, FrictionFollowsTheNormalForceOfTheLastUpdateAndFinallyKeepsIt) {
   const double mu = 0.4;
   const VertexOnFace pair(mu);
   const ContactSet contacts = pair.set();
@@ -384,7 +384,7 @@ TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFrictio
   EXPECT_NEAR(pair.friction(100).norm(), 0.4, 1e-12);  // the law itself
 }
 
-TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
+TEST(ContactSet, ReversedSlipSticksAtMostTwiceInAStep) {
   Slipping pair;
   pair.update(3).update(4);
   EXPECT_FALSE(pair.states.frictions[0].sticks);

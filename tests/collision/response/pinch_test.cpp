@@ -75,7 +75,7 @@ TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
 }
 
 // The obstacle has rotated by 90 degrees since it pinched the cloth, so that other faces are nearest now.
-TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned) {
+TEST_F(PinchedTriangle, IsPushedThroughThePinchingFaceAlsoAfterItHasRotated) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
   for (Index v = surfaces_[1].first_vertex; v < surfaces_[1].first_vertex + surfaces_[1].vertex_count; ++v)
@@ -139,7 +139,7 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
 
 // A second cloth triangle has the same corners. Where cloth passes through a limb, triangles beside it have no
 // separating plane either, so their pairs with this limb are exempt too.
-TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
+TEST_F(PinchedTriangle, ExemptsItsNeighboursFromTheSameLimb) {
   pinched_.add(with(1));
   const std::vector<Triangle> cloth{{0, 1, 2}, {0, 2, 1}};
   CornerPair beside = with(1);
@@ -157,7 +157,7 @@ TEST_F(PinchedTriangle, TakesInWhatMeetsTheLimbBesideIt) {
 
 // Two corners of the cloth are in the lower box, one is outside. Triangles that have only the outer corner keep their
 // planes; otherwise cloth under tension would be pulled into the box, one ring of triangles after another.
-TEST_F(PinchedTriangle, TakesNothingInBesideACornerThatIsOnItsSide) {
+TEST_F(PinchedTriangle, ExemptsNoNeighboursAtACornerOutsideTheLimb) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
   const Triangle face = with(1).b;

@@ -55,7 +55,7 @@ std::string saved(Planes& planes, const RandomPairs& of) {
   return writer.bytes;
 }
 
-TEST(Planes, APlaneThatIsKnownIsTriedBeforeAnyIsSearchedFor) {
+TEST(Planes, AStoredPlaneIsTriedBeforeASearch) {
   RandomPairs pairs(3000);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
@@ -71,7 +71,7 @@ TEST(Planes, APlaneThatIsKnownIsTriedBeforeAnyIsSearchedFor) {
   EXPECT_NE(saved(planes, pairs), of_watching);
 }
 
-TEST(Planes, PairsThatStayWhereTheyWereNeedNoLook) {
+TEST(Planes, UnchangedPairsNeedNoCheck) {
   RandomPairs pairs(1000);
   Planes all(pairs.triangles), changed_only(pairs.triangles);
   for (Planes* planes : {&all, &changed_only}) planes->watch(pairs.pairs, pairs.x);
@@ -126,7 +126,7 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
 
 // A first guess checks pairs of cloth only with turning planes; pairs with obstacles also with planes for parts of the
 // step.
-TEST(Planes, ThatTurnAreAllThatIsSoughtForClothAlone) {
+TEST(Planes, AFirstGuessTestsPairsOfClothWithTurningPlanesOnly) {
   RandomPairs pairs(3000);
   const auto vertices = static_cast<Index>(pairs.x.size());
   Planes all(pairs.triangles, vertices), of_cloth(pairs.triangles, vertices), of_obstacles(pairs.triangles, 0);

@@ -76,7 +76,7 @@ inline double relative_motion(const support::MotionQuery& q) {
 }
 
 /// Decides a query exactly, and adds the result to `tally`.
-inline void judge(const support::MotionQuery& query, bool refused, SeparationTally& tally) {
+inline void tally_query(const support::MotionQuery& query, bool refused, SeparationTally& tally) {
   const support::Contact contact = support::find_contact(query.a, query.b);
   ++tally.queries;
   tally.certified += !refused;
@@ -105,8 +105,8 @@ inline void judge(const support::MotionQuery& query, bool refused, SeparationTal
   }
 }
 
-/// Judges `count` queries of a family. The same seed gives the same queries.
-inline SeparationTally judge_family(support::QueryFamily family, int count, unsigned seed) {
+/// Tests `count` queries of a family. The same seed gives the same queries.
+inline SeparationTally test_family(support::QueryFamily family, int count, unsigned seed) {
   std::mt19937 engine(seed);
   SeparationTally tally;
   int batches = 0;
@@ -122,12 +122,12 @@ inline SeparationTally judge_family(support::QueryFamily family, int count, unsi
       batch.add(queries.back());
     }
     const std::vector<char> refused = batch.refused(watched);
-    for (std::size_t k = 0; k < queries.size(); ++k) judge(queries[k], refused[k], tally);
+    for (std::size_t k = 0; k < queries.size(); ++k) tally_query(queries[k], refused[k], tally);
   }
   return tally;
 }
 
-/// Judges every family, prints a table, and expects that nothing is missed.
+/// Tests every family, prints a table, and expects that nothing is missed.
 inline void expect_nothing_missed(int count_per_family, unsigned seed) {
   std::printf("%-18s %8s %8s %9s %8s %6s %6s | refused of those that stay apart, by distance at the start [m]\n",
               "family", "queries", "meeting", "certified", "integers", "missed", "at t0");
@@ -137,7 +137,7 @@ inline void expect_nothing_missed(int count_per_family, unsigned seed) {
   for (support::QueryFamily family : support::kQueryFamilies) {
     SCOPED_TRACE(support::name(family));
     const std::clock_t begin = std::clock();
-    const SeparationTally tally = judge_family(family, count_per_family, seed + static_cast<unsigned>(family));
+    const SeparationTally tally = test_family(family, count_per_family, seed + static_cast<unsigned>(family));
     std::printf("%-18s %8d %8d %9d %8d %6d %6d |", support::name(family), tally.queries, tally.meeting, tally.certified,
                 tally.in_integers, tally.missed, tally.touching);
     for (std::size_t k = 0; k < tally.apart.size(); ++k) std::printf(" %7d/%7d", tally.refused[k], tally.apart[k]);

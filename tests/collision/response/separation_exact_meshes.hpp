@@ -156,7 +156,7 @@ struct StarTally {
 
 /// Makes one query for each side of each pair with a common vertex: the edge opposite to this vertex against the other
 /// triangle.
-inline void judge_star(const MovingMesh& mesh, Watched watched, StarTally& tally) {
+inline void test_star(const MovingMesh& mesh, Watched watched, StarTally& tally) {
   // An edge against a triangle, both as sets of vertices.
   using Key = std::pair<std::set<Index>, std::set<Index>>;
   const auto key = [](const Triangle& a, const Triangle& b) { return Key{{a.begin(), a.end()}, {b.begin(), b.end()}}; };
@@ -168,7 +168,7 @@ inline void judge_star(const MovingMesh& mesh, Watched watched, StarTally& tally
   for (const CornerPair& pair : separation.find_failing(mesh.x_t0, mesh.x_t1)) refused.insert(key(pair.a, pair.b));
 
   ++tally.fans;
-  const auto judge_edge = [&](Index edge_of, int opposite, Index face) {
+  const auto test_edge = [&](Index edge_of, int opposite, Index face) {
     const Triangle& t = mesh.at(edge_of);
     const Index p = t[static_cast<std::size_t>(opposite + 1) % 3], q = t[static_cast<std::size_t>(opposite + 2) % 3];
     const bool is_refused = refused.contains(key({p, q, q}, mesh.at(face)));
@@ -183,8 +183,8 @@ inline void judge_star(const MovingMesh& mesh, Watched watched, StarTally& tally
   };
   for (const MovingMesh::Pair& pair : mesh.pairs()) {
     if (pair.corner_a < 0) continue;
-    judge_edge(pair.triangles.a, pair.corner_a, pair.triangles.b);
-    judge_edge(pair.triangles.b, pair.corner_b, pair.triangles.a);
+    test_edge(pair.triangles.a, pair.corner_a, pair.triangles.b);
+    test_edge(pair.triangles.b, pair.corner_b, pair.triangles.a);
   }
 }
 
@@ -196,7 +196,7 @@ inline void expect_nothing_missed_in_fans(int fans_per_kind, unsigned seed) {
     std::mt19937 engine(seed + static_cast<unsigned>(kind));
     const std::clock_t begin = std::clock();
     StarTally tally;
-    for (int k = 0; k < fans_per_kind; ++k) judge_star(make_fan(kind, engine), static_cast<Watched>(k % 3), tally);
+    for (int k = 0; k < fans_per_kind; ++k) test_star(make_fan(kind, engine), static_cast<Watched>(k % 3), tally);
     std::printf("%-14s %8d %8d %8d %9d %7d %d  %.1f s\n", name(kind), tally.fans, tally.queries, tally.meeting,
                 tally.certified, tally.missed, tally.refused_apart,
                 static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);

@@ -12,7 +12,7 @@ namespace weft::collision {
 namespace {
 
 /// Pairs of triangles, each pair far from all others.
-struct LonePairs {
+struct IsolatedPairs {
   std::vector<Triangle> triangles;  // pair p has triangles 2p and 2p + 1
   std::vector<TrianglePair> pairs;
   std::vector<Vec3> x_t0, x_t1;
@@ -32,14 +32,14 @@ struct LonePairs {
 
 /// Pairs of random triangles of up to 0.1 m. They are between 1e-4 m and their size apart, and move by up to `motion`
 /// [m].
-LonePairs random_pairs(int count, double motion, unsigned seed) {
+IsolatedPairs random_pairs(int count, double motion, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-1, 1);
   const auto vector = [&](double size) {
     const double x = number(engine), y = number(engine), z = number(engine);
     return Vec3(size * x, size * y, size * z);
   };
-  LonePairs made;
+  IsolatedPairs made;
   while (static_cast<int>(made.pairs.size()) < count) {
     const auto p = static_cast<Index>(made.pairs.size());
     const Vec3 place(p % 10, p / 10, 0);
@@ -50,8 +50,8 @@ LonePairs random_pairs(int count, double motion, unsigned seed) {
     if (closest_features({a, b}, corners).points.distance_sq < 1e-8) continue;
     // Features can be apart although an edge pierces a face.
     const std::array<Triangle, 1> face_a{a}, face_b{b};
-    const support::JudgedObject objects[] = {{"a", true, corners, face_a}, {"b", true, corners, face_b}};
-    if (!support::judge(objects).pairs.empty()) continue;
+    const support::TestedObject objects[] = {{"a", true, corners, face_a}, {"b", true, corners, face_b}};
+    if (!support::find_intersections(objects).pairs.empty()) continue;
 
     const Index first = 6 * p;
     made.triangles.push_back({first, first + 1, first + 2});
@@ -67,20 +67,20 @@ LonePairs random_pairs(int count, double motion, unsigned seed) {
 }
 
 // Numbers of the pairs that intersect at one of 65 times of the step.
-std::set<Index> meeting(const LonePairs& pairs) {
+std::set<Index> meeting(const IsolatedPairs& pairs) {
   std::vector<Triangle> sides[2];
   for (std::size_t t = 0; t < pairs.triangles.size(); ++t) sides[t % 2].push_back(pairs.triangles[t]);
   std::set<Index> found;
   for (int sample = 0; sample <= 64; ++sample) {
     const std::vector<Vec3> x = pairs.at(sample / 64.0);
-    const support::JudgedObject objects[] = {{"a", true, x, sides[0]}, {"b", true, x, sides[1]}};
-    for (const auto& pair : support::judge(objects).pairs)
+    const support::TestedObject objects[] = {{"a", true, x, sides[0]}, {"b", true, x, sides[1]}};
+    for (const auto& pair : support::find_intersections(objects).pairs)
       if (pair.a.object != pair.b.object) found.insert(pair.a.face);
   }
   return found;
 }
 
-std::set<Index> failing(const LonePairs& pairs) {
+std::set<Index> failing(const IsolatedPairs& pairs) {
   Separation separation = pairs.separation();
   std::set<Index> found;
   for (const CornerPair& pair : separation.find_failing(pairs.x_t0, pairs.x_t1)) found.insert(pair.a[0] / 6);
@@ -89,7 +89,7 @@ std::set<Index> failing(const LonePairs& pairs) {
 
 TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
   for (double motion : {0.01, 0.05, 0.2}) {
-    const LonePairs pairs = random_pairs(200, motion, 1);
+    const IsolatedPairs pairs = random_pairs(200, motion, 1);
     const std::set<Index> met = meeting(pairs), uncertified = failing(pairs);
     for (Index p : met) EXPECT_TRUE(uncertified.contains(p)) << "pair " << p << " at motions of " << motion;
     EXPECT_LT(uncertified.size(), 200u);
@@ -101,12 +101,12 @@ TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
 
 TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
   // With motions of a tenth of their size, a few per cent of the pairs meet; not many more may be refused.
-  const LonePairs pairs = random_pairs(200, 0.005, 2);
+  const IsolatedPairs pairs = random_pairs(200, 0.005, 2);
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
 
 // The result for vertex stars depends only on positions, so a remembered result must equal that of a fresh check.
-TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
+TEST(Separation, ARememberedResultEqualsThatOfANewCheck) {
   constexpr Index kSide = 6;
   std::vector<Triangle> triangles;
   std::vector<Vec3> start;
@@ -143,7 +143,7 @@ TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
 
 TEST(Separation, PairsThatWouldMeetArePushedApart) {
   for (double motion : {0.01, 0.05, 0.2}) {
-    LonePairs pairs = random_pairs(200, motion, 3);
+    IsolatedPairs pairs = random_pairs(200, motion, 3);
     const std::set<Index> before = failing(pairs);
     ASSERT_FALSE(before.empty());
     const std::vector<Vec3> wanted = pairs.x_t1;
@@ -202,7 +202,7 @@ TEST(Separation, PushingAPieceOfRopeOffATriangleKeepsTheMomentum) {
 
 TEST(Separation, WhatCannotMoveIsNotMoved) {
   // One side of each pair is an obstacle, which cannot be moved.
-  LonePairs pairs = random_pairs(200, 0.05, 4);
+  IsolatedPairs pairs = random_pairs(200, 0.05, 4);
   for (std::size_t i = 0; i < pairs.movable.size(); ++i) pairs.movable[i] = i % 6 < 3;
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
@@ -216,7 +216,7 @@ TEST(Separation, WhatCannotMoveIsNotMoved) {
 }
 
 TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
-  LonePairs pairs = random_pairs(50, 0, 5);
+  IsolatedPairs pairs = random_pairs(50, 0, 5);
   for (Vec3& x : pairs.x_t1) x += Vec3(0.3, 0.1, -0.2);  // all move together
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
@@ -259,7 +259,7 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
 }
 
 TEST(ClosestFeatures, AreThoseOfADenseSearch) {
-  const LonePairs pairs = random_pairs(20, 0, 6);
+  const IsolatedPairs pairs = random_pairs(20, 0, 6);
   for (const TrianglePair& pair : pairs.pairs) {
     const Triangle &a = pairs.triangles[pair.a], &b = pairs.triangles[pair.b];
     const ClosestFeatures found = closest_features({a, b}, pairs.x_t0);

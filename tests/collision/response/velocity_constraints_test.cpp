@@ -205,7 +205,7 @@ TEST(VelocityConstraints, ForgetWhatTheyHeldIfAnEarlierStateIsRestored) {
   EXPECT_NE(particle.prescribed().constraint.free, Mat3::Zero()) << "it slides, as in a first step";
 }
 
-TEST(VelocityConstraints, LeanToWallsThatHeldAndAreNotThereNow) {
+TEST(VelocityConstraints, PredictContactsWithMissingWallsThatHeldInTheLastStep) {
   OneParticle particle;
   std::vector<Vec3> leaning;
   particle.wall(Vec3::UnitZ(), kDMin);

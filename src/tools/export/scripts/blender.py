@@ -41,24 +41,24 @@ def link(item, collection):
     collection.objects.link(item)
 
 
-def lay_pictures(mesh, pictures):
+def add_pictures(mesh, pictures):
     """Adds texture coordinates for the pictures, since a mapping may rotate and scale a picture."""
     if not pictures:
         return
     pattern = mesh.uv_layers.active
-    laid = mesh.uv_layers.new(name="picture")
+    layer = mesh.uv_layers.new(name="picture")
     slots = [pictures.get(material.name.split(".")[0]) if material else None for material in mesh.materials]
     for face in mesh.polygons:
         picture = slots[face.material_index]
         for corner in face.loop_indices if picture else ():
             u, v = pattern.data[corner].uv
-            laid.data[corner].uv = [row[0] * u + row[1] * v + row[2] for row in (picture["across"], picture["up"])]
+            layer.data[corner].uv = [row[0] * u + row[1] * v + row[2] for row in (picture["across"], picture["up"])]
     for material, picture in zip(mesh.materials, slots):
         if picture:
-            lay_picture(material, picture)
+            add_picture_nodes(material, picture)
 
 
-def lay_picture(material, picture):
+def add_picture_nodes(material, picture):
     nodes, links = material.node_tree.nodes, material.node_tree.links
     for node in [node for node in nodes if node.type in ("TEX_IMAGE", "MAPPING", "TEX_COORD", "UVMAP")]:
         nodes.remove(node)
@@ -96,7 +96,7 @@ def add_mesh(film_object, collection):
     bpy.ops.wm.obj_import(filepath=os.path.join(FOLDER, name + ".obj"))
     mesh = bpy.context.selected_objects[0]
     mesh.name = name
-    lay_pictures(mesh.data, film_object["pictures"])
+    add_pictures(mesh.data, film_object["pictures"])
     color_backs(mesh.data, film_object["backs"])
     mesh.hide_render = not visible
     mesh.hide_set(not visible)
