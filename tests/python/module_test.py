@@ -260,6 +260,8 @@ class Module(unittest.TestCase):
                          ("some/drape.toml", 13, 1, "obstacle.ball.raduis"))
         self.assertIn("did you mean radius?", str(caught.exception))
         self.assertIsInstance(caught.exception, ValueError)
+        with self.assertRaisesRegex(weft.SceneError, "time.fps: expected a number"):
+            weft.parse(DRAPE, {"time.fps": "\u00e4" * 60})  # messages cut the change at a letter
         with self.assertRaises(KeyError):
             weft.Simulation(weft.parse(DRAPE)).frame["shet"]
 

@@ -119,6 +119,18 @@ TEST(Override, ThatIsNoAssignmentIsRefused) {
   EXPECT_EQ(messages({"time.fps=[1"}), "--set time.fps=[1: time.fps: expected a TOML value after =\n");
 }
 
+// The letter at byte 77 of "--set time.step=ää..." has two bytes.
+TEST(Override, ThatIsLongIsShownWithoutAPartOfALetter) {
+  const auto letters = [](int count) {
+    std::string text;
+    for (int k = 0; k < count; ++k) text += "\xc3\xa4";
+    return text;
+  };
+  EXPECT_EQ(messages({"time.step=" + letters(60)}),
+            "--set time.step=" + letters(30) + "...: time.step: expected a number from 1e-07 to 1 s, got the text \"" +
+                letters(20) + "...\"\n");
+}
+
 TEST(Override, CannotSmuggleInFurtherKeys) {
   EXPECT_FALSE(load_text(kScene, "s.toml", {"time.fps=30\n[render]\nwidth=20"}).ok());
 }

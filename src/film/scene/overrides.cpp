@@ -78,7 +78,7 @@ void apply_override(const std::string& override_text, toml::table& document, Fin
   std::string source = "--set " + override_text;
   std::replace_if(
       source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-  if (source.size() > 80) source = source.substr(0, 77) + "...";
+  if (source.size() > 80) source = std::string(beginning_of(source, 77)) + "...";
   const auto refuse = [&](const std::string& key, const std::string& text) {
     findings.report(key, {0, 0, source}, text);
   };

@@ -46,16 +46,18 @@ bool is_name(std::string_view text) {
   return !text.empty() && text.size() <= 64 && letter(text[0]) && std::all_of(text.begin(), text.end(), allowed);
 }
 
+std::string_view beginning_of(std::string_view text, std::size_t max_bytes) {
+  if (text.size() <= max_bytes) return text;
+  // Move the end back over continuation bytes.
+  std::size_t end = max_bytes;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+  return text.substr(0, end);
+}
+
 std::string in_quotes(std::string_view text) {
   std::string shown = "\"";
   const bool cut = text.size() > kMaxShownCharacters;
-  if (cut) {
-    // Move the end back over continuation bytes, so that the end is not inside a UTF-8 character.
-    std::size_t end = kMaxShownCharacters;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    text = text.substr(0, end);
-  }
-  for (const char c : text) {
+  for (const char c : beginning_of(text, kMaxShownCharacters)) {
     const auto byte = static_cast<unsigned char>(c);
     shown += byte < 0x20 || byte == 0x7F ? fmt::format("\\x{:02x}", byte) : std::string(1, c);
   }

@@ -14,6 +14,8 @@ namespace weft::scene {
 
 /// Describes a node for messages, such as `-0.001`, `the text "heavy"` or `an array of 4 values`.
 std::string describe_node(const toml::node& node);
+/// The beginning of a UTF-8 text: at most `max_bytes` bytes, without a part of a character at the end.
+std::string_view beginning_of(std::string_view text, std::size_t max_bytes);
 /// The text in quotes, for messages: at most its first 40 bytes, with escaped ASCII control characters.
 std::string in_quotes(std::string_view text);
 /// Whether the text is valid as the name of a list entry.
