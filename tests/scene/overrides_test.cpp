@@ -38,6 +38,19 @@ TEST(Override, ReachesIntoKeysAndTablesThatTheFileLeavesOut) {
   EXPECT_EQ(scene.cloths[0].look.roughness, 0.25);
 }
 
+TEST(Override, ReplacesOneNumberOfAnArrayAndOneEntryOfAList) {
+  const Scene scene = load_with({"cloth.sheet.size.1=5", "obstacle.ball.keys.1.position=[1, 2, 3]",
+                                 "obstacle.ball.keys.1.position.2=4", "cloth.0={ name = \"flag\", size = 3 }"});
+  EXPECT_EQ(scene.cloths[1].size, Vec2(1, 5));
+  EXPECT_EQ(scene.obstacles[0].motion.keys[1].pose.position, Vec3(1, 2, 4));
+  EXPECT_EQ(scene.cloths[0].name, "flag");
+  EXPECT_EQ(scene.cloths[0].size, Vec2(3, 3));
+  EXPECT_EQ(messages({"cloth.sheet.size.1=-5"}),
+            "--set cloth.sheet.size.1=-5: cloth.sheet.size: expected > 0 m, got -5\n");
+  EXPECT_EQ(messages({"cloth.sheet.size.2=5"}),
+            "--set cloth.sheet.size.2=5: cloth.sheet.size.2: expected the name or index of an entry, got 2\n");
+}
+
 TEST(Override, TakesPlainWordsAsText) {
   const Scene scene = load_with({"cloth.band.material.fabric=silk", "cloth.sheet.material.fabric=\"wool\"",
                                  "title=two words", "cloth.band.look.color=#ff0000"});
@@ -108,7 +121,7 @@ TEST(Override, ThatLeadsNowhereSaysWhere) {
             "--set cloth.7.size=1: cloth.7: expected the name or index of an entry, got 7; there is band, sheet\n");
   EXPECT_EQ(messages({"cloth.band.name.x=1"}),
             "--set cloth.band.name.x=1: cloth.band.name.x: expected a key of a table\n");
-  EXPECT_EQ(messages({"cloth.band=1"}), "--set cloth.band=1: cloth.band: expected a key of a table\n");
+  EXPECT_EQ(messages({"cloth.band=1"}), "--set cloth.band=1: cloth.0: expected a table, got 1\n");
 }
 
 TEST(Override, ThatIsNoAssignmentIsRefused) {

@@ -107,12 +107,18 @@ void apply_override(const std::string& override_text, toml::table& document, Fin
         toml::table fresh = *parse_value("{}", source);
         node = &table->insert_or_assign(parts[i], std::move(*fresh["value"].as_table())).first->second;
       }
-    } else if (toml::array* list = node->as_array(); list != nullptr && !last) {
+    } else if (toml::array* list = node->as_array()) {
       std::vector<std::string> names;
       node = find_entry(*list, parts[i], names);
       if (node == nullptr) {
         return refuse(walked, fmt::format("expected the name or index of an entry, got {}{}", parts[i],
                                           suggest_names(parts[i], names)));
+      }
+      if (last) {
+        const auto entry =
+            std::find_if(list->cbegin(), list->cend(), [&](const toml::node& each) { return &each == node; });
+        (*parsed)["value"].node()->visit([&](auto& value) { list->replace(entry, std::move(value)); });
+        return;
       }
     } else {
       return refuse(walked, "expected a key of a table");
