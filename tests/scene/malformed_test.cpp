@@ -95,6 +95,12 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:4:7: expected each key once, got \"fps\" again\n"},
     {"DuplicateTable", kFloor + "[time]\n[render]\n[time]\n",
      "s.toml:4:1: expected each key once, got \"time\" again\n"},
+    {"HeaderInSingleBracketsAfterDoubleOnes", "[[cloth]]\nname = 'a'\n[cloth]\nname = 'b'\n",
+     "s.toml:3:1: expected \"cloth\" in one form, in [ ], in [[ ]] or as a value, got two; entries of a list need "
+     "[[ ]]\n"},
+    {"HeaderInDoubleBracketsAfterSingleOnes", "[cloth]\nname = 'a'\n[[cloth]]\nname = 'b'\n",
+     "s.toml:3:1: expected \"cloth\" in one form, in [ ], in [[ ]] or as a value, got two; entries of a list need "
+     "[[ ]]\n"},
     {"NumberTooLarge", "a = 99999999999999999999\n",
      "s.toml:1:25: not TOML: Error while parsing decimal integer: '99999999999999999999' is not representable in 64 "
      "bits\n"},
@@ -172,6 +178,10 @@ const std::vector<Malformed> kMalformed = {
     {"ValueForTable", kFloor + "time = 5\n", "s.toml:2:8: time: expected a table ([time]), got 5\n"},
     {"TableForList", "[cloth]\nname = 'band'\n",
      "s.toml:1:1: cloth: expected a list of tables ([[cloth]]), got a table\n"},
+    {"ValueForInnerTable", "[[cloth]]\nname = 'a'\nmaterial = 'silk'\n",
+     "s.toml:3:12: cloth.a.material: expected a table (material = { ... }), got the text \"silk\"\n"},
+    {"TableForInnerList", "[[cloth]]\nname = 'a'\n[cloth.pin]\nlow = 0.5\n",
+     "s.toml:3:1: cloth.a.pin: expected a list of tables (pin = [{ ... }, ...]), got a table\n"},
     {"NumberInList", kFloor + "cloth = [1]\n", "s.toml:2:10: cloth.0: expected a table, got 1\n"},
     {"ValueForKeys", "[[obstacle]]\nname = 'b'\nshape = 'box'\nkeys = 1\n",
      "s.toml:4:8: obstacle.b.keys: expected a list of tables (keys = [{ time = 0, ... }, ...]), got 1\n"},

@@ -13,14 +13,19 @@ namespace weft::scene {
 
 namespace {
 
-/// Text of a parse error for the user. Replaces the parser's own text about a repeated key.
+/// Text of a parse error for the user. Replaces the parser's own texts about a repeated key and about a key in two
+/// forms, such as [cloth] and [[cloth]].
 std::string explain(std::string_view description) {
   const std::string_view redefined = "cannot redefine existing ";
   const auto found = description.find(redefined);
   const auto begin = description.find('\'', found == std::string_view::npos ? 0 : found);
   const auto end = description.find('\'', begin + 1);
   if (found == std::string_view::npos || end == std::string_view::npos) return fmt::format("not TOML: {}", description);
-  return fmt::format("expected each key once, got {} again", in_quotes(description.substr(begin + 1, end - begin - 1)));
+  const std::string name = in_quotes(description.substr(begin + 1, end - begin - 1));
+  if (description.substr(end + 1).starts_with(" as "))
+    return fmt::format("expected {} in one form, in [ ], in [[ ]] or as a value, got two; entries of a list need [[ ]]",
+                       name);
+  return fmt::format("expected each key once, got {} again", name);
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
     if (const auto* inner = node->as_table()) {
       read(*inner, *rule.table, rule.inner(target), key);
     } else {
-      refuse(*node, key, fmt::format("expected {}, got {}", expectation(rule), describe_node(*node)));
+      refuse(*node, key, fmt::format("expected {}, got {}", expectation(rule, path.empty()), describe_node(*node)));
     }
   } else if (rule.type == Type::list || rule.type == Type::keys) {
     read_entries(*node, rule, target, key);
@@ -137,7 +137,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
 void Reader::read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path) {
   const toml::array* entries = node.as_array();
   if (entries == nullptr) {
-    refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+    refuse(node, path, fmt::format("expected {}, got {}", expectation(rule, path == rule.key), describe_node(node)));
     return;
   }
   if (static_cast<double>(entries->size()) > rule.range.high) {

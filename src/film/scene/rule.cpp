@@ -58,7 +58,7 @@ std::string violated_bound(const Rule& rule, double value) {
   return "a number " + range_text(rule);
 }
 
-std::string expectation(const Rule& rule) {
+std::string expectation(const Rule& rule, bool at_root) {
   switch (rule.type) {
     case Type::boolean:
       return "true or false";
@@ -75,8 +75,10 @@ std::string expectation(const Rule& rule) {
     case Type::color:
       return "[r, g, b], each from 0 to 1, or \"#rrggbb\"";
     case Type::table:
+      if (!at_root) return fmt::format("a table ({} = {{ ... }})", rule.key);
       return fmt::format("a table ([{}])", rule.key);
     case Type::list:
+      if (!at_root) return fmt::format("a list of tables ({} = [{{ ... }}, ...])", rule.key);
       return fmt::format("a list of tables ([[{}]])", rule.key);
     case Type::keys:
       return fmt::format("a list of tables ({} = [{{ time = 0, ... }}, ...])", rule.key);

@@ -107,7 +107,8 @@ struct Table {
 const Table& scene_rules();
 
 /// Text of the accepted values, such as "a number > 0 m", "[x, y, z] in m, each from -1 to 1", "linear or cubic".
-std::string expectation(const Rule& rule);
+/// `at_root`: whether the key is in the root table, so that a header needs its name alone.
+std::string expectation(const Rule& rule, bool at_root = false);
 /// Text of the bound that `value` violates, such as "> 0 m" or "<= 100 m"; the whole range if `value` is +∞ or NaN.
 std::string violated_bound(const Rule& rule, double value);
 /// Text such as "a, b or c".
