@@ -294,6 +294,16 @@ TEST_F(LibraryFiles, ThatCannotBeUsedAreErrorsWithThePlaceInTheScene) {
   EXPECT_EQ(error.mistakes().at(0).key, "obstacle.b") << error.what();
 }
 
+// A change has no place in the file; the obstacle has.
+TEST_F(LibraryFiles, ThatAChangeNamesAreErrorsWithThePlaceOfTheObject) {
+  support::write_bytes(folder_ / "broken.obj", "f 1 2 3\n");
+  const std::string text = "[[cloth]]\nname = \"a\"\n\n[[obstacle]]\nname = \"b\"\nshape = \"mesh\"\n";
+  const auto error =
+      thrown<FileError>([&] { Simulation(Scene::parse(text, {"obstacle.b.file=broken.obj"}, folder_ / "a.toml")); });
+  EXPECT_EQ(error.mistakes().at(0).file, (folder_ / "a.toml").string()) << error.what();
+  EXPECT_EQ(error.mistakes().at(0).line, 4) << error.what();
+}
+
 TEST_F(LibraryFiles, AreFoundByChangesAfterTheCurrentFolderHasChanged) {
   support::write_bytes(folder_ / "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   support::write_bytes(folder_ / "s.toml", "[[obstacle]]\nname = \"a\"\nshape = \"mesh\"\nfile = \"a.obj\"\n");

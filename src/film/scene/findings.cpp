@@ -22,6 +22,16 @@ Place Findings::place(std::string key) const {
   }
 }
 
+Place Findings::place_in_file(std::string key) const {
+  for (;;) {
+    const Place nearest = place(key);
+    const auto dot = key.rfind('.');
+    if (nearest.override_text.empty() || dot == std::string::npos)
+      return nearest.override_text.empty() ? nearest : Place{1, 1, {}};
+    key.resize(dot);
+  }
+}
+
 void Findings::report(const std::string& key, Place place, std::string text) {
   has_mistake_.insert(key);
   mistakes_.push_back({place.line, place.column, key, std::move(text), std::move(place.override_text)});

@@ -32,6 +32,8 @@ class Findings {
   /// The place of the key or, if none is stored, that of the innermost table around it that has one. If no table around
   /// it has one: line 1, column 1.
   Place place(std::string key) const;
+  /// As place(), but ignores places in overrides.
+  Place place_in_file(std::string key) const;
 
   /// Adds a mistake. `text`: what was expected, and what was found.
   void report(const std::string& key, Place place, std::string text);

@@ -26,22 +26,22 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
   add_rope_cloths(scene);
   check(scene, findings);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-    const Place place = findings.place(findings.entry("obstacle", i) + ".file");
+    const Place place = findings.place_in_file(findings.entry("obstacle", i) + ".file");
     scene.obstacles[i].line = place.line;
     scene.obstacles[i].column = place.column;
   }
   for (std::size_t i = 0; i < scene.characters.size(); ++i) {
-    const Place& place = findings.place(findings.entry("character", i));
+    const Place place = findings.place_in_file(findings.entry("character", i));
     scene.characters[i].line = place.line;
     scene.characters[i].column = place.column;
   }
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    const Place& place = findings.place(findings.entry("camera", i));
+    const Place place = findings.place_in_file(findings.entry("camera", i));
     scene.cameras[i].line = place.line;
     scene.cameras[i].column = place.column;
   }
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
-    const Place& place = findings.place(entry_of_cloth(scene, i, findings));
+    const Place place = findings.place_in_file(entry_of_cloth(scene, i, findings));
     scene.cloths[i].line = place.line;
     scene.cloths[i].column = place.column;
   }
