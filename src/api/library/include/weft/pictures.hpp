@@ -10,7 +10,7 @@
 namespace weft {
 
 struct Picture {
-  int width = 0, height = 0;       ///< [pixels]
+  int width = 0, height = 0;       ///< from 1 to 16384 [pixels]
   std::vector<std::uint8_t> rgba;  ///< bytes R G B A of each pixel, top row first; sRGB, alpha not premultiplied
 };
 
