@@ -129,7 +129,8 @@ using MistakeState = std::tuple<std::string, int, int, std::string, std::string,
 // Defines the exceptions. The attribute `mistakes` of SceneError lists the mistakes with their places.
 void bind_errors(py::module_& module) {
   py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
-      .def_readonly("file", &Mistake::file, "Path of the scene file, as it was given.")
+      .def_readonly("file", &Mistake::file,
+                    "Path of the scene file, as it was given; absolute if a Simulation raises the error.")
       .def_readonly("line", &Mistake::line,
                     "Line, counted from 1; 0 for mistakes that are not in the text of the file.")
       .def_readonly("column", &Mistake::column, "Column, counted from 1; 0 likewise.")

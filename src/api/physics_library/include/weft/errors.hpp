@@ -10,7 +10,8 @@
 namespace weft {
 
 struct Mistake {
-  std::string file;          ///< path of the scene, as the caller gave it; may be empty
+  std::string file;          ///< path of the scene, as the caller gave it; absolute in exceptions of
+                             ///< Simulation; may be empty
   int line = 0, column = 0;  ///< counted from 1; 0: the mistake is not in the text of the file. For
                              ///< a missing key: those of the table around it, or 1 and 1.
   std::string change;        ///< the change "key=value" that caused the mistake; empty if the file did
