@@ -102,6 +102,31 @@ TEST(Performance, TakesAlongAllNodesThatTravel) {
   EXPECT_LT((place(4.5, 2) - Vec3(6, 1, 0.2)).norm(), 1e-12) << "the hips carry it";
 }
 
+TEST(Performance, TravelsWithTheSkinNotWithACameraBeforeIt) {
+  Slider slider;
+  slider.body.nodes = {{"camera", -1, Affine::Identity()}, {"root", -1, Affine::Identity()}};
+  slider.body.bones[0].node = 1;
+  slider.clip.channels[0].node = 1;
+  Channel filming;
+  filming.position = {{0, 2}, {Vec3::Zero(), Vec3(0, 7, 0)}};
+  slider.clip.channels.push_back(filming);
+  const Performance performance(slider.body, slider.clip, {.timing = {}, .loop = true}, Vec3::UnitZ());
+  EXPECT_LT((performance.at(2.5).nodes[1].position - Vec3(9, 1, 0.2)).norm(), 1e-12);
+}
+
+TEST(Performance, TravelsAsFarAsARootAndTheHipsBelowItTogether) {
+  Slider slider;
+  slider.body.nodes = {{"root", -1, Affine::Identity()}, {"hips", 0, Affine::Identity()}};
+  slider.body.bones[0].node = 1;
+  slider.clip.channels[0].node = 1;
+  Channel sliding;
+  sliding.position = {{0, 2}, {Vec3::Zero(), Vec3(1, 0, 0)}};
+  slider.clip.channels.push_back(sliding);
+  const Performance performance(slider.body, slider.clip, {.timing = {}, .loop = true}, Vec3::UnitZ());
+  const Vec3 hips = global_transforms(slider.body, performance.at(2))[1].translation();
+  EXPECT_LT((hips - Vec3(9, 0, 0)).norm(), 1e-12) << "3 m by the hips, 1 m by the root";
+}
+
 TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
   Slider slider;
   Affine turned = Affine::Identity();

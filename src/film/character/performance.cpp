@@ -18,6 +18,7 @@ double clip_time(const Timing& timing, double t) {
 Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
     : character_(character), clip_(clip), playing_(playing), up_(up) {
   roots_ = traveling_nodes(character, clip);
+  leading_ = leading_node(character, clip, roots_);
   const double fade = std::min(playing.crossfade, clip.duration / 2);
   playing_.crossfade = fade;
   period_ = clip.duration - fade;
@@ -32,10 +33,10 @@ Affine Performance::parent_of(Index node, const Pose& pose) const {
 }
 
 Vec3 Performance::displacement_between(const Pose& a, const Pose& b) const {
-  if (roots_.empty()) return Vec3::Zero();
-  const Index node = roots_.front();
+  if (leading_ < 0) return Vec3::Zero();
+  const Index node = leading_;
   const Affine parent_a = parent_of(node, a), parent_b = parent_of(node, b);
-  // The last two terms are exactly 0 if the nodes above the root do not move.
+  // The last two terms are exactly 0 if the nodes above this one do not move.
   const Vec3 whole = parent_a.linear() * (b.nodes[node].position - a.nodes[node].position) +
                      (parent_b.linear() - parent_a.linear()) * b.nodes[node].position +
                      (parent_b.translation() - parent_a.translation());

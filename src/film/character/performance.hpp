@@ -52,7 +52,7 @@ class Performance {
   Affine parent_of(Index node, const Pose& pose) const;
   /// Translates a pose by the vector `by` in the world [m].
   void translate(Pose& pose, const Vec3& by) const;
-  /// Horizontal displacement of the first of `roots_` from pose a to pose b, in the world [m]; zero without roots.
+  /// Horizontal displacement of `leading_` from pose a to pose b, in the world [m]; zero without this node.
   Vec3 displacement_between(const Pose& a, const Pose& b) const;
 
   const Character& character_;
@@ -60,6 +60,7 @@ class Performance {
   Playing playing_;
   Vec3 up_;
   std::vector<Index> roots_;  // traveling_nodes() of the clip
+  Index leading_ = -1;        // leading_node() of them
   double period_ = 0;         // clip time from the start of a round to the start of the next [s]
   Vec3 travel_{0, 0, 0};      // horizontal displacement of the body in a round [m]
   Vec3 shift_{0, 0, 0};  // horizontal displacement from the start of the clip to the position of Playing::stance [m]

@@ -47,6 +47,11 @@ Mat3 rotation_of(const Mat3& linear) {
   return rotation;
 }
 
+bool changes_position(const Channel& channel) {
+  const std::vector<Vec3>& places = channel.position.values;
+  return std::ranges::any_of(places, [&](const Vec3& x) { return x != places.front(); });
+}
+
 /// Two key times of different joints count as one if they differ by at most this [s].
 constexpr double kSameTime = 1e-6;
 
@@ -109,10 +114,8 @@ std::vector<double> key_times(const Clip& clip) {
 std::vector<Index> traveling_nodes(const Character& character, const Clip& clip, Index also) {
   std::vector<std::uint8_t> travels(character.nodes.size(), 0);
   if (also >= 0) travels[also] = 1;
-  for (const Channel& channel : clip.channels) {
-    const std::vector<Vec3>& places = channel.position.values;
-    if (std::ranges::any_of(places, [&](const Vec3& x) { return x != places.front(); })) travels[channel.node] = 1;
-  }
+  for (const Channel& channel : clip.channels)
+    if (changes_position(channel)) travels[channel.node] = 1;
   std::vector<Index> uppermost;
   for (std::size_t n = 0; n < travels.size(); ++n) {
     const Index parent = character.nodes[n].parent;
@@ -121,6 +124,28 @@ std::vector<Index> traveling_nodes(const Character& character, const Clip& clip,
     if (is_carried) travels[n] = 1;
   }
   return uppermost;
+}
+
+Index leading_node(const Character& character, const Clip& clip, std::span<const Index> traveling) {
+  if (traveling.empty()) return -1;
+  // Per node: weight of the skin on it and on the nodes below it.
+  std::vector<double> carried(character.nodes.size(), 0);
+  for (const Influence& influence : character.influences)
+    carried[character.bones[influence.bone].node] += influence.weight;
+  for (std::size_t n = carried.size(); n-- > 0;)
+    if (const Index parent = character.nodes[n].parent; parent >= 0) carried[parent] += carried[n];
+  const Index top = *std::ranges::max_element(traveling, {}, [&](Index n) { return carried[n]; });
+  Index leading = top;
+  if (!(carried[top] > 0)) return leading;
+  const auto is_below_top = [&](Index node) {
+    while (node > top) node = character.nodes[node].parent;  // parents precede their children
+    return node == top;
+  };
+  for (const Channel& channel : clip.channels)
+    if (channel.node > leading && carried[channel.node] == carried[top] && is_below_top(channel.node) &&
+        changes_position(channel))
+      leading = channel.node;
+  return leading;
 }
 
 Pose blend(const Pose& a, const Pose& b, double weight) {

@@ -48,6 +48,11 @@ std::vector<double> key_times(const Clip& clip);
 /// even if its position does not change; -1: none.
 std::vector<Index> traveling_nodes(const Character& character, const Clip& clip, Index also = -1);
 
+/// The node whose path is the travel of the body in a clip: of `traveling`, the result of traveling_nodes(), the node
+/// that carries most skin; or the lowest node below it that also changes its position and carries the same skin, such
+/// as hips below a root. If none of them carries skin, the first of `traveling`; -1 if there is none.
+Index leading_node(const Character& character, const Clip& clip, std::span<const Index> traveling);
+
 /// Interpolates from `a` (weight 0) to `b` (weight 1): positions and stretches linearly, rotations along the shortest
 /// arc.
 Pose blend(const Pose& a, const Pose& b, double weight);

@@ -27,7 +27,7 @@ class Path {
       : rig_(rig), skeleton_(rig), clip_(clip), up_(up), times_(key_times(clip)) {
     const std::vector<Index> moved = moved_nodes(rig, clip);
     const Index hips = rig.joints[joint_index(Joint::hips)];
-    const Index middle = hips >= 0 || moved.empty() ? hips : moved.front();
+    const Index middle = hips >= 0 ? hips : leading_node(rig.character, clip, moved);
     for (const double t : times_) {
       const Pose pose = pose_at(rig.character, clip, t);
       postures_.push_back(skeleton_.at(pose));
@@ -174,7 +174,7 @@ class Path {
   const Vec3 up_;
   const std::vector<double> times_;
   std::vector<Posture> postures_;
-  std::vector<Vec3> middles_;  // horizontal positions of the hips; without hips, of the first of moved_nodes()
+  std::vector<Vec3> middles_;  // horizontal positions of the hips; without hips, of leading_node()
 };
 
 }  // namespace
