@@ -112,6 +112,12 @@ TEST_F(Travel, MovesTheHipsIfOnlyNodesBelowThemTravel) {
   EXPECT_NEAR((hips(clip, standing_clip.duration) - hips(clip, 0)).norm(), 0.5 * standing_clip.duration, 1e-3);
 }
 
+TEST_F(Travel, OfASinglePoseLastsAsLongAsItsClip) {
+  const Clip pose{"pose", 2, {}, {}};
+  const Clip clip = set_travel_speed(rig_, pose, 0.5, kUp).clip;
+  EXPECT_NEAR((hips(clip, 2) - hips(clip, 0)).norm(), 1, 1e-3);
+}
+
 TEST_F(Travel, GoesAheadWhereNoFeetTell) {
   Clip standing_clip = walk_;
   for (Channel& channel : standing_clip.channels) {

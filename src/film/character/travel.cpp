@@ -20,11 +20,18 @@ constexpr double kMaxFootHeight = 0.05;
 /// Minimum mean speed of feet in stance, relative to the body, that counts as a walk [leg lengths/s].
 constexpr double kMinFeetSpeed = 0.1;
 
+/// Key times of a clip. A clip of one pose also has its end, so that the body can travel until then.
+std::vector<double> travel_times(const Clip& clip) {
+  std::vector<double> times = key_times(clip);
+  if (times.size() == 1 && clip.duration > times.back()) times.push_back(clip.duration);
+  return times;
+}
+
 /// A clip, sampled at its keys.
 class Path {
  public:
   Path(const Rig& rig, const Clip& clip, const Vec3& up)
-      : rig_(rig), skeleton_(rig), clip_(clip), up_(up), times_(key_times(clip)) {
+      : rig_(rig), skeleton_(rig), clip_(clip), up_(up), times_(travel_times(clip)) {
     const std::vector<Index> moved = moved_nodes(rig, clip);
     const Index hips = rig.joints[joint_index(Joint::hips)];
     const Index middle = hips >= 0 ? hips : leading_node(rig.character, clip, moved);
