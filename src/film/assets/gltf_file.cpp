@@ -147,7 +147,7 @@ constexpr double kSplineInterval = 1.0 / 60, kMaxSplinePieces = 1000;
 constexpr double kStepDuration = 1e-3;
 
 /// Rewrites a glTF file as a binary one in which integers that assimp would read as floats are floats, the values of
-/// all animations change linearly, and joints have names of their own.
+/// all animations change linearly, and joints and animated nodes have names of their own.
 class Rewriter {
  public:
   Rewriter(Json& gltf, std::string data, const std::filesystem::path& file) : gltf_(gltf), file_(file) {
@@ -156,7 +156,7 @@ class Rewriter {
 
   /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
-    const bool renamed = name_joints_apart();
+    const bool renamed = name_nodes_apart();
     add_bind_matrices();
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
@@ -178,29 +178,37 @@ class Rewriter {
     return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
   }
 
-  /// Gives each joint of a skin a name that no other joint has, and no other node without a mesh or camera: assimp
-  /// names the node of a bone by its name alone. Of several joints with one name, the first keeps it; names of meshes
-  /// and cameras stay, as scenes state them. Returns whether a name has changed.
-  bool name_joints_apart() {
+  /// Gives each joint of a skin and each animated node without a camera a name that no other of them has, and no other
+  /// node without a mesh or camera: assimp names the node of a bone or of a channel by its name alone. Of several nodes
+  /// with one name, the first keeps it, joints before others; names of cameras and of meshes that do not move stay, as
+  /// scenes state them. Returns whether a name has changed.
+  bool name_nodes_apart() {
     Json& nodes = list_of(gltf_, "nodes");
     if (!nodes.is_array()) return false;
-    std::vector<std::size_t> order;  // joints first
-    std::vector<bool> is_joint(nodes.size(), false);
+    std::vector<std::size_t> order;  // joints first, then animated nodes
+    std::vector<bool> is_referred(nodes.size(), false);
+    const auto add = [&](const Json& node, bool may_hold_camera) {
+      const std::size_t n = node.is_number_unsigned() ? node.get<std::size_t>() : nodes.size();
+      if (n >= nodes.size() || is_referred[n] || (!may_hold_camera && nodes[n].contains("camera"))) return;
+      is_referred[n] = true;
+      order.push_back(n);
+    };
     for (const Json& skin : part_of(gltf_, "skins"))
-      for (const Json& joint : part_of(skin, "joints")) {
-        const std::size_t n = joint.is_number_unsigned() ? joint.get<std::size_t>() : nodes.size();
-        if (n >= nodes.size() || is_joint[n]) continue;
-        is_joint[n] = true;
-        order.push_back(n);
-      }
+      for (const Json& joint : part_of(skin, "joints")) add(joint, true);
+    const std::size_t joints = order.size();
+    for (const Json& animation : part_of(gltf_, "animations"))
+      for (const Json& channel : part_of(animation, "channels"))
+        add(part_of(part_of(channel, "target"), "node"), false);
     for (std::size_t n = 0; n < nodes.size(); ++n)
-      if (!is_joint[n] && !nodes[n].contains("mesh") && !nodes[n].contains("camera")) order.push_back(n);
-    std::set<std::string> names;  // of joints
+      if (!is_referred[n] && !nodes[n].contains("mesh") && !nodes[n].contains("camera")) order.push_back(n);
+    std::set<std::string> names;  // of joints and animated nodes
     bool changed = false;
-    for (const std::size_t n : order) {
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::size_t n = order[k];
       if (!nodes[n].is_object()) continue;
       std::string name = value_or<std::string>(nodes[n], "name", "");
-      if (is_joint[n] ? !name.empty() && names.insert(name).second : !names.contains(name)) continue;
+      if (name.empty() && k >= joints) continue;  // assimp gives it a name of its own
+      if (is_referred[n] ? !name.empty() && names.insert(name).second : !names.contains(name)) continue;
       name = fmt::format("{}_{}", name.empty() ? "joint" : name, n);
       while (!names.insert(name).second) name += '_';
       nodes[n]["name"] = name;
