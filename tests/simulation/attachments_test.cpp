@@ -169,6 +169,19 @@ TEST(Attachments, StoreEnergyThatIsReported) {
   EXPECT_LT(energy, 10 * 0.5 * 0.11 * 0.11);
 }
 
+// An attachment that breaks in the last step of a frame: the 0.01 J that its springs have stored are lost.
+TEST(Attachments, StoreNoEnergyOnceTheyAreBroken) {
+  scene::Scene scene = towel("length = 0\nstiffness = 1\nbreaking_load = 0.1\n");
+  scene.time.step = 0.04;  // one step a frame
+  scene.physics.gravity.setZero();
+  scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
+  production::SceneSimulation simulation(scene);
+  const FrameReport report = simulation.advance();
+  EXPECT_GT(report.attachments.at(0).load, 0.1);
+  EXPECT_FALSE(report.attachments.at(0).holds);
+  EXPECT_LT(report.elastic_energy, 0.005);  // that of the cloth alone
+}
+
 // Two sheets, one above the other, buttoned at a corner; the upper one moves.
 constexpr const char* kButton =
     "[time]\nduration = 1\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[contact]\nself = false\n"

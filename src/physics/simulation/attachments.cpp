@@ -217,7 +217,9 @@ std::vector<std::string> Attachments::accept(std::span<const Vec3> x) {
           fmt::format("attach.{}: pulls cloth to its target at {:.3g} m/s when it is tied, where cloth can follow at "
                       "{:g} m/s; move both nearer to each other before `begin`, or reduce `stiffness`",
                       attachment.name, speed, kMaxHoldSpeed));
-    if (attachment.breaking_load && attachment.load > *attachment.breaking_load) attachment.state = State::broken;
+    // The springs of a broken attachment store no energy any more.
+    if (attachment.breaking_load && attachment.load > *attachment.breaking_load)
+      attachment.state = State::broken, attachment.holds = false;
   }
   return warnings;
 }
@@ -225,7 +227,7 @@ std::vector<std::string> Attachments::accept(std::span<const Vec3> x) {
 std::vector<AttachmentLoad> Attachments::measure() const {
   std::vector<AttachmentLoad> loads;
   for (const Attachment& attachment : attachments_)
-    loads.push_back({attachment.name, attachment.load, attachment.holds && attachment.state == State::tied});
+    loads.push_back({attachment.name, attachment.load, attachment.holds});
   return loads;
 }
 

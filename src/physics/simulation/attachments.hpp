@@ -80,7 +80,7 @@ class Attachments {
     std::optional<double> length, breaking_load;
     std::vector<Spring> springs;
     State state = State::open;
-    bool holds = false;  // whether its springs act in the current step
+    bool holds = false;  // whether its springs act in the current step; false once accept() has broken it
     double speed = 0;    // largest speed to which it can pull newly tied particles [m/s]; accept() sets it to 0
     double load = 0;     // sum of the spring forces at the end of the last accepted step [N]
   };
