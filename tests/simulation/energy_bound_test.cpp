@@ -442,6 +442,30 @@ TEST(EnergyBound, ClosingButtonsBringEnergy) {
   EXPECT_FALSE(is_suspected());
 }
 
+// The spring of a pin with a strength is stretched from the start if a single key displaces its target or if untangling
+// moves the cloth, and later if another pin takes its particles away and lets them go.
+TEST(EnergyBound, SpringsOfPinsThatBeginStretchedBringEnergy) {
+  const model::Model given = environment::Environment(on_a_blade()).model;
+  FrameReport gained;
+  gained.kinetic_energy = 1;
+  const auto is_suspected = [&](const std::vector<model::Pin>& pins, bool untangle) {
+    model::Model model = given;
+    model.cloths[0].pins = pins;
+    model.cloths[0].untangle = untangle;
+    return !EnergyBound(model, 0.05, {}).check(gained).empty();
+  };
+  model::Pin spring, hold, lift;
+  spring.strength = 100;
+  lift.motion.keys.push_back({0, {{0, 0, 1}, Quat::Identity()}});
+  model::Pin displaced = spring;
+  displaced.motion = lift.motion;
+  EXPECT_TRUE(is_suspected({spring, hold}, false)) << "it begins slack and stays in place";
+  EXPECT_TRUE(is_suspected({lift}, true)) << "its work is measured";
+  EXPECT_FALSE(is_suspected({displaced}, false));
+  EXPECT_FALSE(is_suspected({spring, lift}, false));
+  EXPECT_FALSE(is_suspected({spring}, true));
+}
+
 // Uses made-up reports, because it depends on details of the solver whether contact adds energy in a run.
 TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
   const auto after_a_fall = [](double gained) {

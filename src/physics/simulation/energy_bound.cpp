@@ -14,7 +14,6 @@ namespace {
 
 // Whether pins alone drive the cloth, and StepWork includes all work of the pins.
 bool is_driven_by_pins_alone(const model::Model& model) {
-  const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const model::Cloth& cloth : model.cloths) {
     if (cloth.sewing > 0) return false;                // sewing does work
     if (!cloth.over.empty()) return false;             // this cloth, with its energy, is added later
@@ -23,9 +22,12 @@ bool is_driven_by_pins_alone(const model::Model& model) {
     // A button or zip does work when it closes.
     const auto closes = [](const mesh::Tie& tie) { return std::isfinite(tie.closed); };
     if (std::ranges::any_of(cloth.sheet.ties, closes)) return false;
-    // A pin with a strength is a spring, whose work is not measured.
-    for (const model::Pin& pin : cloth.pins)
-      if (pin.strength && (moves(pin.motion) || pin.body)) return false;
+    // A pin with a strength is a spring, whose energy is not measured. It brings none if it begins slack at a fixed
+    // place: its cloth starts where it was made, and no pin moves the particles that they share.
+    const auto moves = [](const model::Pin& pin) { return !pin.motion.keys.empty() || pin.body; };
+    const auto is_spring = [](const model::Pin& pin) { return pin.strength.has_value(); };
+    if (std::ranges::any_of(cloth.pins, is_spring) && (cloth.untangle || std::ranges::any_of(cloth.pins, moves)))
+      return false;
   }
   for (const model::Body& body : model.bodies) {
     if (body.deforms() || (body.collide && body.may_move)) return false;
