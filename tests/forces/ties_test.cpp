@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 namespace weft::forces {
@@ -14,7 +15,7 @@ constexpr double kPull = 2;  // [N]
 Ties tie_of(double open, double closed) {
   mesh::Sheet sheet;
   sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .open = open, .closed = closed});
-  return {sheet, 0};
+  return {sheet, 0, 1e-9};
 }
 // Force between two particles at this distance [N], from the gradient of the energy. Differences over 1e-8 m of
 // energies around 1e-3 J are accurate to 1e-10 N.
@@ -66,6 +67,7 @@ TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   EXPECT_NEAR(held(kNever, kNever, -5), kPull, 1e-6);
   EXPECT_NEAR(held(1, kNever, 0.99), kPull, 1e-6);
   EXPECT_EQ(held(1, kNever, 1), 0);
+  EXPECT_EQ(held(1, kNever, std::nextafter(1.0, 0.0)), 0) << "a sum of step lengths";
   EXPECT_EQ(held(kNever, 1, 0.99), 0);
   EXPECT_NEAR(held(kNever, 1, 1 + 0.5 * Ties::kClosing), 0.5 * kPull, 1e-6);
   EXPECT_NEAR(held(kNever, 1, kAfter), kPull, 1e-6);

@@ -22,9 +22,10 @@ double closed_ratio(const mesh::Tie& tie, double t) {
 
 }  // namespace
 
-Ties::Ties(const mesh::Sheet& sheet, Index first) : tearing_seams_(sheet.tearing_seams.size()) {
+Ties::Ties(const mesh::Sheet& sheet, Index first, double time_tolerance) : tearing_seams_(sheet.tearing_seams.size()) {
   for (mesh::Tie tie : sheet.ties) {
     tie.a += first, tie.b += first;
+    tie.open -= time_tolerance;
     pieces_.push_back({tie});
   }
 }

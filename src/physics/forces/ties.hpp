@@ -22,7 +22,8 @@ class Ties final : public Force {
   /// Time from closing to full strength [s].
   static constexpr double kClosing = 0.4;
 
-  Ties(const mesh::Sheet& sheet, Index first);
+  /// A tie opens up to `time_tolerance` [s] before its time: the end of a step has rounding errors.
+  Ties(const mesh::Sheet& sheet, Index first, double time_tolerance);
 
   /// Sets the strengths for the scene time t [s]. `progress`: of sewing, 0 to 1.
   void set_strengths(double t, double progress);

@@ -211,7 +211,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const model::Cloth& of,
     forces_[cloth].push_back(std::move(bands));
   }
   if (!sheet.ties.empty()) {
-    auto ties = std::make_unique<forces::Ties>(sheet, first);
+    auto ties = std::make_unique<forces::Ties>(sheet, first, model::kSameTime);
     sewing_.back().ties = ties.get();
     for (const std::string& seam : sheet.tearing_seams) sewing_.back().tearing_seams.push_back(of.name + ": " + seam);
     forces_[cloth].push_back(std::move(ties));
