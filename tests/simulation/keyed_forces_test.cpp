@@ -38,6 +38,16 @@ TEST(KeyedForces, GravityThatGrowsAddsItsIntegralToTheVelocity) {
   EXPECT_LT((velocity_at_end(scene) - 0.5 * Vec3(0, 3, -6)).norm(), 1e-9);
 }
 
+TEST(KeyedForces, EnergiesOfTheStartAreThoseOfItsGravity) {
+  scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
+  scene.time.preroll = 0.2;
+  scene.physics.keys = {{-0.2, {0, 0, -2}, {0, 0, 0}}, {0, {0, 0, -10}, {0, 0, 0}}};
+  const FrameReport start = production::SceneSimulation(scene).initial_report();
+  EXPECT_EQ(start.frame, -5);
+  EXPECT_EQ(start.time, -0.2);
+  EXPECT_NEAR(start.potential_energy, 0.2 * 0.3 * 0.3 * 2, 1e-12);  // 18 g at 1 m
+}
+
 // The sheet falls onto the floor in its first step, which its start does not show: contacts that are found only then
 // replace the midpoint rule by Euler's method, whose stage is the end of the step, and so must be its forces.
 TEST(KeyedForces, AreThoseOfTheEndOfAStepInWhichContactsAreFound) {

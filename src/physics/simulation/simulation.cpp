@@ -120,6 +120,8 @@ Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.tim
   begin_layer(0);
   make_start();
   put_on_next();
+  start_report.frame = frame;
+  start_report.time = time();
   measure_energies(start_report);
   start_report.max_strain = steps->cloth().max_strain(steps->progress().now.particles());
   measure(start_report);
