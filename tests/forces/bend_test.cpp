@@ -30,19 +30,21 @@ mesh::Grid grid_of(int cells) {
 }
 
 TEST(Bend, PlaneHasNoBendForceHoweverItsParticlesLie) {
-  // A plane, stretched and sheared within itself.
+  // The sheet is stretched and sheared, but stays in a plane.
   const mesh::Grid grid = grid_of(2);
   const Bend bend(grid, 0, {kRigidity, 1e-5});
   const Positions x = testing::moved_rigidly(
       testing::shaped(grid, [](double u, double v) { return Vec3(1.3 * u + 0.2 * v, 0.9 * v, 0); }));
   const Positions v = testing::rigid_velocities(x);
-  // Coordinates of metres are rounded by 4e-16 m; B / l² is 0.5 N/m.
+  // Tolerance: coordinates of metres have rounding errors of 4e-16 m; the force multiplies them by B / l² = 0.5 N/m and
+  // sums up about 30 terms.
   EXPECT_LT(testing::largest(testing::force_of(bend, x, v)), 1e-14);
   EXPECT_LT(bend.energy(x), 1e-28);
 }
 
 TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
-  // Only inner particles have curvature: along weft, the energy does not cover half a spacing at either end.
+  // The end particles of a thread have no second difference. The energy of curvature along weft therefore omits half a
+  // spacing at either end of the weft, and along warp likewise; the twist is measured in the cells and omits nothing.
   for (double angle : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
     const auto error_at = [&](int cells) {
       const mesh::Grid grid = grid_of(cells);
@@ -54,8 +56,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
       return std::abs(Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, angle)) / expected - 1);
     };
     for (int cells : {2, 4}) {
-      // On a circle, a second difference is too small by the fraction l² / 12 R², and the energy by twice that. The
-      // error is smaller if the differences are oblique.
+      // On a circle, a second difference is too small by the fraction l² / 12 R², and the energy by twice that. If the
+      // threads are oblique to the axis, the error is smaller.
       const double l = grid_of(cells).lu;
       EXPECT_LT(error_at(cells), 1.01 * l * l / (6 * kRadius * kRadius));
       EXPECT_NEAR(std::log2(error_at(cells) / error_at(2 * cells)), 2, 0.02) << "angle " << angle;
@@ -64,8 +66,8 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
 }
 
 TEST(Bend, ParabolaHasTheEnergyOfThePlateOnAGradedGridToRounding) {
-  // Second differences of parabolas are exact for any spacing. The plate has constant curvature except for half a
-  // spacing at either end; the twist, measured in the cells, covers all of it.
+  // Second differences of parabolas are exact for any spacing. The energy of curvature omits half a spacing at either
+  // end of each thread; the energy of twist, which is measured in the cells, covers the whole sheet.
   mesh::Grid grid = grid_of(2);
   grid.weft_grading = 5, grid.warp_grading = 0.5;
   const double width = grid.u(grid.nu - 1), height = grid.v(grid.nv - 1);
@@ -85,7 +87,8 @@ TEST(Bend, CylinderApproachesHalfBAOverRSquaredAsTheGridIsRefined) {
     const double expected = 0.5 * kRigidity * 0.2 * 0.15 / (kRadius * kRadius);
     return 1 - Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, 0)) / expected;
   };
-  // First order: half a spacing at either free end has no curvature; these ends are 1/8 and 1/64 of the length.
+  // The error is of first order, because the energy omits half a spacing at either free end: together 1/8 and 1/64 of
+  // the length.
   EXPECT_NEAR(error_at(2), 1.0 / 8, 0.005);
   EXPECT_NEAR(error_at(16), 1.0 / 64, 0.0005);
 }
@@ -99,7 +102,8 @@ TEST(Bend, RestoresTowardsThePlane) {
   const Positions f = testing::force_of(bend, x, testing::zeros(x));
   EXPECT_LT(f[middle].z(), 0);
   EXPECT_NEAR(f[middle].x(), 0, 1e-16);
-  // −B Δ² of a spike at an inner particle: the 13-point stencil has −20 / l⁴ at its centre, times the area l².
+  // One inner particle is raised by 1 mm. The forces are −B Δ²z l², where the 13-point stencil of Δ² has the weights
+  // 20 / l⁴ at its centre, −8 / l⁴ at the neighbours and 1 / l⁴ two particles away.
   const mesh::Grid large = grid_of(3);
   Positions spike = testing::flat(large);
   const auto centre = static_cast<std::size_t>(large.index(6, 4));
@@ -112,8 +116,8 @@ TEST(Bend, RestoresTowardsThePlane) {
 }
 
 TEST(Bend, FrictionIsAMomentOfConstantSizeAgainstTheChangeOfCurvature) {
-  // The curvature of a cylinder grows, at rates far above and far below the rate at which friction reaches its full
-  // size.
+  // The curvature of a cylinder changes, at rates far above and far below BendDamping::kStickRate = 0.5 1/(m·s), at
+  // which friction reaches 0.7 of its full size.
   constexpr double kFriction = 3e-3;
   const Bend bend(testing::kGrid, 0, BendParameters{0, 0, kFriction});
   const double curvature = 2;
@@ -137,10 +141,10 @@ TEST(Bend, FrictionIsAMomentOfConstantSizeAgainstTheChangeOfCurvature) {
   const mesh::Grid& grid = testing::kGrid;
   const double area = grid.lu * (grid.nu - 2) * grid.lv * (grid.nv - 1);
   for (double rate : {50.0, -50.0}) {
-    // Smoothing at 50 1/(m·s): 1 − (0.5 / 50)² / 2; flat curvature 0.1 against 2: 1 − (0.1 / 2)² / 2.
+    // Tolerance: kStickRate reduces the power by the fraction (0.5 / 50)² / 2, and kFlatCurvature by (0.1 / 2)² / 2.
     EXPECT_NEAR(power(rate), -kFriction * area * std::abs(rate), 2e-3 * kFriction * area * std::abs(rate)) << rate;
   }
-  // Far below, the power is quadratic in the rate.
+  // At rates far below kStickRate, the power is quadratic in the rate.
   EXPECT_NEAR(power(0.005) / power(0.0005), 100, 0.1);
 }
 

@@ -27,7 +27,7 @@ bool is_middle(std::size_t i) {
   return i >= static_cast<std::size_t>(kGrid.nu * kGrid.nv);
 }
 
-/// Moves each particle by up to `size` [m].
+/// Moves each particle by up to `size` [m] along each axis.
 Positions crumpled(const mesh::Sheet& sheet, double size) {
   Positions x = sheet.rest;
   const Positions noise = testing::random_vectors(x.size(), size, 5);
@@ -35,7 +35,8 @@ Positions crumpled(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Moves corners so that cells become parallelograms; the middle particles are anywhere in the plane.
+/// Deforms the cells to parallelograms in their plane. Moves each middle particle in the plane by up to `size` [m]
+/// along each axis.
 Positions parallelograms(const mesh::Sheet& sheet, double size) {
   Positions x = sheet.rest;
   const Positions noise = testing::random_vectors(x.size(), size, 5);
@@ -47,7 +48,7 @@ Positions parallelograms(const mesh::Sheet& sheet, double size) {
   return x;
 }
 
-/// Shears each cell in its plane until its area is `area_ratio` times that at rest.
+/// Shears each cell until its area is `area_ratio` times that at rest, and moves each particle by up to 1 mm.
 Positions fold_up(const mesh::Sheet& sheet, double area_ratio) {
   Positions x = crumpled(sheet, 0.001);
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -71,7 +72,8 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
       for (int axis = 0; axis < 3; ++axis) {
         Positions more = x, less = x;
         more[i][axis] += kStep, less[i][axis] -= kStep;
-        // Error of the difference: third derivatives × kStep², and rounding of 1e-2 J / kStep; together 1e-9 N.
+        // Tolerance: the central difference has a truncation error of order kStep² and the rounding error of energies
+        // of 1e-2 J, divided by kStep; together 1e-9 N.
         EXPECT_NEAR(f[i][axis], (membrane.energy(less) - membrane.energy(more)) / (2 * kStep), 1e-7 * largest);
       }
     }
@@ -80,9 +82,9 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   }
 }
 
-// The diagonals of a cell span only 1e-6 of its area, so its normal is undefined. The length of the normal is 1e-6 / (½
-// S₀) = 4e-6 instead of 1, with S₀ = 0.5 (kFoldedSize). Forces thus differ by a few times 1e-6 of stiffness × cell
-// width.
+// The corners span only 1e-6 of the area of the cell at rest. Below the fraction kFoldedSize = 0.5 of this area,
+// CrossedMembrane shortens the normal: here to 1e-6 / (½ · 0.5) = 4e-6 instead of 1. Its forces thus differ from those
+// of the triangles by a few times 1e-6 of stiffness × cell width.
 TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
@@ -158,7 +160,8 @@ TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinit
       for (std::size_t j = 0; j < flat.size(); ++j) {
         const Vec3 difference = (f_less[j] - f_more[j]) / (2 * kStep);
         const auto row = 3 * static_cast<Eigen::Index>(j), column = 3 * static_cast<Eigen::Index>(i) + axis;
-        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);  // stress from kStep
+        // Tolerance: a displacement of kStep causes stress, whose stiffness the matrix does not contain.
+        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);
       }
     }
   const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006), v, 0);

@@ -43,7 +43,8 @@ const Case kCases[] = {
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 0});
      }},
-    // These velocities change the curvature by about 1e4 1/(m·s), at which friction has its full size.
+    // The random velocities of the tests, up to 1 m/s, change the curvature by about 1e4 1/(m·s). At this rate,
+    // friction has its full size.
     {"bend_with_friction",
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 1000 * viscous});
@@ -84,7 +85,8 @@ const Case kCases[] = {
        membrane->interpolate_rest_shape(0.4);
        return membrane;
      }},
-    // Of the crumpled threads, some are below the onset, some lock, and some exceed the limit.
+    // In the crumpled sheets of the tests, some threads are below the onset of locking, some lock, and some exceed the
+    // limit.
     {"stretch_limit",
      [](double, double) { return std::make_unique<StretchLimit>(kGrid, 0, StretchParameters{}, 0.1, 0.1); }},
     {"stretch_limit_of_triangles",
@@ -119,9 +121,9 @@ const Case kCases[] = {
 
 class Derivatives : public ::testing::TestWithParam<Case> {};
 
-// Central differences with ε = 4e-7 m and half of it, extrapolated so that the error of order ε² cancels. The direction
-// of a slight curvature κ turns by ε / (l² κ) = 1e-3. Without extrapolation, the error would be the square of this;
-// with it, the error is below 1e-10.
+// Step of the differences [m], and their tolerance relative to the largest entry. A displacement ε turns the direction
+// of a slight curvature κ by ε / (l² κ) = 1e-3. The relative error of a central difference is the square of this;
+// extrapolated differences (stiffness_by_differences()) have an error below 1e-10.
 constexpr double kDifference = 4e-7;
 constexpr double kRelative = 5e-8;
 
@@ -138,7 +140,7 @@ TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
         x[i][axis] = place - kDifference;
         const double below = force->energy(x);
         x[i][axis] = place;
-        // The last term is the rounding error of the energies.
+        // The second term of the tolerance is the rounding error of the energies, divided by the step.
         EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kDifference),
                     kRelative * testing::largest(f) + 1e-15 * above / kDifference);
       }
@@ -177,7 +179,7 @@ TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
     const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate);
     const double scale = k.cwiseAbs().maxCoeff();
     EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
-    // Tolerance: a few dozen roundings in each of 60 rows.
+    // Tolerance: rounding errors of a few dozen terms in each of 60 rows.
     EXPECT_GT(k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
   }
 }
@@ -194,12 +196,12 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate);
   const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   if (GetParam().name.starts_with("bend")) {
-    // Projection only adds stiffness: the projected damping is as stiff across the curvature as along it.
+    // The projected damping is as stiff across the curvature as along it, so the projection adds stiffness.
     const Eigen::MatrixXd added = definite - exact;
     EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * added.cwiseAbs().maxCoeff());
     return;
   }
-  // The shear is zero up to rounding.
+  // Tolerance: rounding errors of the shear, which is zero.
   EXPECT_LT((definite - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
 }
 
@@ -219,7 +221,7 @@ TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
       off = std::max(off, std::abs(definite(i, j) - exact(i, j)));
     }
   EXPECT_GT(largest, 0);
-  EXPECT_LT(off, 1e-12 * largest);  // sums of a few dozen rounded terms
+  EXPECT_LT(off, 1e-12 * largest);  // tolerance: rounding errors of sums of a few dozen terms
 }
 
 TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
@@ -232,7 +234,7 @@ TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
 }
 
 TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
-  // This test shows why a projected Hessian is needed; only bending needs none.
+  // Newton's method needs a projected Hessian of all forces but bending, because their exact Hessian is indefinite.
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 3);
   const Eigen::MatrixXd k = testing::jacobian_of(*force, x, testing::zeros(x), kRate);

@@ -1,4 +1,4 @@
-// Bending in front of held particles: clamps, hinges, and release.
+// Bending of sheets of which some particles are held: clamps, hinges, and release.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,14 +15,14 @@ using testing::Positions;
 constexpr double kCurvature = 4;  // [1/m]
 const Vec2 kHeldSize(0.2, 0.1);
 
-/// Holds the particles up to `clamp` along weft.
+/// Marks the particles up to the weft coordinate `clamp` [m] as held.
 std::vector<char> held_up_to(const std::vector<Vec2>& uv, double clamp) {
   std::vector<char> held;
   for (const Vec2& place : uv) held.push_back(place.x() < clamp + 1e-9);
   return held;
 }
 
-// Height of a sheet that is clamped up to `clamp` and has constant curvature in front of it.
+// Height at u [m] of a sheet that is flat up to `clamp` [m] and has the curvature kCurvature beyond it.
 double in_front(double u, double clamp) {
   return 0.5 * kCurvature * std::pow(std::max(0.0, u - clamp), 2);
 }
@@ -42,7 +42,8 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
       return Vec3(u, v, in_front(s, clamp));
     });
     bend.set_held(held);
-    // Area of the bent part: the free part of the sheet, without half a spacing at its end, which is flat.
+    // Area that has bending energy: the free part of the sheet without half a spacing at its free end, where particles
+    // have no second difference.
     const double area = (end - clamp - (along_weft ? grid.width_u(8) : grid.width_v(8))) * across;
     const double expected = 0.5 * kRigidity * kCurvature * kCurvature * area;
     EXPECT_NEAR(bend.energy(x), expected, 1e-12 * expected);
@@ -63,14 +64,16 @@ TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
       for (std::size_t k = 0; k < stencils[t].vertices.size(); ++k)
         curvature += stencils[t].weights[k] * in_front(mesh.uv[stencils[t].vertices[k]].x(), clamp);
       const bool clamped = std::ranges::all_of(sheet.triangles[t], [&](Index v) { return held[v] != 0; });
-      // Rounding of weights 1/l², 1e4 to 1e6, times values of 0.1 at most.
+      // Tolerance: the rounding errors of weights of 1e4 to 1e6 1/m², times heights of at most 0.1 m, are below 1e-10
+      // 1/m.
       EXPECT_LT((curvature - Vec3(clamped ? 0 : kCurvature, 0, 0)).norm(), 1e-9)
           << testing::kMeshings[meshing].name << ", triangle " << t;
     }
   }
 }
 
-/// A crumpled Delaunay mesh whose first quarter is held, so that the border of the clamp is ragged.
+/// A crumpled Delaunay mesh whose first quarter along weft is held. The mesh has no straight columns, so the edge of
+/// the clamp is ragged.
 struct RaggedClamp {
   mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kHeldSize, 5), 0.35, 3);
   mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
@@ -89,12 +92,12 @@ TEST(HeldBend, RaggedClampHasTheJacobianOfItsForceAndIsDefinite) {
   RaggedClamp clamp;
   const Eigen::MatrixXd jacobian = testing::jacobian_of(clamp.bend, clamp.x, clamp.v, 50);
   const Eigen::MatrixXd differences = testing::stiffness_by_differences(clamp.bend, clamp.x, clamp.v, 50, 1e-6);
-  // Measured: 2e-9 of the largest entry.
+  // Measured error of the differences: 2e-9 of the largest entry.
   EXPECT_LT((jacobian - differences).cwiseAbs().maxCoeff(), 1e-7 * jacobian.cwiseAbs().maxCoeff());
   const Eigen::MatrixXd definite = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 50);
   const Eigen::VectorXd values = definite.selfadjointView<Eigen::Lower>().eigenvalues();
   EXPECT_GT(values.minCoeff(), -1e-12 * values.maxCoeff());
-  // Rigid motions need no energy.
+  // After a rigid motion, the energy is zero up to rounding.
   EXPECT_LT(clamp.bend.energy(testing::moved_rigidly(clamp.sheet.rest)), 1e-24);
 }
 
@@ -105,8 +108,8 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
   const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0);
   clamp.bend.set_held(clamp.none);
   EXPECT_GT(held, 1.05 * clamp.bend.energy(clamp.x));
-  // The two energies are equal up to weights of the size of rounding errors, which the program drops only from stencils
-  // away from pins.
+  // Tolerance: curvature_stencils() removes weights of the size of rounding errors, but not near pinned particles;
+  // `clamp.bend` has pinned particles, `never` has none.
   EXPECT_NEAR(clamp.bend.energy(clamp.x), never.energy(clamp.x), 1e-12 * held);
   clamp.bend.set_held(clamp.held);
   EXPECT_EQ(clamp.bend.energy(clamp.x), held);
@@ -157,7 +160,8 @@ TEST(HeldBend, CurvedRestShapeHasNoForceWhereItIsClamped) {
   TriangleBend bend(sheet, 0, {kRigidity, 0}, held_up_to(mesh.uv, 0.05));
   for (const bool let_go : {false, true}) {
     if (let_go) bend.set_held(std::vector<char>(sheet.rest.size()));
-    // B / l² = 1 N/m times coordinates of metres rounded by 4e-16 m.
+    // Tolerance: coordinates below 1 m have rounding errors of 1e-16 m, which the force multiplies by B / l² = 1 N/m;
+    // the weights of the stencils add errors of the same size.
     EXPECT_LT(testing::largest(testing::force_of(bend, sheet.rest, testing::zeros(sheet.rest))), 1e-13);
   }
 }

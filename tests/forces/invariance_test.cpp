@@ -30,7 +30,8 @@ TEST(Invariance, NoForceAtRestAndAfterRigidMotion) {
   const AllForces all;
   for (const auto& [name, force] : all.list) {
     for (const Positions& x : {testing::flat(kGrid), testing::moved_rigidly(testing::flat(kGrid))}) {
-      // Tolerance: rounding of coordinates, 4e-16 m, times 1000 N/m, times about ten.
+      // Tolerance: coordinates have rounding errors of 4e-16 m; the force multiplies them by 1000 N/m in about ten
+      // terms.
       EXPECT_LT(testing::largest(testing::force_of(*force, x, testing::zeros(x))), 5e-12) << name;
       EXPECT_LT(force->energy(x), 1e-24) << name;
     }
@@ -44,7 +45,8 @@ TEST(Invariance, NoForceAtRestOfAGradedGridAndAfterRigidMotion) {
   const Bend bend(grid, 0, {1e-3, 1e-4});
   for (const Force* force : std::initializer_list<const Force*>{&stretch, &shear, &bend})
     for (const Positions& x : {testing::flat(grid), testing::moved_rigidly(testing::flat(grid))}) {
-      // As above, but edges that are six times shorter relative to their width are six times as stiff.
+      // Tolerance: six times that of the even grid, because the shortest edges are six times as short relative to the
+      // width that they carry, and so six times as stiff.
       EXPECT_LT(testing::largest(testing::force_of(*force, x, testing::zeros(x))), 3e-11);
       EXPECT_LT(force->energy(x), 1e-23);
     }
@@ -76,7 +78,7 @@ TEST(Invariance, RigidVelocitiesMeetNoViscosity) {
       difference = std::max(difference, (turning[i] - still[i]).norm());
       other = std::max(other, (bent[i] - still[i]).norm());
     }
-    // Relative to the force of general velocities of the same size.
+    // Tolerance: rounding errors, relative to the viscous forces of random velocities of the same size.
     EXPECT_LT(difference, 1e-13 * other) << name;
     EXPECT_GT(other, 1e-3) << name;
   }
@@ -105,7 +107,7 @@ TEST(Invariance, ForcesSumToZeroAndTurnNothing) {
         sum += f[i];
         torque += x[i].cross(f[i]);
       }
-      // Twenty particles are within 0.1 m of each other.
+      // Tolerance: rounding errors of twenty forces, with lever arms of at most 0.12 m for the torque.
       EXPECT_LT(sum.norm(), 1e-13 * testing::largest(f)) << name;
       EXPECT_LT(torque.norm(), 1e-14 * testing::largest(f)) << name;
     }

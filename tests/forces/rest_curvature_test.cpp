@@ -12,7 +12,8 @@ namespace {
 using testing::kRigidity;
 using testing::Positions;
 
-/// A flat mesh that is rolled about the warp without stretch. Positive curvature bends it toward its front.
+/// Positions of a flat mesh that is rolled about the warp without stretch. Positive curvature [1/m] bends it toward its
+/// front, +z.
 Positions rolled(const mesh::Mesh& flat, double curvature) {
   Positions x;
   for (const Vec2& uv : flat.uv) {
@@ -37,7 +38,8 @@ TEST(RestCurvature, RestShapeHasNeitherForceNorEnergyWhicheverWayItBends) {
     const mesh::Sheet sheet = rest_of(strip(6), curvature);
     const TriangleBend bend(sheet, 0, {kRigidity, 1e-5, 1e-4});
     for (const Positions& x : {sheet.rest, testing::moved_rigidly(sheet.rest)}) {
-      // Tolerance: B / l² = 1 N/m times the rounding of coordinates, 4e-16 m; the rounding of weights adds as much.
+      // Tolerance: coordinates have rounding errors of 4e-16 m, which the force multiplies by B / l² = 1 N/m; the
+      // weights of the stencils add errors of the same size.
       EXPECT_LT(testing::largest(testing::force_of(bend, x, testing::zeros(x))), 1e-13);
       EXPECT_LT(bend.energy(x), 1e-20);
     }
@@ -45,8 +47,9 @@ TEST(RestCurvature, RestShapeHasNeitherForceNorEnergyWhicheverWayItBends) {
 }
 
 TEST(RestCurvature, EnergyIsThatOfTheChangeOfCurvatureWithItsSign) {
-  // ½ B (κ − κ0)² A: turning the sheet inside out changes the curvature twice as much as flattening it. The error is of
-  // first order in the spacing, as on quads: over half a cell at either free end, there is no moment.
+  // The expected energy is ½ B (κ − κ0)² A with signed curvatures: rolling the sheet to the other side changes the
+  // curvature twice as much as flattening it. The error is of first order in the spacing, because half a cell at either
+  // free end has no moment.
   for (double rest : {4.0, -4.0})
     for (double now : {0.0, 2.0, -4.0, 6.0}) {
       const auto error_at = [&](int cells) {
@@ -61,7 +64,7 @@ TEST(RestCurvature, EnergyIsThatOfTheChangeOfCurvatureWithItsSign) {
 }
 
 TEST(RestCurvature, FlattenedStripPullsBackWithTheAnalyticMoment) {
-  // dE/dκ = B (κ − κ0) A for each shape between the two: the moment that holds a strip at κ is B (κ − κ0) per width.
+  // E = ½ B (κ − κ0)² A, so the forces on the flat strip (κ = 0) do the work −dE/dκ = B κ0 A per change of curvature.
   const mesh::Mesh mesh = strip(20);
   for (double rest : {4.0, -4.0}) {
     const TriangleBend bend(rest_of(mesh, rest), 0, {kRigidity, 0});

@@ -1,4 +1,4 @@
-// The stiffness of rigid bodies: force against energy, stiffness against force, and no force on rigid motions.
+// The stiffness of rigid bodies: force against energy, stiffness against force, and no force in rigid motions.
 #include "physics/forces/rigidity.hpp"
 
 #include <gtest/gtest.h>
@@ -104,14 +104,15 @@ TEST(Rigidity, HasOneFrequencyForStretchesOfThinAndThick) {
     const Frame x = moved(frame, stretch), start = moved(frame, Mat3::Identity());
     double moved_sq = 0;  // mass-weighted mean square of the displacement [m²]
     for (std::size_t k = 0; k < 4; ++k) moved_sq += 0.25 * (x[k] - start[k]).squaredNorm();
-    // ½ κ m times the mean square of the displacement; the strain has an additional term of order ε².
+    // The expected energy is ½ m kStiffness times the mean square of the displacement. Tolerance: the strain has a term
+    // of order kStrain², which changes the energy by a fraction of order kStrain.
     EXPECT_NEAR(rigidity.energy(x) / (0.5 * kStiffness * kMass * moved_sq), 1, 2 * kStrain);
   }
 }
 
 TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
-  // The plate rotates by 0.4 rad. Halfway along straight paths, the body is smaller; at the end, it has its shape
-  // again.
+  // The plate rotates by 0.4 rad during the step. Its particles move along straight lines, so the plate is smaller in
+  // the middle of the step; at the end, it has its rest shape.
   const mesh::RigidFrame frame = plate();
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
   const Frame from = moved(frame, Mat3::Identity()),
@@ -124,7 +125,8 @@ TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
   }
   for (const Vec3& force : forces_at(rigidity, middle, v, 2 / kStepLength))
     EXPECT_LT(force.norm(), 1e-12 * kMass * kStiffness);
-  EXPECT_GT(forces_at(rigidity, middle)[0].norm(), 1e-4 * kMass * kStiffness);  // halfway along straight paths
+  // With rate 0, the force follows from the strain of `middle`.
+  EXPECT_GT(forces_at(rigidity, middle)[0].norm(), 1e-4 * kMass * kStiffness);
 }
 
 TEST(Rigidity, IsLinearisedAsItChanges) {
@@ -146,7 +148,7 @@ TEST(Rigidity, IsLinearisedAsItChanges) {
   rigidity.add(at);
   assembly.complete_pairs(0, 4, matrix);
   assembly.complete_rows(0, 4, matrix);
-  // Without strain the tangent is exact.
+  // Without strain, the matrix is the exact Jacobian.
   for (std::size_t k = 0; k < 4; ++k)
     for (int axis = 0; axis < 3; ++axis) {
       constexpr double kStep = 1e-7;

@@ -30,8 +30,9 @@ Positions arc(double radius, double length = kLength) {
 }
 
 TEST(RopeForce, EnergyOfAnArcIsThatOfABeam) {
-  // ½ EI L / R² over the inner particles, whose length is one piece less. A piece of 2.5 mm on a radius of 0.1 m turns
-  // by 0.025 rad; its energy is too small by a sixth of the square of this.
+  // The expected energy is ½ EI L / R², where L is one piece less than the rope, because only inner particles have
+  // curvature. Tolerance: a piece of 2.5 mm on a radius of 0.1 m turns by 0.025 rad; the energy is too small by a sixth
+  // of the square of this angle.
   const RopeForce rope_force(even_pieces(), false, 0, {.bend = 3e-4});
   const double expected = 0.5 * 3e-4 * (kLength - kLength / kPieces) / (0.1 * 0.1);
   EXPECT_NEAR(rope_force.energy(arc(0.1)) / expected, 1, 1.1e-4);
@@ -71,7 +72,7 @@ TEST(RopeForce, MeetsAirAcrossAsACylinderAndNotAlong) {
   const Positions f = testing::force_of(rope_force, x, Positions(x.size(), Vec3(7, 3, 4)));
   Vec3 sum = Vec3::Zero();
   for (const Vec3& force : f) sum += force;
-  // ½ ρ c d L ‖v‖² for the component of the velocity across the rope, 5 m/s.
+  // The expected drag is ½ ρ c d L v², where v is the component of the velocity across the rope, 5 m/s.
   const double drag = 0.5 * 1.2 * 1.1 * 0.01 * kLength * 25;
   EXPECT_LT((sum - drag * Vec3(0, -0.6, -0.8)).norm(), 1e-9 * drag);
 }

@@ -26,7 +26,7 @@ TEST(SewnMembranes, HaveNoStressAtTheStartAndThatOfThePatternAtTheEnd) {
 
   const double full = pattern.energy(sheet.rest);
   sewn.interpolate_rest_shape(0);
-  // Rounding errors of 1e-16 in the strains.
+  // Tolerance of the energy: strains have rounding errors of some 1e-16.
   EXPECT_LT(sewn.energy(sheet.rest), 1e-25 * full);
   EXPECT_LT(testing::largest(testing::force_of(sewn, sheet.rest, testing::zeros(sheet.rest))), 1e-9);
   EXPECT_LT(sewn.max_strain(sheet.rest), 1e-12);
@@ -70,7 +70,7 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
   bool ended = false;
   for (int step = 1; step <= 100; ++step) {
     const double progress = step * kStep;
-    sewn.interpolate_rest_shape(0.5 * (2 * progress - kStep));  // an attempt that is rejected
+    sewn.interpolate_rest_shape(0.5 * (2 * progress - kStep));  // a half step that is rejected
     sewn.interpolate_rest_shape(progress);
     EXPECT_FALSE(ended);
     ended = sewn.accept_rest_shape(held, kOnset, kStep);
@@ -87,8 +87,8 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
   EXPECT_TRUE(ended);
   EXPECT_FALSE(sewn.accept_rest_shape(held, kOnset, kStep));
   EXPECT_FALSE(sewn.is_catching_up()) << "its threads stay locked";
-  // The width ends at the onset of locking, within two steps: a step changes it by 1 / 100 of the start's excess, at up
-  // to twice the mean speed.
+  // The rest width stops at the value at which the threads begin to lock. Tolerance: two steps. Each of the 100 steps
+  // shortens the rest width by 1/100 of the difference between start and pattern, and by at most twice as much.
   EXPECT_NEAR(sewn.max_strain(held), kOnset, 2 * kStep * kHeld);
   EXPECT_NEAR(sewn.widening().fraction, kHeld / (1 + kOnset) - 1, 2 * kStep);
   EXPECT_EQ(free.widening().fraction, 0);
@@ -157,7 +157,7 @@ TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
   sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0, 0});
   const Bands bands(sheet, 0, 1000);
   const Positions f = testing::force_of(bands, sheet.rest, testing::zeros(sheet.rest));
-  // The band is 20 mm long, and 16 mm at rest: 50 N · 0.25.
+  // Each piece of the band is 20 mm long, and 16 mm at rest: the strain is 0.25, and the force 50 N · 0.25.
   EXPECT_NEAR(f[0].x(), 12.5, 1e-12);
   EXPECT_NEAR(f[1].norm(), 0, 1e-12);
   EXPECT_NEAR(f[2].x(), -12.5, 1e-12);
@@ -203,7 +203,7 @@ TEST(Hems, ResistBendingAsRods) {
   band.bend = stiffness;
   sheet.bands.push_back(band);
   const Bands bands(sheet, 0, 1000);
-  const double inner = length * (pieces - 1) / pieces;  // each inner particle is a hinge
+  const double inner = length * (pieces - 1) / pieces;  // only inner particles have curvature
   EXPECT_NEAR(bands.energy(x), 0.5 * stiffness * inner / (radius * radius), 1e-3 * bands.energy(x));
 }
 

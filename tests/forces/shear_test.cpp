@@ -17,7 +17,7 @@ TEST(Shear, UniformShearHasTheEnergyOfTheContinuum) {
   const Shear shear(kGrid, 0, {kModulus, 0});
   const double area = (kGrid.nu - 1) * kGrid.lu * (kGrid.nv - 1) * kGrid.lv;
   for (double g : {0.01, 0.4}) {
-    // s_u = (1, 0), s_v = (g, 1): ⟨s_u, s_v⟩ = g.
+    // The derivatives s_u = (1, 0, 0) and s_v = (g, 1, 0) have the product ⟨s_u, s_v⟩ = g.
     const Positions x = testing::shaped(kGrid, [=](double u, double v) { return Vec3(u + g * v, v, 0); });
     const double expected = 0.25 * kModulus * g * g * area;
     EXPECT_NEAR(shear.energy(x), expected, 1e-12 * expected);
@@ -44,7 +44,7 @@ TEST(Shear, StressOfASmoothSurfaceConvergesWithSlopeTwo) {
     return std::abs(stress - std::abs(exact));
   };
   for (double l : {0.04, 0.02, 0.01})
-    // The next term of the error is of order l⁴: here less than 1 % of the first.
+    // Tolerance: the next term of the error, of order l⁴, is less than 1 % of the first.
     EXPECT_NEAR(std::log2(error_at(l) / error_at(l / 2)), 2, 0.02) << "l = " << l;
 }
 
@@ -64,7 +64,7 @@ TEST(Shear, StripesThatDifferencesOverTwoEdgesMissAreSheared) {
   Positions x = testing::flat(kGrid);
   for (int j = 0; j < kGrid.nv; ++j)
     for (int i = 0; i < kGrid.nu; ++i) x[kGrid.index(i, j)].y() += i % 2 ? 1e-3 : -1e-3;
-  // Each edge along weft rises by 2e-3 m: ⟨s_u, s_v⟩ = ±0.1 in every cell.
+  // Along each weft edge of 20 mm, y changes by ±2e-3 m: ⟨s_u, s_v⟩ = ±0.1 in every cell.
   const double area = (kGrid.nu - 1) * kGrid.lu * (kGrid.nv - 1) * kGrid.lv;
   EXPECT_NEAR(Shear(kGrid, 0, {kModulus, 0}).energy(x), 0.25 * kModulus * 0.01 * area, 1e-12);
 }

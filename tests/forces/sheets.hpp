@@ -18,7 +18,7 @@ namespace weft::forces::testing {
 
 using Positions = std::vector<Vec3>;
 
-/// Five by four particles, 20 mm by 30 mm apart: weft and warp differ in every respect.
+/// Five by four particles, 20 mm by 30 mm apart. Counts and spacings differ, so that tests notice swapped axes.
 inline const mesh::Grid kGrid{5, 4, 0.02, 0.03};
 inline const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;  ///< size of kGrid [m]
 
@@ -124,7 +124,7 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
 }
 
 /// Expects that evaluating ranges of particles, from the last to the first, gives the same forces and blocks as
-/// evaluating all at once, and that each range writes only its own.
+/// evaluating all at once, and that each range writes only the forces of its own particles.
 inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.append_couplings(pairs);
@@ -157,7 +157,7 @@ inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const P
   EXPECT_EQ(dense(in_ranges), dense(at_once));
 }
 
-/// −(∂f/∂x + rate ∂f/∂v) as in stiffness_of(), but exact: not projected to a definite matrix.
+/// Exact −(∂f/∂x + rate ∂f/∂v), not projected to a definite matrix.
 inline Eigen::MatrixXd jacobian_of(const Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.append_couplings(pairs);

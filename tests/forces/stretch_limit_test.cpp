@@ -21,15 +21,15 @@ const double kSine = std::sin(0.5);
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr StretchParameters kBelow{2000, 1000};
 
-// A sheet whose threads have these lengths along weft and warp, relative to rest. `sine`: sine of the deviation of
-// their angle from the right angle.
+// A sheet whose threads have these lengths along weft and warp, relative to rest. `sine`: sine of the shear angle, by
+// which the angle between weft and warp deviates from 90 degrees.
 Positions drawn(double weft, double warp, double sine = 0) {
   const double cosine = std::sqrt(1 - sine * sine);
   return testing::shaped(kGrid,
                          [=](double u, double v) { return Vec3(weft * u + sine * warp * v, cosine * warp * v, 0); });
 }
 
-// The limit for quads and for triangles.
+// Limits with the same parameters, for quads and for triangles.
 std::vector<std::unique_ptr<StretchLimit>> both(double stretch, double shear) {
   std::vector<std::unique_ptr<StretchLimit>> limits;
   limits.push_back(std::make_unique<StretchLimit>(kGrid, 0, kBelow, stretch, shear));
@@ -38,7 +38,7 @@ std::vector<std::unique_ptr<StretchLimit>> both(double stretch, double shear) {
   return limits;
 }
 
-// Integrates the stress by the midpoint rule. Only the third derivative of the law is discontinuous.
+// Integrates the stress by the midpoint rule. The stress has a continuous derivative, so the error is of second order.
 double integral(const Lock& lock, double to) {
   constexpr int kPieces = 10000;
   double sum = 0;
@@ -115,7 +115,8 @@ TEST(StretchLimit, IsLinearisedWhereItsThreadsHaveTheTensionForeseen) {
     for (const std::uint32_t t : linearisation.beyond_onset) {
       const double e = linearisation.extensions[t];
       EXPECT_LT(e, 0.2);
-      EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);  // twice the tolerance of the search
+      // Tolerance: twice kExtensionTolerance (stretch_limit.cpp).
+      EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);
     }
     EXPECT_TRUE(std::ranges::all_of(linear_force(*limit, drawn(0, 1.02), linearisation), [](const Vec3& f) {
       return f.isZero(0);

@@ -96,7 +96,7 @@ TEST(Stretch, DefiniteFormLeavesOutWhatCompressionSoftens) {
     const Positions x = positions(length);
     return testing::jacobian_of(stretch, x, testing::zeros(x), 0)(2, 2);
   };
-  const double along = 500;  // k A / l², half a spacing wide [N/m]
+  const double along = 500;  // stiffness k A / l² of an edge with half a spacing of width [N/m]
   EXPECT_NEAR(exactly_across(0.08), -0.25 * along, 1e-9);
   EXPECT_NEAR(across(0.08), 0, 1e-9);
   EXPECT_NEAR(exactly_across(0.01), -9 * along, 1e-9);

@@ -17,8 +17,8 @@ Ties tie_of(double open, double closed) {
   sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .open = open, .closed = closed});
   return {sheet, 0, 1e-9};
 }
-// Force between two particles at this distance [N], from the gradient of the energy. Differences over 1e-8 m of
-// energies around 1e-3 J are accurate to 1e-10 N.
+// Force between two particles at this distance [m], from the gradient of the energy [N]. Its error is below 1e-10 N:
+// energies of about 1e-3 J have rounding errors of 1e-19 J, and the difference divides them by 2e-8 m.
 double pull(const Ties& ties, double distance) {
   constexpr double kStep = 1e-8;
   const auto energy = [&](double x) { return ties.energy(std::vector<Vec3>{Vec3(0, 0, 0), Vec3(0, x, 0)}); };
@@ -71,10 +71,11 @@ TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   EXPECT_EQ(held(kNever, 1, 0.99), 0);
   EXPECT_NEAR(held(kNever, 1, 1 + 0.5 * Ties::kClosing), 0.5 * kPull, 1e-6);
   EXPECT_NEAR(held(kNever, 1, kAfter), kPull, 1e-6);
-  // Ties that close first and open later; then ties that open first and close later.
+  // This tie closes at 1 s and opens at 3 s.
   EXPECT_EQ(held(3, 1, 0), 0);
   EXPECT_NEAR(held(3, 1, kAfter), kPull, 1e-6);
   EXPECT_EQ(held(3, 1, 3), 0);
+  // This tie opens at 0.5 s and closes at 1 s.
   EXPECT_NEAR(held(0.5, 1, 0), kPull, 1e-6);
   EXPECT_EQ(held(0.5, 1, 0.5), 0);
   EXPECT_NEAR(held(0.5, 1, kAfter), kPull, 1e-6);

@@ -9,8 +9,8 @@
 
 namespace weft::forces::testing {
 
-/// Positive if d lies inside the circle through a, b, c (counter-clockwise); relative to the fourth power of the size,
-/// which is about one.
+/// Determinant of the in-circle test: positive if d lies inside the circle through a, b, c (counter-clockwise). It is
+/// of the order of the fourth power of the edge length, which is about one.
 inline double in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   Mat3 m;
   int row = 0;
@@ -95,7 +95,7 @@ inline const std::array<Meshing, 6> kMeshings{{
      [](const Vec2& size, int cells) {
        return mesh::make_triangle_sheet(grid_of_squares(size, cells), mesh::Pattern::aligned);
      }},
-    {"crossed",  // half as many cells have as many particles
+    {"crossed",  // half as many cells give as many particles
      [](const Vec2& size, int cells) {
        return mesh::make_triangle_sheet(grid_of_squares(size, 0.75 * cells), mesh::Pattern::crossed);
      }},

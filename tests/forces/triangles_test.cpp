@@ -41,7 +41,8 @@ std::vector<char> inside(const mesh::Sheet& sheet, int rings) {
 TEST(TriangleMembrane, DefiniteFormLeavesOutWhatCompressionSoftens) {
   const mesh::Mesh mesh = mesh::make_triangle_sheet(mesh::Grid{3, 3, 0.1, 0.1}, mesh::Pattern::aligned);
   TriangleMembrane membrane(mesh::make_sheet_from_mesh(mesh), 0, {1000, 0, 0}, {0, 0});
-  // Second derivative of the energy when the weft turns out of the plane: s_u = (stretch, 0, θ).
+  // `across` and `exactly_across`: second derivative of the energy with respect to θ, where the weft turns out of the
+  // plane, s_u = (stretch, 0, θ) [N·m].
   const auto stretched = [&](double stretch) {
     return mapped(mesh, [&](double u, double v) { return Vec3(stretch * u, v, 0); });
   };
@@ -74,7 +75,8 @@ TEST(TriangleMembrane, LinearMapHasTheEnergyAndTheStressOfTheContinuum) {
   const double c = su.dot(sv);
   const double density =
       0.5 * weft * std::pow(su.norm() - 1, 2) + 0.5 * warp * std::pow(sv.norm() - 1, 2) + 0.25 * shear * c * c;
-  const Vec3 traction_u = weft * (su.norm() - 1) * su.normalized() + 0.5 * shear * c * sv;  // on a cut across the weft
+  // Force per width on a cut across the weft [N/m].
+  const Vec3 traction_u = weft * (su.norm() - 1) * su.normalized() + 0.5 * shear * c * sv;
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make(kSize, 8);
     const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
@@ -113,7 +115,7 @@ TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
       for (Index e : edges.of_triangle[t]) free = free || edges.edges[e].triangles[1] < 0;
       if (free) continue;
       ++exact;
-      // Tolerance: rounding of weights 1/l² (1e4 to 1e6) times values of size one.
+      // Tolerance: rounding errors of weights of 1e4 to 1e6 1/m², times values of w of about 0.2 m [1/m].
       EXPECT_LT((curvature - Vec3(1.4, 0.8, -1.1)).norm(), 2e-9) << meshing.name << ", triangle " << t;
     }
     EXPECT_GT(exact, static_cast<int>(stencils.size()) / 2);
@@ -131,14 +133,14 @@ TEST(TriangleBend, ConstantMomentLeavesNoForceInside) {
     double largest = 0;
     for (std::size_t i = 0; i < f.size(); ++i)
       if (inner[i]) largest = std::max(largest, f[i].norm());
-    // The tolerance is relative to the forces at the border.
+    // Tolerance: rounding errors, relative to the forces at the border.
     EXPECT_LT(largest, 1e-9 * testing::largest(f)) << meshing.name;
   }
 }
 
 TEST(TriangleBend, OnlyRigidMotionsAndStretchCostNothing) {
-  // The lowest frequency of a free square plate (ν = 0) is 15.57 √(B/ρ)/L². The meshes converge to it under refinement;
-  // no mesh may have a softer mode.
+  // Three rigid motions have frequency 0. The lowest other frequency of a free square plate with ν = 0 is
+  // 15.57 √(B/ρ)/L² (here B, ρ and L are 1); no mesh may have a softer mode.
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make({1, 1}, 10);
     const mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
