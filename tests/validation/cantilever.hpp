@@ -36,7 +36,7 @@ struct Overhang {
   double gamma() const { return density * 9.81 * std::pow(length, 3) / rigidity; }
 };
 
-/// The strip above, Γ = 29, with one quantity changed to reach `gamma`.
+/// The default Overhang, Γ = 29, with one quantity changed to reach `gamma`.
 inline Overhang overhang(double gamma, Route route) {
   Overhang strip;
   const double change = gamma / strip.gamma();

@@ -43,9 +43,9 @@ TEST_P(Cantilever, ApproachesTheElasticaInSecondOrder) {
     const double limit = errors[2] - fine / 3, order = std::log2(std::abs(coarse / fine));
     std::printf("  gamma %5g: %7.3f %% %7.3f %% %7.3f %% -> %7.3f %%  %.2f\n", point.gamma, 100 * errors[0],
                 100 * errors[1], 100 * errors[2], 100 * limit, order);
-    // 0.05 % of stretch on average at gamma = 100, plus the error of the extrapolation from higher orders.
+    // Tolerance: 0.05 % of stretch on average at gamma = 100, plus terms of higher order in the extrapolation.
     EXPECT_LT(std::abs(limit), 2e-3) << "gamma " << point.gamma;
-    // If the errors are as small as the stretch, no order can be observed.
+    // If the errors are as small as the effect of stretch, no order can be observed.
     if (std::abs(coarse) > 7e-4) {
       EXPECT_GT(order, 1.7) << "gamma " << point.gamma;
     }

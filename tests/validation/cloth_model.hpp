@@ -113,7 +113,7 @@ class ClothModel {
       for (;; step_fraction *= 0.5) {
         for (std::size_t d = 0; d < dofs.size(); ++d)
           coordinate(x, dofs[d]) = coordinate(start, dofs[d]) + step_fraction * step[static_cast<Eigen::Index>(d)];
-        // Near equilibrium the energy is constant up to rounding: then the full step is right.
+        // Near equilibrium, rounding errors exceed the change of energy; the full step is right.
         if (slope < 1e-12 * std::abs(before) || energy() < before - 1e-4 * step_fraction * slope ||
             step_fraction < 1e-6)
           break;

@@ -146,7 +146,7 @@ double membrane_error(const Make& make, int cells, const Vec2& d) {
     const double s = std::sin(kPi * uv.x()) * std::sin(kPi * uv.y()),
                  c = std::cos(kPi * uv.x()) * std::cos(kPi * uv.y());
     const double g = 0.5 * m.shear.modulus;
-    // −div σ with σ_uu = k1 ε_uu, σ_vv = k2 ε_vv, σ_uv = ½ μ 2ε_uv.
+    // The load per area is −div σ with σ_uu = k1 ε_uu, σ_vv = k2 ε_vv, σ_uv = ½ μ 2ε_uv.
     loads.push_back(
         sample.areas[i] * kPi * kPi *
         Vec3((m.stretch.weft + g) * d.x() * s - g * d.y() * c, (m.stretch.warp + g) * d.y() * s - g * d.x() * c, 0));
@@ -156,7 +156,8 @@ double membrane_error(const Make& make, int cells, const Vec2& d) {
   return dot(loads, statics.solve(loads)) / dot(loads, exact) - 1;
 }
 
-/// Error of a plate on supports along two sides and free along the others, or on supports along all sides.
+/// Relative error of the compliance of a plate that is supported along two opposite sides (`along_u` or `along_v`) and
+/// free along the others, or supported along all sides (both).
 double plate_error(const Make& make, int cells, bool along_u, bool along_v) {
   const Sample sample = make(cells, false);
   Statics statics(sample, 2, 1);
@@ -195,14 +196,15 @@ std::vector<char> held_up_to(const Sample& sample, double clamp) {
   return held;
 }
 
-/// Error of quads whose first two columns are held.
+/// cantilever_error() of quads whose first two columns are held.
 double clamped_quads_error(double grading, int cells) {
   const Sample sample = quads(grading, cells, false);
   const double clamp = sample.mesh.uv[1].x();
   return cantilever_error(sample, clamp, held_up_to(sample, clamp));
 }
 
-/// Error of triangles held up to a column at about a quarter; the column is moved into a straight line.
+/// cantilever_error() of triangles that are held up to the column nearest to a quarter of the sheet. The column is
+/// moved into a straight line.
 double clamped_triangles_error(const testing::Meshing& meshing, int cells) {
   Sample sample;
   sample.mesh = meshing.make({1, 1}, cells);
@@ -291,7 +293,7 @@ void report_all(const std::string& mesh, const Make& make) {
   report(mesh, "bent along weft", [&](int n) { return plate_error(make, n, true, false); });
   report(mesh, "bent along warp", [&](int n) { return plate_error(make, n, false, true); });
   report(mesh, "plate on four sides", [&](int n) { return plate_error(make, n, true, true); });
-  // On coarser meshes the held rows would leave too few free particles.
+  // On meshes of n cells, the three held rows along each side would leave too few free particles.
   report(mesh, "ridge across 45°", [&](int n) { return ridge_error(make, 2 * n, 45); });
   report(mesh, "ridge across -45°", [&](int n) { return ridge_error(make, 2 * n, -45); });
 }

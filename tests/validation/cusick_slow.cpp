@@ -63,14 +63,14 @@ TEST_F(Cusick, PlatesClampAtTheirEdge) {
       if (x.head<2>().norm() > kSpecimenRadius - 1e-6) sag -= x.z(), ++count;
     sag *= material.bend / (count * material.density * 9.81);
     std::printf("%d rings: %.3f %%\n", free, 100 * (sag / kSag - 1));
-    // The error falls with the square of the number of rings: 2.1 % with eight.
+    // The relative error is 1.36 / n² with n free rings: 2.1 % with eight.
     EXPECT_NEAR(free * free * (sag / kSag - 1), 1.36, 0.05);
   }
 }
 
-// All fabrics but polyester match published figures within 10 % (tests/bench/README.md#fabrics). Ranges are up to 24
-// points wide, so a change could go unnoticed: each fabric must also match its own earlier result within 0.9 points,
-// the spread of four specimens.
+// All fabrics but polyester match published figures within 10 % (tests/bench/README.md#fabrics). Published ranges are
+// up to 24 percentage points wide, and would hide changes of the program. Each fabric must therefore also match its
+// coefficient in `found` within 0.9 percentage points, the spread of four specimens.
 TEST_F(Cusick, FabricsDrapeAsMeasured) {
   const std::map<std::string, double> found = {{"cotton", 0.780}, {"poplin", 0.846}, {"denim", 0.875},
                                                {"jersey", 0.329}, {"wool", 0.546},   {"suiting", 0.739},
@@ -99,12 +99,12 @@ TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
       found.back() += 0.5 * d.coefficient;
     }
   }
-  // Measured: 66.9, 73.0 and 76.4 %. In finer cells bending friction keeps narrower folds.
+  // Measured, from coarse to fine: 66.9, 73.0 and 76.4 %. In finer cells, bending friction keeps narrower folds.
   EXPECT_NEAR(found[1], found[2], 0.05);
 }
 
-/// A square specimen of the same area, which can also consist of quads. Quads and aligned triangles have the same
-/// particles, including those between the plates; crossed triangles have about as many in a coarser grid.
+/// A square specimen with the area of the disc, because a disc cannot consist of quads. Quads and aligned triangles
+/// have the same particles, and hold the same ones; crossed triangles have about as many in a coarser grid.
 scene::Scene square(ClothShape shape, const scene::Material& material) {
   const int particles = shape == ClothShape::crossed_triangles ? 41 : 57;
   scene::Scene scene = testing::sheet_alone(kSpecimenRadius * std::sqrt(std::numbers::pi), particles, 0);
@@ -123,7 +123,8 @@ scene::Scene square(ClothShape shape, const scene::Material& material) {
   return scene;
 }
 
-// Measured, both for leather: aligned triangles within 2.4 points; crossed, with cells 1.4 times as wide, within 5.4.
+// Largest measured differences from quads, both for leather: 2.4 percentage points for aligned triangles, and 5.4 for
+// crossed triangles, whose cells are 1.4 times as wide.
 TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
   for (const char* fabric : {"silk", "wool", "leather", "denim"}) {
     std::printf("%s, square:", fabric);

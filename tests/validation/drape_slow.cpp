@@ -13,7 +13,7 @@ namespace {
 struct SphereDrape {
   double height = 0;      // mean over all particles in the last frame [m]
   double hem_height = 0;  // mean over the border in the last frame [m]
-  double stretch = 1;     // maximum over all frames
+  double stretch = 1;     // length of a thread relative to rest, maximum over all frames
   double rms_speed = 0;   // maximum of the last second [m/s]
   double cpu_s = 0;
 };
@@ -62,9 +62,9 @@ double mean_height(double step_factor, const std::vector<double>& start_noises) 
 TEST(SphereDrape, LiesAsHighAsWithAnEighthOfTheStep) {
   const double fine = mean_height(1.0 / 8, {1e-6, 2e-6}), shipped = mean_height(1, {1e-6, 2e-6, 4e-6, 8e-6});
   std::printf("mean height %.6f m, with an eighth of the step %.6f m\n", shipped, fine);
-  // Single runs differ by 0.5 %, so the difference of these means by 0.4 %.
+  // Tolerance: heights of single runs have a spread of 0.5 %, so means of two and of four runs differ by 0.4 %.
   EXPECT_NEAR(shipped, fine, 0.01 * fine);
-  for (double factor : {2.0, 4.0}) drape_with(factor);  // only prints their figures
+  for (double factor : {2.0, 4.0}) drape_with(factor);  // only prints the results of longer steps
 }
 
 TEST(SphereDrape, ComesToRestWithItsThreadsHardlyStretched) {

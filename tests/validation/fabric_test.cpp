@@ -11,9 +11,9 @@ TEST(CantileverOfAFabric, FindsItsRigidityAndMoreWithItsFriction) {
   scene::Material wool = scene::find_fabric("wool")->material;
   const double with_friction = cantilever(wool).rigidity;
   wool.bend_friction = 0;
-  // Measured: 0.2 % off. The overhang is accurate to 1e-3, and the strip has 40 cells.
+  // Measured deviation: 0.2 %, from the accuracy of the overhang (1e-3) and the discretisation (40 cells).
   EXPECT_NEAR(cantilever(wool).rigidity, wool.bend, 0.01 * wool.bend);
-  // Measured: 18 % more with friction. Laboratories also measure more by cantilever than by KES.
+  // Measured: friction raises the result by 18 %. Laboratories, too, measure more by cantilever than by KES.
   EXPECT_GT(with_friction, 1.1 * wool.bend);
 }
 
@@ -23,11 +23,12 @@ TEST(StripOfAFabric, StretchesAtTheLoadsOfFastAndKesAsThoseSay) {
     const scene::Measurements& m = fabric.measured;
     const double weft = extension(fabric.material, Direction::weft, scene::kExtensionLoad),
                  warp = extension(fabric.material, Direction::warp, scene::kExtensionLoad);
-    // Both directions have one limit. Stretch and limit have two digits: at most 2 % off.
+    // Fabrics have one stretch limit for both directions, so only the mean is compared. Tolerance: stiffness and limit
+    // are stored with two digits, which changes the extension by up to 2 %.
     const double mean = 0.5 * (m.extension_weft.value + m.extension_warp.value);
     EXPECT_NEAR(0.5 * (weft + warp), mean, 0.03 * mean) << name;
     const double worn = extension(fabric.material, Direction::warp, scene::kWornLoad);
-    // The strip's own weight, half of which pulls at the middle, adds up to 2.5 %.
+    // Tolerance: the strip's own weight, half of which pulls at the middle, adds up to 2.5 %.
     EXPECT_NEAR(worn, scene::kWornLoad / fabric.material.stretch_warp, 0.03 * worn) << name;
   }
 }

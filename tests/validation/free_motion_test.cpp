@@ -32,7 +32,7 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
                                                // 1e-8
   const model::Model model = environment::Environment(scene).model;
   ClothSystem system(model);
-  // Crumpled and moving, so that all forces act.
+  // At the start, the cloth is crumpled and moves, so that all forces act.
   integrator::State start{model.cloths[0].start, forces::testing::random_vectors(81, 1, 2)};
   const auto noise = forces::testing::random_vectors(81, 0.001, 1);
   for (std::size_t i = 0; i < 81; ++i) start.x[i] += noise[i];
@@ -50,9 +50,9 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
       stepper.accept(now, next, 0.002);
       std::swap(now, next);
     }
-    // A residual of 1e-8 of the inertia in each of twenty steps, during which the forces reverse all velocities.
+    // Tolerance: each of twenty steps leaves a residual of 1e-8 of the inertia, and the forces reverse all velocities.
     EXPECT_LT((momentum(system.masses(), now.v) - before).norm(), 2e-7 * size) << static_cast<int>(method);
-    // The motion was more than a translation.
+    // The cloth has deformed: it has lost half of its elastic energy.
     EXPECT_LT(system.elastic_energy(now.x), 0.5 * energy);
   }
 }
@@ -73,10 +73,10 @@ TEST_P(FreeFall, LeavesAFlatSheetFlatByEveryMethodAtDefaultSettings) {
     for (int k = 1; k <= 25; ++k) simulation.advance();
     const std::vector<Vec3>& end = testing::sheet_of(simulation.snapshot());
     const double fallen = end[0].z() - start[0].z();
-    // A solver tolerance relative to the weight would allow deviations of 0.1 to 0.5 m.
+    // For comparison: a solver tolerance relative to the weight would allow deviations of 0.1 to 0.5 m.
     for (std::size_t i = 0; i < end.size(); ++i)
       ASSERT_LT((end[i] - start[i] - Vec3(0, 0, fallen)).norm(), 1e-6) << name_of(integrator) << ' ' << i;
-    // Euler's method is ahead by half a step.
+    // Tolerance: after one second, Euler's method is ahead by half a step, which is 1 % of the path.
     EXPECT_NEAR(fallen, -0.5 * 9.81, 0.5 * 9.81 * 0.011);
   }
 }
@@ -87,7 +87,7 @@ INSTANTIATE_TEST_SUITE_P(, FreeFall,
                                                               scene::ClothShape::crossed_triangles)));
 
 TEST(ReleasedCloth, FallsAsFromAStart) {
-  // If BDF2 used the history of a body at rest, it would lose half a step of gravity permanently: 20 mm here.
+  // With the history of a body at rest, BDF2 loses half a step of gravity permanently: 20 mm in the 0.4 s of this fall.
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
     scene.time.step = 0.01;
@@ -100,7 +100,7 @@ TEST(ReleasedCloth, FallsAsFromAStart) {
     const double t = 0.4, h = 0.01, g = 9.81;
     double expected = -0.5 * g * t * t;
     if (integrator == scene::Integrator::implicit_euler) expected -= 0.5 * g * h * t;
-    if (integrator == scene::Integrator::bdf2) expected -= 0.75 * g * h * h;  // its first step is an Euler step
+    if (integrator == scene::Integrator::bdf2) expected -= 0.75 * g * h * h;  // after a first step by Euler's method
     EXPECT_NEAR(testing::sheet_of(simulation.snapshot())[12].z(), expected, 1e-5) << name_of(integrator);
   }
 }
@@ -122,14 +122,14 @@ TEST(SteadyAir, TerminalVelocityDoesNotDependOnTheStep) {
           speed = 25 * (before - z);
           before = z;
         }
-        // m g = ½ ρ c A v². After 2 s, at least eleven times v / g, the speed is the terminal speed.
+        // m g = ½ ρ c A v² for the terminal speed v. The sheet reaches it within 2 s, at least eleven times v / g.
         const double expected = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / (1.2 * drag));
         EXPECT_NEAR(speed, expected, 1e-3 * expected) << name_of(integrator) << ' ' << drag << ' ' << step;
       }
 }
 
-// The gusts are so large that they are equal along the sheet's path of two seconds: relative to them the sheet falls as
-// in still air.
+// The gusts have a size of 1e5 m, so the wind is the same along the sheet's path of two seconds. Relative to this wind,
+// the sheet falls as in still air.
 TEST(GustsInARun, CarryASheetThatFalls) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.2, 5, 0);
@@ -147,7 +147,7 @@ TEST(GustsInARun, CarryASheetThatFalls) {
       before = z;
     }
     const double in_still_air = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / 1.2);
-    // Over the path of some metres the field changes by 1e-4 of itself.
+    // Tolerance: over a path of some metres, the wind changes by 1e-4 of its speed.
     EXPECT_NEAR(speed, in_still_air - gust, 1e-3 * in_still_air) << name_of(integrator);
   }
 }

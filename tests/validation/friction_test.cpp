@@ -14,14 +14,14 @@ namespace weft::simulation {
 namespace {
 
 constexpr double kGravity = 9.81;
-constexpr double kStep = 0.002;  // [s]; Euler shortens a path of v² / 2 μ g by v times half a step: 1 % of 0.1 m here
+constexpr double kStep = 0.002;  // [s]; Euler's method shortens the path v² / 2 μ g by v h / 2: 1 % of 0.1 m at 1 m/s
 
 /// A patch of 0.2 m on a plane inclined about the y axis. There is no air, so only friction holds it.
 scene::Scene patch_on_slope(double angle, double friction, double speed) {
   scene::Scene scene = testing::sheet_alone(0.2, 11, 0);
   scene.time.fps = 50;
   scene.time.step = kStep;
-  scene.solver.newton_tolerance = 1e-4;  // relative to the weight: far below the tested 2 %
+  scene.solver.newton_tolerance = 1e-4;  // relative to the weight; tests resolve 2 % of friction
   scene.solver.linear_tolerance = 1e-3;
   scene.contact.self = scene.contact.obstacles = true;
   const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
@@ -68,7 +68,7 @@ TEST_P(Friction, HoldsClothOnASlopeTwoPercentBelowTheCoefficient) {
   const double mu = GetParam();
   const auto distance = distances_down(patch_on_slope(std::atan(0.98 * mu), mu, 0), 50);
   const double speed = 50 * (distance[50] - distance[49]);
-  // README, "stick speed": sticking contacts creep by up to this speed.
+  // Sticking contacts creep by up to contact.stick_velocity (core/numerics.hpp), 2e-4 m/s.
   EXPECT_LT(speed, 2e-4);
   EXPECT_LT(distance[50] - distance[0], 1e-3);
 }
@@ -93,14 +93,15 @@ constexpr double kDegree = 0.017453292519943295;
 
 class Incline : public ::testing::TestWithParam<scene::Response> {};
 
-// Just above the angle of friction the driving force is a hundredth of the weight. A fall onto the slope costs a block
-// nothing: in the air it gains the speed that friction takes at the impact. Euler's method is ahead by half a step in
-// 1.6 s, hence the factor 1.61.
+// Slides patches, each at rest on the slope or `fall` metres above it, for 1.6 s, and expects the path of a block. A
+// fall does not change this path: in the air, the block gains the speed that friction takes at the impact. Half a
+// degree above the angle of friction, the driving force is only a hundredth of the weight. Euler's method is ahead by
+// half a step, hence the factor 1.61.
 void slide(scene::Response response, const std::vector<std::pair<int, double>>& meshes_and_falls) {
   for (double mu : {0.1, 0.3, 0.6})
     for (double steeper : {0.5, 1.0, 5.0, 45 - std::atan(mu) / kDegree})
       for (const auto& [particles, fall] : meshes_and_falls) {
-        if (steeper > 5 && particles > 11) continue;  // it slides on any mesh
+        if (steeper > 5 && particles > 11) continue;  // the mesh matters only on slopes near the angle of friction
         const double angle = std::atan(mu) + steeper * kDegree;
         scene::Scene scene = incline(angle, mu, particles);
         scene.contact.response = response;
@@ -108,7 +109,7 @@ void slide(scene::Response response, const std::vector<std::pair<int, double>>& 
         cloth.pose.position += cloth.pose.rotation * Vec3(0, 0, fall);
         const auto distance = distances_down(scene, 40);
         const double expected = 0.5 * kGravity * (std::sin(angle) - mu * std::cos(angle)) * 1.6 * 1.61;
-        // Measured: at most 0.74 % from this distance, for friction 0.6 after a fall.
+        // Largest measured deviation: 0.74 %, for friction 0.6 after a fall.
         EXPECT_NEAR(distance[40] - distance[0], expected, 0.01 * expected)
             << "friction " << mu << ", " << angle / kDegree << " degrees, after a fall of " << fall << " m, "
             << particles;
@@ -124,7 +125,7 @@ TEST_P(Incline, HoldsClothADegreeBelowTheAngleOfFriction) {
     scene::Scene scene = incline(std::atan(mu) - kDegree, mu, 11);
     scene.contact.response = GetParam();
     const auto distance = distances_down(scene, 25);
-    EXPECT_LT(25 * (distance[25] - distance[24]), 2e-4) << "friction " << mu;  // the stick speed
+    EXPECT_LT(25 * (distance[25] - distance[24]), 2e-4) << "friction " << mu;  // contact.stick_velocity [m/s]
   }
 }
 

@@ -43,7 +43,8 @@ void write_tube(const std::filesystem::path& file, const std::vector<Ring>& ring
   }
 }
 
-// Height, half width and half depth [m] of each ring, for a height of 1.75 m, chest 0.88, waist 0.68, hip 0.94 m.
+// Height, half width and half depth [m] of each ring of a body of 1.75 m, with a chest of 0.88 m, a waist of 0.68 m and
+// a hip of 0.94 m.
 constexpr std::array<std::array<double, 3>, 16> kTrunk{{{0.77, 0.10, 0.06},
                                                         {0.80, 0.155, 0.105},
                                                         {0.86, 0.170, 0.125},
@@ -117,7 +118,7 @@ class Worn : public support::TestFolder {
     }
     EXPECT_NEAR(area, pattern, 0.01 * pattern);
     EXPECT_LT(worst, 0.01);
-    // The body wears it: it has not fallen.
+    // The garment has not fallen off the body.
     double mean = 0;
     for (const Vec3& p : x) mean += p.z() / static_cast<double>(x.size());
     EXPECT_GT(mean, 0.6);
@@ -175,7 +176,7 @@ double opening(const garment::Pattern& pattern, const garment::Garment& garment,
   return std::min(one_way, widest());
 }
 
-// On the mannequin, with coarse meshes: 30 mm in the cloth, 25 mm in the body.
+// Garments on the mannequin, with coarse meshes: edges of 30 mm in the cloth and of 25 mm in the body.
 class OnTheMannequin : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(OnTheMannequin, FitsAtRestWithItsSeamsClosed) {
@@ -218,7 +219,7 @@ TEST_P(OnTheMannequin, FitsAtRestWithItsSeamsClosed) {
   EXPECT_LT(worst_area, 0.01);
   EXPECT_LT(worst_seam, 0.01);
   EXPECT_LT(widest, 1e-4);
-  // The body wears it: it has not slipped down.
+  // The garment has not slipped down.
   double mean = 0;
   for (const Vec3& p : x) mean += p.z() / static_cast<double>(x.size());
   EXPECT_GT(mean, 0.6);

@@ -27,19 +27,22 @@ TEST(HangingSheet, IsLongerByHalfItsWeightOverItsStiffness) {
 
     production::SceneSimulation simulation(scene);
     FrameReport report;
-    // The slowest mode, a quarter wave with speed √(k/ρ) = 22 m/s, has a period of 0.14 s, a fourteenth of the run.
+    // The sheet comes to rest: its slowest mode, a quarter wave with speed √(k/ρ) = 22 m/s, has a period of 0.14 s, a
+    // fourteenth of the run.
     for (int k = 0; k < 50; ++k) report = simulation.advance();
     EXPECT_LT(report.kinetic_energy, 1e-15);
 
-    // With lumped masses each edge carries exactly what hangs below its middle, so the sum over the edges is ρ g L² /
-    // 2k without a discretisation error; only the solver's tolerance of 1e-9 remains.
+    // With lumped masses, each edge carries exactly the weight of the sheet below its middle, so the extensions of a
+    // thread sum up to ρ g L² / 2k without a discretisation error. Tolerance: Newton's method leaves unbalanced forces
+    // of 1e-9 of the weight.
     const double expected = kDensity * 9.81 * kLength * kLength / (2 * kStiffness);
     const auto& x = testing::sheet_of(simulation.snapshot());
     for (std::size_t i = 0; i < 9; ++i) {
       EXPECT_NEAR(x[72 + i].z() - x[i].z() - kLength, expected, 1e-6 * expected);
       EXPECT_NEAR(x[i].x(), x[72 + i].x(), 1e-9);
     }
-    // The edge nearest to the pin carries all but the half cell above it: its strain is the largest.
+    // The edge next to the pin has the largest strain: it carries the whole sheet except the upper half of its own
+    // cell, 0.05 m.
     EXPECT_NEAR(report.max_strain, kDensity * 9.81 * (kLength - 0.05) / kStiffness, 1e-6);
   }
 }

@@ -16,7 +16,7 @@ TEST(HangingWeight, StretchesItsThreadsByItsWeightOverTheirStiffness) {
   for (double mass : {10.0, 1e3, 1e5}) {
     scene::Scene scene = testing::sheet_alone(1, 2, 0);
     testing::solve_tightly(scene);
-    scene.solver.newton_tolerance = 1e-7;  // below 1e-9 the rounding of k · length is visible
+    scene.solver.newton_tolerance = 1e-7;  // rounding errors of k · length make 1e-9 unreachable
     scene.time.step = 0.02;
     scene::Cloth& chain = scene.cloths[0];
     chain.size = {kWidth, kLength};

@@ -40,7 +40,7 @@ scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
   cloth.particles_warp = cells.across + 1;
   cloth.pose.rotation = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX());  // warp upward
   cloth.material.density = gamma * kRigidity / (9.81 * std::pow(kStripLength, 3));
-  // For the narrowest strip, 2.5 mm, k w² / 12 is 500 times B: it hardly sags.
+  // In its plane, even the narrowest strip (w = 2.5 mm) hardly sags: its in-plane stiffness k w² / 12 is 500 times B.
   cloth.material.stretch_weft = cloth.material.stretch_warp = cloth.material.shear = 1e5;
   cloth.material.bend = kRigidity;
   cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
@@ -69,8 +69,9 @@ double onset(ClothShape shape, const Strip& cells) {
   return 0.5 * (low + high);
 }
 
-// The clamp prevents the end of the strip from warping, which adds a stiffness in proportion to w / L. The narrowest
-// strip is within 3 %, and the line through the last two meets the theory at w = 0.
+// The clamp prevents warping at the end of the strip, which adds a stiffness in proportion to w / L. The onset of the
+// narrowest strip is within 3 % of theory, and the line through the onsets of the two narrowest strips meets the theory
+// at w = 0.
 TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
   for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
     std::printf("%s: w/L, onset\n", testing::name_of(shape));

@@ -37,9 +37,9 @@ class ManyContacts : public support::TestFolder {
     return fmt::format("[[cloth]]\nname = 'tube'\nshape = 'mesh'\nrest = 'mesh'\nfile = '{}'\n", file.string());
   }
 
-  /// Runs the scene and tests all frames with exact predicates. Without contact the same scene must have
-  /// intersections, otherwise the test would show nothing. One of its 80 to 120 steps may be halved. (This happens to
-  /// the ribbons in one of six starts, 0.7 mm apart in height.)
+  /// Runs the scene and expects no intersection in any frame. The same scene must have intersections if contacts are
+  /// off; otherwise the test would show nothing. One of its 80 to 120 steps may be halved. (Of six starts of the
+  /// ribbons, 0.7 mm apart in height, one has such a step.)
   static void expect_apart(const std::string& text) {
 #ifndef NDEBUG
     GTEST_SKIP() << "takes long with sanitizers";

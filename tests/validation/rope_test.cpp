@@ -21,8 +21,8 @@ std::string rope(const std::string& name, const std::string& keys) {
 }
 
 TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
-  // The rope starts as a V, not at the solution; it has 60 pieces of 25 mm. Lumped masses lie on the curve up to the
-  // sag of a piece, (25 mm)² / 8 a = 0.2 mm; the remaining motion is smaller.
+  // The rope of 60 pieces of 25 mm starts as a V. Tolerance: lumped masses deviate from the catenary by up to the sag
+  // of a piece, (25 mm)² / 8 a = 0.2 mm; the remaining motion is smaller.
   constexpr double kSpan = 1, kLength = 1.5, kMass = 0.05, kStretch = 2000, kPiece = kLength / 60;
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 4\nstep = 0.02\n" +
@@ -30,7 +30,7 @@ TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
            "points = [[-0.5, 0, 0], [0, 0, -0.559], [0.5, 0, 0]]\nlength = 1.5\nsegments = 60\ndiameter = 0.006\n"
            "mass = 0.05\nstretch = 2000\nbend = 0\ndrag = 4\ndamping = 0.05\npin = [{ at = 0 }, { at = 1 }]\n"));
   const std::vector<Vec3> x = support::run_scene(scene, {.counts_intersections = false}).back().cloths.at(0);
-  // sinh(u) / u = length / span.
+  // Newton's method for sinh(u) / u = length / span, where u = span / 2a.
   double u = 1;
   for (int k = 0; k < 50; ++k) u -= (std::sinh(u) - kLength / kSpan * u) / (std::cosh(u) - kLength / kSpan);
   const double a = kSpan / (2 * u);
@@ -42,7 +42,7 @@ TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
 }
 
 TEST(Ropes, SwingWithTheFrequencyOfATautString) {
-  // 40 pieces and steps of 2 ms each cause an error of 3e-4 in the frequency, 5 Hz.
+  // The frequency, 5 Hz, has an error of 3e-4 from its 40 pieces, and of 3e-4 from steps of 2 ms.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.6\nfps = 250\nstep = 0.002\nintegrator = \"implicit_midpoint\"\n"
       "[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[contact]\nself = false\n" +
@@ -95,7 +95,7 @@ TEST(Ropes, FallFreelyHoweverTheyBendAndSwingWithinThemselves) {
 
 /// A rope over half of a fixed drum, with a friction coefficient of 0.2 and masses at its ends.
 scene::Scene over_a_drum(double light, double heavy) {
-  constexpr double kRadius = 0.1, kCourse = 0.1035;  // of the drum, and of the rope's middle around it [m]
+  constexpr double kRadius = 0.1, kCourse = 0.1035;  // radii of the drum and of the rope's centre line around it [m]
   std::string points = fmt::format("[{}, 0, -0.5]", -kCourse);
   for (int k = 0; k <= 24; ++k) {
     const double angle = std::numbers::pi * (1 - k / 24.0);
@@ -119,7 +119,8 @@ double descent(const scene::Scene& scene) {
 }
 
 TEST(Ropes, SlipOverADrumFromTheRatioOfLoadsOnThatEulerAndEytelweinHave) {
-  // e^(μ π) = 1.874. A mass ratio r 3 % beyond accelerates by g (r − 1.874) / (1 + r), 0.19 m/s²: 5 cm in 0.7 s.
+  // The rope slips if the mass ratio r exceeds e^(μ π) = 1.874. With r 3 % larger, it accelerates by g (r − 1.874) / (1
+  // + r) = 0.19 m/s², and moves by 5 cm in 0.7 s.
   const double ratio = std::exp(0.2 * std::numbers::pi);
   EXPECT_LT(descent(over_a_drum(0.5, 0.97 * 0.5 * ratio)), 0.01);
   EXPECT_GT(descent(over_a_drum(0.5, 1.03 * 0.5 * ratio)), 0.03);
@@ -133,7 +134,8 @@ TEST(Ropes, StayOnTheSideOfAnotherRopeOnWhichTheyFall) {
   const std::vector<MeasuredFrame> frames = support::run_scene(scene, {.keep_positions = true});
   for (const MeasuredFrame& frame : frames) {
     EXPECT_EQ(frame.pairs, 0U) << frame.between;
-    // Where the upper rope crosses the other, seen from above; its ends hang down and swing below.
+    // The point of the upper rope that crosses the other rope, seen from above. If several do, it is the highest: the
+    // ends of the upper rope hang down and swing below the other rope.
     const std::vector<Vec3>&held = frame.cloths.at(0), &falling = frame.cloths.at(1);
     std::optional<Vec3> over;
     for (std::size_t i = 1; i < falling.size(); ++i) {

@@ -31,7 +31,7 @@ Vec3 centre(const std::vector<Vec3>& x) {
   return sum / static_cast<double>(x.size());
 }
 
-/// A patch of 6 cm starts at rest at an angle [degrees] from the bottom of a half pipe of 0.5 m.
+/// A patch of 6 cm starts at rest in a half pipe with a radius of 0.5 m, at an angle [degrees] from its bottom.
 std::string half_pipe(const std::string& integrator, double angle) {
   const double radians = angle * std::numbers::pi / 180;
   return "[time]\nduration = 0.8\nfps = 100\nstep = 0.01\nintegrator = \"" + integrator +
@@ -43,7 +43,7 @@ std::string half_pipe(const std::string& integrator, double angle) {
          "segments = 512\nposition = [0, 0, 1]\nfriction = 0\n";
 }
 
-/// Fraction of the energy of its fall that the patch has as kinetic energy at the bottom.
+/// Maximum kinetic energy of the patch, which it has at the bottom, relative to the energy of its fall.
 double kept_at_the_bottom(const std::string& integrator) {
   double max_energy = 0, fall = 0, bottom = 0;
   run_scene(scene_of_text(half_pipe(integrator, 15)), {.counts_intersections = false, .keep_positions = true},
@@ -55,8 +55,8 @@ double kept_at_the_bottom(const std::string& integrator) {
   return max_energy / (0.2 * 0.06 * 0.06 * 9.81 * fall);
 }
 
-// Implicit Euler damps a swing of frequency ω = √(g/R): energy falls by exp(−ω² h t), which is 0.933 at the bottom for
-// steps of 10 ms. (If normals of contacts were those of the start of each step: 0.38.)
+// Implicit Euler damps a swing of frequency ω = √(g/R): energy falls by the factor exp(−ω² h t), which is 0.933 at the
+// bottom for steps of 10 ms. For comparison: with the contact normals of the start of each step, it is 0.38.
 TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
   const double quarter = 0.5 * std::numbers::pi * std::sqrt(0.5 / 9.81);
   const double euler = std::exp(-9.81 / 0.5 * 0.01 * quarter);
@@ -64,9 +64,9 @@ TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
   EXPECT_GT(kept_at_the_bottom("bdf2"), 0.97);
 }
 
-// At 2.7 m/s, unchanged velocity leads through the wall in a step of 10 ms, and the leading edge comes near vertices of
-// facets ahead. (If contacts pushed along the line between the closest points of the start, the patch would fly into
-// the air and rise to 0.72 of its drop; to 0.54, if those vertices also acted at full stiffness.)
+// At 2.7 m/s, a step of 10 ms with unchanged velocity leads through the wall, and the leading edge comes near vertices
+// of the facets ahead. For comparison: if contacts push along the line between the closest points of the start, the
+// patch flies into the air and rises to 0.72 of its drop; to 0.54, if those vertices also act at full stiffness.
 TEST(SlidingContact, RisesAgainInAHalfPipeIfItIsFast) {
   double start = 0, bottom = 1, rise = 0;
   run_scene(scene_of_text(half_pipe("bdf2", 75)), {.counts_intersections = false, .keep_positions = true},
@@ -79,8 +79,8 @@ TEST(SlidingContact, RisesAgainInAHalfPipeIfItIsFast) {
   EXPECT_NEAR((rise - bottom) / (start - bottom), 0.99, 0.02);
 }
 
-// A sheet falls flat on a table, and stops. (If BDF2 took the impact for smooth motion, the sheet would rebound with
-// 0.48 of the energy.)
+// A sheet falls flat on a table, and stops. For comparison: if BDF2 treats the impact as smooth motion, the sheet
+// rebounds with 0.48 of the energy.
 TEST(SlidingContact, FlatSheetDoesNotBounceOffATable) {
   for (const std::string integrator : {"implicit_euler", "implicit_midpoint", "bdf2"}) {
     for (const int fps : {100, 200}) {
@@ -94,14 +94,16 @@ TEST(SlidingContact, FlatSheetDoesNotBounceOffATable) {
         largest = std::max(largest, frame.report.kinetic_energy);
         last = std::max(frame.report.kinetic_energy, frame.report.frame > 0.33 * fps ? last : 0.0);
       });
-      // 40 ms after its arrival at 0.29 s, contacts still move the sheet: with 3e-3 of the energy (measured).
+      // The sheet arrives at 0.29 s. 40 ms later, contacts still move it with 3e-3 of the energy of the fall
+      // (measured).
       EXPECT_GT(largest, 0.02);
       EXPECT_LT(last, 0.01 * largest) << integrator << ", " << fps;
     }
   }
 }
 
-// Only rounding remains: measured 1e-14 of the momentum.
+// Measured change of the momentum: 1e-14 with Euler's method, from rounding; 2e-7 with BDF2, which solves for impacts
+// in single precision.
 TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
   for (const auto& [friction, integrator] : {std::pair("0", "implicit_euler"), std::pair("0.3", "implicit_euler"),
                                              std::pair("0", "bdf2"), std::pair("0.3", "bdf2")}) {
@@ -115,8 +117,8 @@ TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
         "5]\nvelocity = [0.3, 0, -1]\n" +
         material + "[[cloth]]\nname = \"still\"\nsize = [0.25, 0.25]\nparticles = [13, 13]\nposition = [0, 0, 0]\n" +
         material);
-    // Centres of mass move at constant velocity before and after; a border particle has half of the mass, a corner
-    // particle a quarter.
+    // Before and after the impact, the centres of mass move at constant velocity, so the momentum follows from
+    // positions. A border particle has half of the mass of an inner particle, a corner particle a quarter.
     std::vector<Vec3> momentum_h;  // momentum times the frame's length, per frame [kg m]
     Vec3 before = Vec3::Zero();
     double rubbed = 0;
@@ -136,8 +138,8 @@ TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
       rubbed = std::max(rubbed, centre(frame.cloths[1]).norm());
     });
     EXPECT_GT(rubbed, 0.01) << "the sheet at rest was never hit";
-    // Positions in snapshots are exact to 1e-16 m, at 1 m/s over frames of 0.04 s. BDF2 solves for impacts in single
-    // precision: measured 2e-7 of the momentum.
+    // Positions in snapshots are exact to 1e-16 m, which limits the accuracy of velocities of 1 m/s over frames of 0.04
+    // s.
     const double tolerance = std::string(integrator) == "bdf2" ? 1e-6 : 1e-9;
     EXPECT_LT((momentum_h.back() - momentum_h.front()).norm(), tolerance * momentum_h.front().norm())
         << friction << integrator;
@@ -156,7 +158,8 @@ scene::Scene napkin(int turn) {
       std::to_string(turn) + "]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
 }
 
-// The solver's residual depends on the axes; the run reports it within a factor of three (`weft bench estimates`).
+// The error of the solver depends on the directions of the axes. The run reports this error within a factor of three
+// (`weft bench estimates`).
 TEST(SlidingContact, MovesTheSameWhereverTheAxesPoint) {
   const auto run = [](int turn) {
     return run_scene(napkin(turn), {.counts_intersections = false, .keep_positions = true});
@@ -172,8 +175,8 @@ TEST(SlidingContact, MovesTheSameWhereverTheAxesPoint) {
   }
 }
 
-// The step size decides the accuracy of a run, not the solver. A symmetric fall does not stretch the napkin: 0.3 % is
-// twice its strain with finer tolerances.
+// The step size must decide the accuracy of a run, not the solver. A symmetric fall hardly stretches the napkin: the
+// tolerance of 0.3 % is twice its strain with finer solver tolerances.
 TEST(SlidingContact, TheSolverLeavesLessThanAThirdOfTheErrorOfTheSteps) {
   double steps = 0, solver = 0, strain = 0;
   for (const MeasuredFrame& frame : run_scene(napkin(0), {.counts_intersections = true})) {

@@ -1,7 +1,7 @@
-// A clamped strip is pressed down on a floor: does its tip stick or slip? The test is from Romero, Ly, Rasheed,
-// Charrondiere, Lazarus, Neukirch and Bertails-Descoubes, "Physical validation of simulators in computer graphics"
-// (2021), with the coefficients of the weightless elastica: clamped at the top, its tip free to turn and always
-// straight below the clamp.
+// A clamped strip is pressed down on a floor; friction decides whether its tip sticks or slips. The test is from
+// Romero, Ly, Rasheed, Charrondiere, Lazarus, Neukirch and Bertails-Descoubes, "Physical validation of simulators in
+// computer graphics" (2021). The expected coefficients are those of the weightless elastica that is clamped at the top
+// and whose tip turns freely, straight below the clamp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,17 +17,18 @@ struct Point {
   double depth;     // downward displacement of the clamp, relative to the length of the strip
   double friction;  // coefficient needed to hold the tip: horizontal over vertical force
 };
-// Solved by shooting. At 0.33 the tip lies flat on the floor; at larger depths it touches along a line.
+// Solved by shooting. At the depth 0.33, the tip is tangent to the floor; at larger depths, the strip touches the floor
+// along a piece of its length.
 constexpr Point kElastica[] = {
     {0.01, 0.044854}, {0.05, 0.103545}, {0.15, 0.195916}, {0.25, 0.280705}, {0.33, 0.356079}};
 
 constexpr double kFreeLength = 0.5;  // from the tip to the clamp [m]
-constexpr int kStripCells = 20;      // thresholds are 0.5 to 0.9 % too low; 1.4 to 2.1 % with half as many cells
+constexpr int kStripCells = 20;      // coefficients are 0.5 to 0.9 % too low; 1.4 to 2.1 % with half as many cells
 constexpr double kFps = 25;
 constexpr int kLowered = 25;   // frame at which the clamp has reached its depth
-constexpr int kReleased = 35;  // frame at which the tip, held until then, is left to friction
+constexpr int kReleased = 35;  // frame at which the pin of the tip is released
 
-/// An upright strip on the floor, held by its two upper rows: the clamp acts at the lower one.
+/// An upright strip on the floor, held by its two upper rows; the clamp acts at the lower of these rows.
 scene::Scene pressed_strip(double depth, double friction) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene.time = {.duration = 3, .fps = kFps, .step = 0.01};
@@ -79,7 +80,7 @@ TEST(StickSlip, TipSlipsTwoPercentBelowTheFrictionThatTheElasticaNeeds) {
 }
 
 TEST(StickSlip, TipSticksTwoPercentAboveTheFrictionThatTheElasticaNeeds) {
-  // README, "stick speed": sticking contacts creep by up to 2e-4 m/s.
+  // Sticking contacts creep by up to contact.stick_velocity (core/numerics.hpp), 2e-4 m/s.
   for (const Point& point : kElastica)
     EXPECT_LT(tip_displacement(pressed_strip(point.depth, 1.02 * point.friction)), 2e-4) << "depth " << point.depth;
 }

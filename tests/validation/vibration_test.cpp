@@ -89,7 +89,7 @@ TEST_P(Vibration, OfASupportedPlate) {
   expect("plate", model.modes(model.free_along({2}), 3), exact);
 }
 
-/// A strip that hangs from its upper row. Its bending stiffness only just keeps it straight across.
+/// A strip that hangs from its upper row. Its bending stiffness is so small that it only keeps the rows straight.
 scene::Scene chain(ClothShape shape) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene::Cloth& cloth = scene.cloths[0];
@@ -98,8 +98,8 @@ scene::Scene chain(ClothShape shape) {
   cloth.particles_warp = 51;
   cloth.pose.rotation = Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitX());  // warp upward
   cloth.material.density = kClothDensity;
-  cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;  // 1 N/m at the top: 0.01 % of stretch on average
-  cloth.material.bend = 1e-7;                                        // boundary layers of √(B / T) = 0.3 mm
+  cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;  // [N/m]; the weight stretches by 0.01 % on average
+  cloth.material.bend = 1e-7;                                        // affects boundary layers of √(B / T) = 0.3 mm
   cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
   scene::Pin top;
   top.low = {0, 1};
@@ -137,7 +137,7 @@ double cantilever_mode(double beta, double s) {
 }
 
 // A run of a cantilever after a push: its frequency follows from the upward zero crossings of its component in the
-// mode, over ten periods of a hundred steps. The midpoint rule is slow by (ω h)² / 12 = 0.03 % here.
+// mode, over ten periods of a hundred steps. With these steps, the midpoint rule is slow by (ω h)² / 12 = 0.03 %.
 TEST(VibrationOfARun, HasThePhaseOfItsModes) {
   const testing::Overhang strip;
   for (double beta : {1.87510, 4.69409}) {
@@ -157,7 +157,7 @@ TEST(VibrationOfARun, HasThePhaseOfItsModes) {
       double amplitude = 0;
       for (const Vec3& x : testing::sheet_of(simulation.snapshot())) {
         if (x.x() < 0) continue;
-        const double mass = x.x() > (1 - 1e-3) * strip.length ? 0.5 : 1;  // half in the last column
+        const double mass = x.x() > (1 - 1e-3) * strip.length ? 0.5 : 1;  // relative; half in the last column
         amplitude += mass * x.z() * cantilever_mode(beta, x.x() / strip.length);
       }
       if (before < 0 && amplitude >= 0) ups.push_back(k - amplitude / (amplitude - before));
