@@ -94,7 +94,7 @@ TEST(CountedLoops, TellWhatThreadsWouldGain) {
   EXPECT_EQ(counts.loops, 2);
   EXPECT_EQ(counts.chunks, 10);
   EXPECT_GE(counts.seconds, 14e-3);
-  // On four threads, eight chunks take as long as two, and two chunks as long as one.
+  // On four threads, a loop of eight chunks takes as long as two chunks, and a loop of two chunks as long as one.
   EXPECT_LT(counts.seconds_on[1], 0.5 * counts.seconds);
   EXPECT_GT(counts.seconds_on[1], 5e-3 - 1e-6);
 }

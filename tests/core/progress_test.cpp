@@ -40,7 +40,7 @@ TEST(RemainingTime, ForgetsThePaceOfLongAgo) {
 }
 
 TEST(RemainingTime, IgnoresAStageThatHasNotBegun) {
-  RemainingTime remaining({100, 10, 10});  // the last ten frames are drawn
+  RemainingTime remaining({100, 10, 10});  // only the last ten frames are drawn
   remaining.sample(0, {0, 0, 0});
   remaining.sample(10, {50, 0, 0});
   ASSERT_TRUE(remaining.seconds());

@@ -216,8 +216,8 @@ TEST_F(TemporaryFileTest, OfALivingProcessStays) {
   EXPECT_EQ(content(folder_ / "a.txt"), "whole");
 }
 
-// A process that removes old files may lock a file that was just made, and may be interrupted before it removes the
-// file.
+// A process that removes old temporary files may lock one that was just made, and may be interrupted before it removes
+// this file. The writer must wait for it.
 TEST_F(TemporaryFileTest, WaitsForAProcessThatCleansUp) {
   const fs::path temporary = folder_ / fmt::format(".a.txt.weft-{}.tmp", ::getpid());
   const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);

@@ -10,7 +10,7 @@
 namespace weft::mesh {
 namespace {
 
-// Ten rounding errors of numbers near one.
+// Tolerance: ten rounding errors of numbers near one.
 constexpr double kRounding = 1e-15;
 
 const std::vector<Triangle> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
@@ -37,7 +37,7 @@ TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
 }
 
 TEST(VertexNormals, WeighTrianglesByTheirArea) {
-  // Two upright triangles at vertex 0: one of area 2 faces +z, one of area 1 faces +x.
+  // Two perpendicular triangles share the vertices 0 and 2: one of area 2 faces +z, one of area 1 faces +x.
   const std::vector<Vec3> x{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 0, 1}};
   const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   std::vector<Vec3> normals(4);

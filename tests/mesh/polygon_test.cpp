@@ -11,7 +11,7 @@
 namespace weft::mesh {
 namespace {
 
-// Rounding error of a sum of about ten areas near one.
+// Tolerance: rounding errors of a sum of about ten areas near one.
 constexpr double kRoundingOfAreas = 1e-14;
 
 std::vector<Triangle> triangulate(const std::vector<Vec3>& corners,

@@ -54,7 +54,7 @@ TEST(Sheet, IsCentredWithWeftAlongXAndWarpAlongY) {
 TEST(Sheet, OfAGradedGridHasSpacingsThatGrowByOneFactor) {
   const Grid grid{.nu = 5, .nv = 4, .lu = 0.75, .lv = 0.5, .weft_grading = 8, .warp_grading = 0.25};
   const Mesh sheet = make_sheet(grid);
-  // 0.2 m · (1 + 2 + 4 + 8) = 4 · 0.75 m, and 2/7 of 1.5 m · (2 + 1 + 1/2).
+  // Weft spacings: 0.2 m · (1 + 2 + 4 + 8) = 4 · 0.75 m. Warp spacings: 3/7 m · (2 + 1 + 1/2) = 3 · 0.5 m.
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(sheet.uv[i].x(), 0.2 * ((1 << i) - 1), 1e-15);
   for (int j = 0; j < 4; ++j) EXPECT_NEAR(sheet.uv[5 * j].y(), 12.0 / 7 * (1 - std::pow(0.5, j)), 1e-15);
   for (std::size_t k = 0; k < sheet.uv.size(); ++k)

@@ -44,7 +44,7 @@ TEST(RigidFrame, HasTheMomentsOfACylinderWhereverItIs) {
   const RigidFrame frame = frame_of(mesh);
   EXPECT_LT((frame.centre() - shift).norm(), 1e-9);
   const Mat3 expected = turn * Vec3(0.01 / 4, 0.01 / 4, 0.25 / 12).asDiagonal() * turn.transpose();
-  // A polygon of 256 corners has 1 − 2e-4 of the moments of a circle.
+  // Tolerance: the moments of a polygon of 256 corners are smaller than those of a circle by the fraction 2e-4.
   EXPECT_LT((second_moments(frame) - expected).norm(), 4e-4 * expected.norm());
   EXPECT_NEAR(frame.volume() / (std::numbers::pi * 0.01 * 0.5), 1, 2e-4);
 }
@@ -72,7 +72,7 @@ TEST(RigidFrame, RefusesWhatEnclosesNothing) {
   EXPECT_THROW(frame_of(open), std::invalid_argument);
 }
 
-// One side of a cube faces inward. If it were accepted, the volume would be a third of that of the cube.
+// One side of a cube faces inward. The signed volume of such a mesh is a third of that of the cube.
 TEST(RigidFrame, RefusesTrianglesThatFaceDifferentWays) {
   Mesh cube = make_box(Vec3(1, 1, 1), 0, 8);
   const std::vector<Vec3>& x = cube.positions;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Rounding error of a sum of a few thousand terms.
+// Tolerance: rounding errors of a sum of a few thousand terms near one.
 constexpr double kRoundingOfSums = 1e-12;
 
 double volume(const Mesh& mesh) {
@@ -131,11 +131,11 @@ TEST(Sphere, IsConvexAndMissesNoMoreVolumeThanOutsideTheBallItHolds) {
 
 TEST(Sphere, LosesAQuarterOfItsDeficitPerDoubling) {
   const auto deficit = [](int segments) { return 4 * kPi / 3 - volume(make_sphere(1, segments)); };
-  EXPECT_NEAR(deficit(42) / deficit(84), 4, 0.05);  // second order; 8 and 16 pieces a side
+  EXPECT_NEAR(deficit(42) / deficit(84), 4, 0.05);  // second order in the edge length
 }
 
 TEST(Sphere, HasWellShapedTriangles) {
-  EXPECT_GT(worst_triangle(make_sphere(1, 48)), 0.65);  // 0.69 measured
+  EXPECT_GT(worst_triangle(make_sphere(1, 48)), 0.65);  // measured: 0.69
 }
 
 TEST(Sphere, HasAboutTheSegmentsAskedFor) {
@@ -179,7 +179,7 @@ TEST(Box, WithManyBevelFacesConvergesToTheRoundedBox) {
                          kPi * b * b * inner.sum() + 4 * kPi / 3 * b * b * b;
   const auto deficit = [&](int segments) { return rounded - volume(make_box({1, 2, 3}, b, segments)); };
   EXPECT_GT(deficit(128), 0);
-  EXPECT_NEAR(deficit(64) / deficit(128), 4, 0.1);  // inscribed polyhedra: second order
+  EXPECT_NEAR(deficit(64) / deficit(128), 4, 0.1);  // the error of inscribed polyhedra is of second order
   const Box3 bounds = bounding_box(make_box({1, 2, 3}, b, 48).positions);
   EXPECT_NEAR((bounds.sizes() - Vec3(1, 2, 3)).norm(), 0, kRoundingOfSums);
 }

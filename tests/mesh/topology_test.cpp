@@ -16,7 +16,7 @@ using Pairs = std::vector<Pair>;
 // The square 0 1 2 3, split along the diagonal from 0 to 2.
 const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
 
-// Triangles are counter-clockwise seen from outside.
+// A tetrahedron; its triangles are counter-clockwise seen from outside.
 const std::vector<Triangle> kFourSides{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 TEST(Edges, AreListedOnceSortedWithTheTrianglesOnBothSides) {

@@ -39,7 +39,8 @@ TEST(Gusts, AreAsStrongAsIsSaidInEveryDirectionAndNothingOnTheWhole) {
 
 TEST(Gusts, HaveNoDivergence) {
   const GustField gusts(kGusts, kWind);
-  // Central differences: h²/6 times third derivatives of about speed k³, with k up to 30 1/m, plus rounding 1e-15 / h.
+  // Tolerance: central differences have errors of h²/6 times third derivatives of about speed · k³, with wave numbers k
+  // up to 30 1/m, plus rounding errors of 1e-15 / h.
   const double h = 1e-5;
   double largest = 0;
   for_places([&](const Vec3& x) {
@@ -71,7 +72,8 @@ TEST(Gusts, AreOfTheSizeThatIsSaid) {
       }
   }
   const double length = sum / (kFields * 3 * kPlaces) / (kGusts.speed * kGusts.speed);
-  // Tolerance of the mean of ten fields in three directions; wave lengths of neighbouring shells differ by a third.
+  // Tolerance: statistical error of the mean of ten fields in three directions, and the discrete spectrum, in which
+  // wave lengths of neighbouring shells differ by a third.
   EXPECT_NEAR(length, kGusts.size, 0.2 * kGusts.size);
 }
 

@@ -23,7 +23,7 @@ const std::string kThree =
     "[[attach]]\nname = 'ab'\ncloth = 'a'\nto = 'b'\n[[attach]]\nname = 'ca'\ncloth = 'c'\nto = 'a'\n"
     "[[attach]]\nname = 'cb'\ncloth = 'c'\nto = 'ball'\n";
 
-// The part with only the cloths a and c: c has the number 1 there, and attachments to b are removed.
+// `part` contains only the cloths a and c: c has the number 1 in it, and attachments to b are removed.
 TEST(Model, WithSomeClothsHasTheirAttachmentsAndTheirNumbers) {
   const Model whole = model_of(kThree);
   ASSERT_EQ(whole.attachments.size(), 3U);

@@ -46,8 +46,8 @@ TEST(Weather, OfAFanIsAJetInItsConeAndNothingElsewhere) {
   const double slope = std::tan(12 * std::numbers::pi / 180), apex = 0.2 / slope;
   const auto jet = [&](const Vec3& x) { return Vec3(weather.air(x, 0) - Vec3(0, 0, 1)); };
   EXPECT_LT((jet({1, 0, 0}) - Vec3(0, 6, 0)).norm(), 1e-12);                      // at the disc
-  EXPECT_LT((jet({1, 3, 0}) - Vec3(0, 6 * apex / (apex + 3), 0)).norm(), 1e-12);  // decays as 1 / s
-  const double halfway = 0.5 * slope * (apex + 3);                                // q = 1/2
+  EXPECT_LT((jet({1, 3, 0}) - Vec3(0, 6 * apex / (apex + 3), 0)).norm(), 1e-12);  // decays as 1 / distance
+  const double halfway = 0.5 * slope * (apex + 3);                                // half of the cone's radius
   EXPECT_NEAR(jet({1 + halfway, 3, 0}).norm(), 6 * apex / (apex + 3) * 0.5625, 1e-12);
   EXPECT_NEAR(jet({1 + halfway, 3, 0}).x() / jet({1 + halfway, 3, 0}).y(), 0.5 * slope, 1e-12);  // away from the apex
   EXPECT_EQ(jet({1 + 2.01 * halfway, 3, 0}), Vec3(0, 0, 0));                                     // beside the cone

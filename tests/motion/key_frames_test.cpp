@@ -39,7 +39,7 @@ Motion at(const KeyFrames& keys, std::size_t vertices, double t) {
   return motion;
 }
 
-/// The natural cubic spline without limits. Spline is equal to it only where it stays between the values of the keys.
+/// The natural cubic spline. Spline differs from it where the natural spline leaves the range of the neighbouring keys.
 Spline<3>::Sample natural_at(const std::vector<double>& times, const std::vector<Vec3>& values, double t) {
   std::vector<double> lengths;
   std::vector<Vec3> chords;
@@ -71,7 +71,7 @@ TEST(KeyFrames, AreTheNaturalSplineOfEachVertex) {
       for (double t = 0.6; t < 1.3; t += 0.0173) {
         const Motion motion = at(frames, 5, t);
         const auto expected = cubic ? natural_at(times, values, t) : straight.at(t);
-        // Tolerances are rounding errors: velocities are about 50 m/s here, accelerations about 5000 m/s².
+        // Tolerances: rounding errors of positions of 1 m, velocities of 50 m/s and accelerations of 5000 m/s².
         EXPECT_LT((motion.positions[v] - expected.value).norm(), 1e-12) << t;
         EXPECT_LT((motion.velocities[v] - expected.first_derivative).norm(), 1e-10) << t;
         EXPECT_LT((motion.accelerations[v] - expected.second_derivative).norm(), 1e-8) << t;
@@ -88,7 +88,8 @@ TEST(KeyFrames, HaveTheVelocityAndAccelerationOfCentralDifferences) {
     for (double t = kFirst + 0.003; t < kFirst + 10.9 * kInterval; t += 0.0131) {
       const Motion now = at(frames, 3, t), before = at(frames, 3, t - kStep), after = at(frames, 3, t + kStep);
       for (std::size_t v = 0; v < 3; ++v) {
-        // Error of a central difference of a cubic: its third derivative, about 1e5 m/s³ here, times kStep² / 6.
+        // Tolerance of velocities: a central difference of a cubic has an error of kStep² / 6 times its third
+        // derivative, about 1e5 m/s³.
         EXPECT_LT((now.velocities[v] - (after.positions[v] - before.positions[v]) / (2 * kStep)).norm(), 1e-4);
         EXPECT_LT((now.accelerations[v] - (after.velocities[v] - before.velocities[v]) / (2 * kStep)).norm(), 10);
       }

@@ -10,7 +10,7 @@ namespace {
 using Spline1 = Spline<1>;
 using Value = Spline1::Value;
 
-// A few rounding errors of numbers up to ten.
+// Tolerance: rounding errors of numbers up to ten.
 constexpr double kRoundingOfNumbers = 1e-13;
 
 const std::vector<double> kTimes{-0.5, 0.1, 1.7, 2.0, 4.5};
@@ -119,7 +119,8 @@ TEST(CubicSpline, ReproducesALineThroughUnevenKeysInEveryComponent) {
 
 TEST(CubicSpline, HasTheDerivativesThatItsValuesShow) {
   const Spline1 spline(Interpolation::cubic, kTimes, kValues);
-  // Central differences of a cubic: error h² / 6 times a third derivative below 100, plus rounding 1e-15 / h.
+  // Tolerance: a central difference of a cubic has an error of h² / 6 times its third derivative, which is below 100,
+  // plus the rounding error 1e-15 / h.
   const double h = 1e-5, tolerance = 2e-8;
   for (const double t : {-0.2, 0.5, 1.2, 1.9, 2.1, 4.0}) {
     const auto slope = [&](auto member) {

@@ -10,7 +10,7 @@
 namespace weft::motion {
 namespace {
 
-// Rounding error of products of a few unit quaternions.
+// Tolerance: rounding errors of products of a few unit quaternions [rad].
 constexpr double kRoundingOfTurns = 1e-13;
 
 /// Angle between two rotations [rad], accurate for small angles too.
@@ -103,8 +103,9 @@ TEST_P(Tracks, HaveTheVelocitiesAndAccelerationsThatABodyPointShows) {
     const PoseSample pose = track.at(t);
     return pose.position + pose.rotation * body;
   };
-  // Central differences: error h²/6 times the third derivative for velocity, h²/12 times the fourth for acceleration
-  // (below 1e4 and 2e5 here, at turning rates of 10 rad/s), plus rounding 1e-15 / h and 4e-15 / h².
+  // Tolerances: central differences have errors of h²/6 times the third derivative (velocity) and h²/12 times the
+  // fourth derivative (acceleration), which are below 1e4 m/s³ and 2e5 m/s⁴ at turning rates of 10 rad/s, plus rounding
+  // errors of 1e-15 / h and 4e-15 / h².
   const double h = 1e-4;
   for (const double t : {0.05, 0.35, 0.69, 0.71, 0.85, 0.99, 1.01, 1.7, 2.39, 2.5, 2.9}) {
     const PoseSample pose = track.at(t);
@@ -188,8 +189,8 @@ TEST(Track, GoesOnThroughHalfTurnsInTheSameDirection) {
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     for (const double way : {1.0, -1.0}) {
       const double quarter = way * 90 * kDegree;
-      // From the second key to the third, the body rotates by half a turn plus a rounding error. The shortest rotation
-      // between these keys would be backward.
+      // From the second key to the third, the body rotates by half a turn plus 1e-9 rad. The shortest rotation between
+      // these keys is in the opposite direction.
       const double more = 3 * quarter + way * 1e-9;
       const Track track(spin(interpolation, {0, 0, 1}, {0, 1, 3, 5, 7}, {0, quarter, more, 5 * quarter, 7 * quarter}));
       for (const double t : {0.5, 1.5, 2.5, 4.0, 6.5})

@@ -195,8 +195,8 @@ std::vector<std::vector<std::size_t>> edges_of(std::size_t first, std::size_t co
   return {{first, first + 1}, {first + 1, first + 2}, {first + 2, first}};
 }
 
-// All pairs of a feature of the points 0 .. na − 1 and one of the points na .. na + nb − 1. Pairs that most often
-// decide come first.
+// All pairs of a feature of the points 0 .. na − 1 and one of the points na .. na + nb − 1. The kinds of pairs that
+// find most contacts come first.
 std::vector<Feature> make_features(std::size_t na, std::size_t nb) {
   std::vector<Feature> list;
   for (std::size_t i = 0; i < na && nb == 3; ++i) list.push_back({Feature::kVertexFace, {i}, {na, na + 1, na + 2}});

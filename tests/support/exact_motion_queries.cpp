@@ -105,7 +105,7 @@ MotionQuery touching_query(Random& random) {
     return side * n.dot(v) < 0 ? Vec3(-v) : v;
   };
   Corners a{contact, contact + above(), contact + above()};
-  if (random.heads()) {  // an edge of a instead of a corner
+  if (random.heads()) {  // the contact is on an edge of a instead of at a corner
     const Vec3 along = random.heads() ? Vec3(random.grid(4)) : Vec3(b[2] - b[1]);
     a = {contact - along, contact + along, contact + above()};
   }
@@ -143,7 +143,7 @@ MotionQuery close_query(Random& random, double gap) {
     const Vec3 at = mix(random.weights(), b) + gap * n;
     return {still({at, at + above(n), at + above(n)}), still(b)};
   }
-  // Edges: both triangles extend away from the plane between them.
+  // An edge of a near an edge of b: both triangles extend away from the plane between the edges.
   const Vec3 along = random.vector(), m = across(b[1] - b[0], along);
   const Vec3 at = b[0] + random.between(0, 1) * (b[1] - b[0]);
   b[2] = at - above(m);

@@ -93,7 +93,8 @@ Shared shared_corners(const Face& a, const Face& b) {
   return shared;
 }
 
-// Compares the closed boxes first: they separate most neighbours in a sheet, and the comparison is exact.
+// Whether the edge meets the face. Compares closed bounding boxes first: this is exact, and separates most neighbours
+// in a sheet.
 bool reaches(const Segment& edge, const Face& face) {
   const Triangle triangle = face.triangle();
   return CGAL::do_overlap(edge.bbox(), triangle.bbox()) && CGAL::do_intersect(edge, triangle);

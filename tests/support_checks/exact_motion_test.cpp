@@ -30,7 +30,7 @@ MovingSimplex reversed(MovingSimplex s) {
 MovingSimplex turned(const MovingSimplex& s) {
   return {s.count, {s.t0[2], s.t0[0], s.t0[1]}, {s.t1[2], s.t1[0], s.t1[1]}};
 }
-// Shifts and scales by powers of two: exact for the small numbers used here.
+// Scales and shifts by powers of two; exact for the coordinates of these tests.
 MovingSimplex placed(MovingSimplex s, double scale, double shift) {
   for (int k = 0; k < 3; ++k) {
     s.t0[k] = scale * s.t0[k] + Vec3(shift, -shift, shift);
@@ -39,7 +39,8 @@ MovingSimplex placed(MovingSimplex s, double scale, double shift) {
   return s;
 }
 
-// Whether a and b meet; expects the same answer for any order of sides, corners and time.
+// Whether find_contact(a, b) finds a contact. Expects the same answer for swapped arguments, reversed time, scaled and
+// shifted coordinates, and another first corner of a.
 bool meet(const MovingSimplex& a, const MovingSimplex& b) {
   const bool found = find_contact(a, b).found;
   EXPECT_EQ(find_contact(b, a).found, found);
@@ -57,8 +58,8 @@ Corners hanging_corners(double z) {
   return {Vec3(1, 1, z), Vec3(1, 1, z + 1), Vec3(2, 1, z + 1)};
 }
 
-// Expects that b, moved by `reach` along `direction`, meets a, and that a motion shorter by 2⁻⁴⁰ does not. Directions
-// have one non-zero entry.
+// Expects that b meets a if b moves by `reach` along `direction`, and that it does not if the motion is shorter by
+// 2⁻⁴⁰. `direction` is a unit vector along an axis, so that all products are exact.
 void expect_first_contact(const Corners& a, const Corners& b, const Vec3& direction, double reach) {
   EXPECT_TRUE(meet(still(a), moved(b, reach * direction)));
   EXPECT_FALSE(meet(still(a), moved(b, (reach - 0x1p-40) * direction)));
@@ -68,8 +69,9 @@ void expect_first_contact(const Corners& a, const Corners& b, const Vec3& direct
 
 TEST(ExactMotion, FindsTheFirstContactOfVertexAndFace) {
   expect_first_contact(kGround, hanging_corners(2), {0, 0, -1}, 2);
-  // Contacts on an edge and at a corner of the ground.
+  // The corner (1, 0, 1) meets the edge y = 0 of the ground.
   expect_first_contact(kGround, {Vec3(1, 0, 1), Vec3(1, 0, 2), Vec3(2, 0, 2)}, {0, 0, -1}, 1);
+  // The corner (0, 4, 1) meets the corner (0, 4, 0) of the ground.
   expect_first_contact(kGround, {Vec3(0, 4, 1), Vec3(1, 4, 2), Vec3(1, 4, 3)}, {0, 0, -1}, 1);
 }
 
@@ -80,17 +82,19 @@ TEST(ExactMotion, FindsTheFirstContactOfTwoEdges) {
 }
 
 TEST(ExactMotion, FindsContactInOnePlaneAndInOneLine) {
-  const Corners beside{Vec3(-1, 1, 0), Vec3(-2, 1, 0), Vec3(-2, 2, 0)};  // a corner points at an edge
+  const Corners beside{Vec3(-1, 1, 0), Vec3(-2, 1, 0), Vec3(-2, 2, 0)};  // its corner (-1, 1, 0) meets the edge x = 0
   expect_first_contact(kGround, beside, {1, 0, 0}, 1);
-  const Corners facing{Vec3(-1, 1, 0), Vec3(-1, 2, 0), Vec3(-2, 2, 0)};  // parallel edges
+  const Corners facing{Vec3(-1, 1, 0), Vec3(-1, 2, 0), Vec3(-2, 2, 0)};  // its edge x = -1 meets the edge x = 0
   expect_first_contact(kGround, facing, {1, 0, 0}, 1);
-  const Corners needle_a{Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(2, 2, 2)};  // both have no area and lie in one line
+  // Two triangles without area on one line.
+  const Corners needle_a{Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(2, 2, 2)};
   const Corners needle_b{Vec3(3, 3, 3), Vec3(5, 5, 5), Vec3(4, 4, 4)};
   EXPECT_TRUE(meet(still(needle_a), moved(needle_b, {-1, -1, -1})));
   EXPECT_FALSE(meet(still(needle_a), moved(needle_b, {-0.5, -0.5, -0.5})));
   const Corners point{Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)};
   expect_first_contact(kGround, point, {0, 0, -1}, 1);
-  const Corners bar{Vec3(0, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)};  // a corner lands on it between its corners
+  // A triangle without area: a segment from x = 0 to x = 2. A point meets it at x = 1.5, away from its three corners.
+  const Corners bar{Vec3(0, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)};
   expect_first_contact(bar, {Vec3(1.5, 1, 1), Vec3(1.5, 1, 1), Vec3(1.5, 1, 1)}, {0, 0, -1}, 1);
   EXPECT_TRUE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 1), Vec3(3, 1, 1), Vec3(3, 1, 1)}, {-2, 0, 0})));
   EXPECT_FALSE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 2), Vec3(3, 1, 2), Vec3(3, 1, 2)}, {-2, 0, 0})));
@@ -104,25 +108,28 @@ TEST(ExactMotion, SlidingAlongInOnePlaneIsContactOnlyWhereTheyOverlap) {
 }
 
 TEST(ExactMotion, TheWholeWayThroughCounts) {
-  // Separated at both ends; in contact only at the start; in contact only at the end.
+  // From above the ground to below it: in contact neither at the start nor at the end.
   EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(2), {0, 0, -7})));
+  // Touches the ground from above at the start, and moves up.
   EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(0), {0, 0, 5})));
+  // Touches the ground from below with its upper edge at the start, and moves down.
   EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(-1), {0, 0, -5})));
+  // Crosses the ground all the time.
   EXPECT_TRUE(meet(still(kGround), still(hanging_corners(-0.5))));
+  // Starts 2⁻⁴⁰ above the ground, and moves up.
   EXPECT_FALSE(meet(still(kGround), moved(hanging_corners(0x1p-40), {0, 0, 5})));
 }
 
 TEST(ExactMotion, GrazingIsContactAndPassingByIsNot) {
-  // With s = t − 1/2: the face has the height s x; the corner, at x = 1 + s and z = s − depth, is below it by depth +
-  // s².
+  // With s = t − 1/2, the face has the height z = s x. The first corner of the other triangle is at x = 1 + s and z = s
+  // − depth: below the face by depth + s².
   const auto corner_at = [](double s, double depth) -> Corners {
     return {Vec3(1 + s, 1, s - depth), Vec3(1 + s, 1, s + 2), Vec3(2 + s, 1, s + 3)};
   };
   const auto face_at = [](double s) -> Corners { return {Vec3(0, 0, 0), Vec3(4, 0, 4 * s), Vec3(0, 4, 0)}; };
   const MovingSimplex face{3, face_at(-0.5), face_at(0.5)};
   const auto touches_from_below = [&](double depth) {
-    // Here the triangle hangs below the face. Its corner, at the distance depth + s², may touch the face from below
-    // only.
+    // Moves the other two corners down by 6, so that the triangle is below the face, with its first corner on top.
     MovingSimplex low{3, corner_at(-0.5, depth), corner_at(0.5, depth)};
     for (auto* x : {&low.t0, &low.t1}) {
       (*x)[1].z() -= 6;
@@ -145,7 +152,8 @@ TEST(ExactMotion, AnEdgeIsHeldAgainstATriangle) {
 }
 
 TEST(ExactMotion, FacesAboutOneVertexMeetBesideIt) {
-  // Two faces share the origin; the second folds down about it, through the first or past it.
+  // Two faces share the origin. The second one is above the first and moves down until its other corners are at height
+  // z: it crosses the first face, ends in its plane, or stops 2⁻⁴⁰ above it.
   const Corners flap{Vec3(0, 0, 0), Vec3(1, 2, 1), Vec3(2, 1, 1)};
   const auto fold = [&](double z) {
     const MovingSimplex b{3, flap, {flap[0], Vec3(1, 2, z), Vec3(2, 1, z)}};
@@ -192,8 +200,8 @@ bool segments_intersect(const Corners& x, int count, const Kernel::Triangle_3& f
   return false;
 }
 
-// Whether a and b intersect at time t; exact if the positions are. CGAL does not accept two degenerate triangles:
-// these, and points, count as apart.
+// Whether a and b intersect at time t; exact if the positions at t are. CGAL does not accept two degenerate triangles;
+// the function regards these, and points, as separated.
 bool intersect_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
   const Corners x = at(a, t), y = at(b, t);
   const Kernel::Triangle_3 face_a(point(x[0]), point(x[1]), point(x[2])), face_b(point(y[0]), point(y[1]), point(y[2]));
@@ -212,11 +220,11 @@ TEST(ExactMotion, AgreesWithStandingTrianglesAtSampledTimes) {
       const Contact contact = find_contact(a, b);
       ++(contact.found ? met : apart);
       in_integers += contact.integers_used;
-      // The test must find every intersection at sampled times. Times k/32 keep the coordinates exact.
+      // find_contact() must find each intersection at the sampled times k/32, at which coordinates are exact.
       for (int k = 0; k <= 32 && !contact.found; ++k)
         ASSERT_FALSE(intersect_at(a, b, k / 32.0)) << "query " << query << " at " << k / 32.0;
-      // A contact that is found is real: at its time the triangles intersect, or are apart by rounding only (1e-7 by
-      // rounding the time of a double root; 1e-14 otherwise).
+      // At the time of a contact that find_contact() finds, the triangles must intersect, or be separated only because
+      // that time is rounded: by up to 1e-7 if it is a double root, by 1e-14 otherwise.
       if (contact.found && !intersect_at(a, b, contact.time)) {
         ASSERT_LE(distance_at(a, b, contact.time), 1e-7) << "query " << query;
       }

@@ -34,7 +34,8 @@ std::size_t pairs_within_cloth(const std::vector<Vec3>& a, const std::vector<Vec
   return pairs_of({cloth(positions, {{0, 1, 2}, {3, 4, 5}})});
 }
 
-// Number of pairs for two objects; expects the same for two faces of one object.
+// Number of pairs for two cloths of one face each. Expects the same number for two faces of one cloth, and for a cloth
+// and an obstacle.
 std::size_t pairs_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   const std::size_t count = pairs_of({cloth(a), cloth(b)});
   EXPECT_EQ(pairs_within_cloth(a, b), count);
@@ -43,7 +44,7 @@ std::size_t pairs_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b
   return count;
 }
 
-// A triangle above kFloor with its lowest corner at height z over the inside of the floor.
+// An upright triangle whose lowest corner is at height z over the inside of kFloor.
 std::vector<Vec3> hanging(double z) {
   return {{0.25, 0.25, z}, {0.25, 0.25, z + 1}, {0.5, 0.25, z + 1}};
 }
@@ -64,10 +65,10 @@ TEST(FindIntersections, PiecesOfRopeThatPassThroughAFaceOrMeetAreFound) {
   ASSERT_EQ(intersections.pairs.size(), 1u);
   EXPECT_EQ(intersections.pairs[0], (IntersectingPair{{0, 1}, {1, 0}}));
   EXPECT_TRUE(intersections.degenerate.empty());
-  // A loop whose last piece crosses the first one, and a loop whose last piece only comes near it.
+  // The last piece crosses the first piece; in the second chain, it ends 1e-9 away from their common plane.
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 0}}, chain)}), 1u);
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 1e-9}}, chain)}), 0u);
-  // Neighbours meet if one is folded onto the other; the next piece, which starts there, meets it too.
+  // The second piece is folded onto the first, so they meet. The third piece starts on the first, and meets it, too.
   EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {0.5, 0, 0}, {0.5, 1, 0}}, chain)}), 2u);
 }
 
@@ -79,7 +80,8 @@ TEST(FindIntersections, TouchingCountsAndTheLeastGapDoesNot) {
 }
 
 TEST(FindIntersections, TouchingOnASlantedPlaneIsDecidedExactly) {
-  // The triangle is in the plane x + y + z = 0.75, exactly; changing the last digit of z moves the point off it.
+  // `slanted` lies exactly in the plane x + y + z = 0.75. The corner (0.25, 0.25, z) is in this plane only if z = 0.25;
+  // one unit in the last place of z moves it off the plane.
   const std::vector<Vec3> slanted = {{0.75, 0, 0}, {0, 0.75, 0}, {0, 0, 0.75}};
   const auto above = [](double z) { return std::vector<Vec3>{{0.25, 0.25, z}, {1, 1, 1}, {1, 1.25, 1}}; };
   EXPECT_EQ(pairs_between(slanted, above(0.25)), 1u);

@@ -60,7 +60,8 @@ TEST_F(JudgeToolTest, ObstaclesAreNotHeldAgainstEachOther) {
   EXPECT_EQ(run("--obstacle ball --obstacle half_pipe").exit_code, 0);
 }
 
-// The first face of a hand passes through the sheet and is excluded: it comes last in the file and is not tested.
+// The first face of the hand crosses the sheet. If it is marked as passed through, write_ply() writes it last, and the
+// tool does not test it.
 TEST_F(JudgeToolTest, FacesThatClothPassesThroughAreLeftOut) {
   write_floor("sheet_00000.ply");
   const std::vector<Vec3> places{{0.25, 0.25, -0.1}, {0.25, 0.25, 1}, {0.5, 0.25, 1}, {0.25, 0.5, 1}};
