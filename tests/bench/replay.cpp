@@ -77,7 +77,7 @@ Recording read(const std::filesystem::path& folder, int first, int count) {
 }
 
 struct Costs {
-  double refit = 0, pairs = 0, proximities = 0;  // sums over all steps [ms]
+  double refit = 0, pairs = 0, proximities = 0;  // CPU times, summed over all steps [ms]
   std::size_t candidates = 0, found = 0;
   double total() const { return refit + pairs + proximities; }
 };

@@ -117,7 +117,7 @@ void distances() {
     std::mt19937 generator(3);
     std::vector<std::array<std::array<Vec3, 3>, 2>> all(kPairs);
     for (auto& [a, b] : all) {
-      // Two nearly parallel triangles of size 1 at the distance `away`, as in two layers of cloth.
+      // Two nearly parallel triangles with legs of length 1 at the distance `away`, as in two layers of cloth.
       const Vec3 shift{0.3, 0.2, away};
       const std::array<Vec3, 3> shape{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}};
       for (std::size_t c = 0; c < 3; ++c) {

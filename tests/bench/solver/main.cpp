@@ -99,8 +99,8 @@ struct Row {
   int particles;
   double megabytes, analysis, setup;
   Solution loose, tight;
-  // Contacts change the pattern in each step. Without contacts, the analysis of an earlier step is reused, so it does
-  // not count.
+  // CPU time of a step [s]. Contacts change the pattern in each step; without contacts, a step reuses the analysis of
+  // an earlier step, so the analysis does not count.
   double total(const Solution& s) const {
     return setup + (pose == Pose::lying && solver == kDirect ? analysis : 0) + s.seconds;
   }

@@ -184,8 +184,8 @@ class Geometric final : public Multigrid<3, double, double> {
  private:
   static BlockRows<double> bilinear(int side) {
     const int coarse = side / 2 + 1;
-    // Even places coincide with coarse places; odd places lie between two. If a side has an even number of places, its
-    // last place is coarse too.
+    // Particles with even numbers are also in the coarse grid; a particle with an odd number is between two of these.
+    // If a side has an even number of particles, its last particle is also in the coarse grid.
     const auto line = [&](int i) -> std::vector<std::pair<int, double>> {
       if (i % 2 == 0) return {{i / 2, 1.0}};
       if (i == side - 1) return {{coarse - 1, 1.0}};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStep = 0.01;             // [s]
 constexpr double kSlope = 1.2;             // maximum slope of a fold [rad]
-constexpr double kFolds = 6;               // per metre
+constexpr double kFolds = 6;               // number of folds per metre [1/m]
 constexpr double kGravity = 9.81;          // [m/s²]
 constexpr double kContactStiffness = 100;  // of one contact, as in scenes [N/m]
 constexpr double kShearOfStretch = 0.03;   // shear stiffness of soft cloth relative to its stretch stiffness
