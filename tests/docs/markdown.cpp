@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// GitHub's rule: lower case, no punctuation, hyphens for spaces.
+// The anchor that GitHub makes of a heading: lower case, no punctuation, hyphens for spaces.
 std::string anchor_of(const std::string& heading) {
   std::string anchor;
   for (const char c : heading) {

@@ -41,7 +41,7 @@ class Tests {
       if (kind == "TEST" || kind == "TEST_F") names.insert(suite + "." + name);
       if (kind == "TYPED_TEST") names.insert(suite + "/0." + name);
       if (!prefixes_.contains(suite)) continue;
-      if (kind == "TEST_P") names.insert(suite + "." + name);  // form for tests/run -R
+      if (kind == "TEST_P") names.insert(suite + "." + name);  // as tests/run -R accepts it
       for (const std::string& prefix : prefixes_.at(suite))
         names.insert(kind == "TEST_P" ? fmt::format("{}/{}.{}/0", prefix, suite, name)
                                       : fmt::format("{}/{}/0.{}", prefix, suite, name));

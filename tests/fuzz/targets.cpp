@@ -55,8 +55,7 @@ std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A file in memory, for readers that need a file name. Files on a disk would wear it out: there are a million a
-/// minute.
+/// A file in memory, for readers that need a file name. A million files a minute would wear out a disk.
 class MemoryFile {
  public:
   explicit MemoryFile(Bytes bytes) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {

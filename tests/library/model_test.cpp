@@ -261,7 +261,7 @@ TEST(LibraryModel, ContinuesFromASavedStateAndRefusesThatOfAnother) {
   }
 }
 
-// If names are joined by commas, both lists are "a,b,c".
+// Joined by commas, both lists of names are "a,b,c", but they name other bodies.
 TEST(LibraryModel, RefusesAStateOfOtherDrivenBodiesWhoseNamesHaveCommas) {
   Model model;
   model.cloths = {sheet()};

@@ -24,7 +24,7 @@ radius = 0.15
 segments = 16
 )";
 
-/// A sheet hangs on a handle that nothing touches.
+/// A sheet is pinned to a handle, and nothing else touches it.
 inline const std::string kHanging = R"(
 [time]
 duration = 0.4

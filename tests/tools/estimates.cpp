@@ -33,7 +33,7 @@ struct Case {
   const char *name, *cloth, *rest;
 };
 constexpr const char* kFree = "[contact]\nself = false\nobstacles = false\n";
-// Values of no named fabric.
+// A soft material that is none of the named fabrics.
 constexpr const char* kSoft =
     "material = { density = 0.2, stretch = 200, max_stretch = 0, shear = 60, bend = 1e-3, bend_viscosity = 5e-6, "
     "stretch_viscosity = 0.2, shear_viscosity = 0.1, bend_friction = 0 }\n";
@@ -91,7 +91,7 @@ std::vector<Trajectory> reference_runs_of(scene::Scene scene) {
   return references;
 }
 
-// Root mean square, over the reference runs, of their differences from the run.
+// Root mean square of the differences between the run and each reference run [m].
 double distance(const Trajectory& run, const std::vector<Trajectory>& references, Quantity quantity) {
   double sum = 0;
   for (const Trajectory& reference : references) sum += std::pow(at(compare(run, reference), quantity), 2);

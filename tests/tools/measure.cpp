@@ -37,7 +37,7 @@ void print(const MeasuredFrame& frame) {
   std::fflush(stdout);
 }
 
-// Median time of the frames from the first near pair on: these are the costly frames.
+// Median CPU time of the costly frames, which are those from the first near pair on [ms].
 double median_after_contact_ms(const std::vector<MeasuredFrame>& frames) {
   const auto first = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.report.proximities > 0; });
   std::vector<double> ms;

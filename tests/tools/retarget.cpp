@@ -35,11 +35,11 @@ double angle(const Vec3& a, const Vec3& b) {
 struct Follows {
   double angle = 0;                  // largest angle between a bone and the same bone of the motion [degrees]
   std::string bone;                  // the bone with that angle
-  double arm = 0;                    // the same for bones of the arms only [degrees]
-  double trunk = 0, trunk_when = 0;  // the same for the line from the hips to between the shoulders, and its time [s]
+  double arm = 0;                    // `angle` for bones of the arms only [degrees]
+  double trunk = 0, trunk_when = 0;  // `angle` for the line from hips to mid-shoulders [degrees], and its time [s]
   double slip = 0;                   // largest horizontal displacement of the toe joint during a contact [m]
-  double theirs = 0;                 // the same for the motion itself, scaled by the ratio of leg lengths [m]
-  double toes = 0;                   // the same for the mean vertex of the toes, or of the foot without toe joint [m]
+  double theirs = 0;                 // `slip` of the motion itself, scaled by the ratio of leg lengths [m]
+  double toes = 0;                   // `slip` of the mean vertex of the toes, or of the foot without toe joint [m]
   double below = 0, above = 0;       // least and largest height of the feet over the floor while a foot stands [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
