@@ -11,7 +11,7 @@ namespace weft::docs {
 /// commands (sh), or the output of the commands before it (text). Returns one line for each mistake, "line: what".
 std::string wrong_blocks(const std::string& page);
 
-/// Runs the commands of one section in `folder`. There, ./weft is the program, scenes/ contains the scenes of the
+/// Runs the commands of one section in `folder`. In it, ./weft is the program, scenes/ contains the scenes of the
 /// source tree, and every scene of the page up to this section is a file. A scene begins with `# NAME.toml`, or with `#
 /// NAME.toml: OTHER.toml, and at its end` if it extends another; a script begins with `# NAME.py`. Returns the first
 /// failure: a command with its output, or a line of a text block that was not printed. Empty if all succeed.

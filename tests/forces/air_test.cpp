@@ -96,8 +96,8 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
       of_matrix += change[i].dot(product[i]);
       of_force -= rate * change[i].dot(f_after[i] - f_before[i]) / (2 * kEpsilon);
     }
-    // The law has a kink only in its second derivative. The tolerance covers errors of order ε², and rounding errors
-    // divided by ε.
+    // For equal changes of all velocities, the matrix is the exact derivative. Tolerance: the central difference has
+    // errors of order ε², and rounding errors divided by ε.
     if (trial < 3)
       EXPECT_NEAR(of_matrix, of_force, 1e-6 * of_matrix);
     else

@@ -28,8 +28,8 @@ struct Contact {
 /// which must be finite; touching counts.
 Contact find_contact(const MovingSimplex& a, const MovingSimplex& b);
 
-/// For two triangles whose corners i of a and j of b are the same vertex: whether they meet elsewhere. They do exactly
-/// if the opposite edge of one meets the other triangle.
+/// For two triangles whose corners i of a and j of b are the same vertex: whether they meet elsewhere. They do if and
+/// only if the opposite edge of one meets the other triangle.
 Contact find_contact_beside_shared(const MovingSimplex& a, int i, const MovingSimplex& b, int j);
 
 }  // namespace weft::support

@@ -118,8 +118,8 @@ bool intersect(const Face& a, const Face& b) {
   const Shared shared = shared_corners(a, b);
   if (shared.count == 0) return CGAL::do_intersect(a.triangle(), b.triangle());
   if (shared.count > 1) return false;
-  // Two faces that share one vertex meet elsewhere exactly if the edge opposite to it in one reaches the other face:
-  // their common line leaves the shared vertex and ends on one of these edges.
+  // Two faces that share one vertex meet elsewhere if and only if the edge opposite to this vertex in one face meets
+  // the other face: their line of intersection begins at the shared vertex and ends on one of these edges.
   return reaches(a.edge_opposite(shared.of_a), b) || reaches(b.edge_opposite(shared.of_b), a);
 }
 

@@ -10,8 +10,8 @@ namespace weft::simulation {
 namespace {
 
 TEST(HangingWeight, StretchesItsThreadsByItsWeightOverTheirStiffness) {
-  // 20 rows of 1 kg carry 10 to 100,000 kg; local iterative solvers are wrong by metres here (Macklin et al., "Small
-  // Steps in Physics Simulation", 2019).
+  // 20 rows of 1 kg carry 10 to 100,000 kg. With such mass ratios, local iterative solvers are wrong by metres (Macklin
+  // et al., "Small Steps in Physics Simulation", 2019).
   constexpr double kWidth = 0.01, kLength = 0.2, kStiffness = 1e9;
   for (double mass : {10.0, 1e3, 1e5}) {
     scene::Scene scene = testing::sheet_alone(1, 2, 0);

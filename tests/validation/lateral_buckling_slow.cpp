@@ -1,4 +1,5 @@
-// A narrow strip held horizontally by its end, its width vertical: above a critical weight it buckles sideways.
+// A narrow strip is held by one end, with its length horizontal and its width vertical. Above a critical weight, it
+// buckles sideways.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -109,7 +109,7 @@ TEST_F(ManyContacts, OfNineRibbonsThatFallIntoAHalfPipeKeepThemApart) {
   expect_apart(text);
 }
 
-// The rollers stand inside the ring, move outward until it is taut, and turn all the time.
+// The belt starts as a ring. Three rollers inside it move outward until it is taut; they turn all the time.
 TEST_F(ManyContacts, OfABeltRoundThreeTurningRollersKeepThemApart) {
   constexpr double kRing = 0.3, kRoller = 0.06;  // radii [m]
   constexpr double kInside = kRing - kRoller - 0.005;

@@ -35,7 +35,8 @@ TEST(Ropes, HangAsACatenaryAndPullAtTheirEndsWithItsForce) {
   for (int k = 0; k < 50; ++k) u -= (std::sinh(u) - kLength / kSpan * u) / (std::cosh(u) - kLength / kSpan);
   const double a = kSpan / (2 * u);
   for (const Vec3& place : x) EXPECT_NEAR(place.z(), a * (std::cosh(place.x() / a) - std::cosh(u)), 1e-3);
-  // Tension of the first piece: the weight of what hangs below its middle, and the tension at the lowest point.
+  // The tension of the first piece has two components: the weight of the rope below its middle, and the tension at the
+  // lowest point, which is horizontal.
   const double pull = kStretch * ((x[1] - x[0]).norm() / kPiece - 1);
   const double expected = kMass * kGravity * std::hypot(a, 0.5 * (kLength - kPiece));
   EXPECT_NEAR(pull / expected, 1, 0.01);
@@ -66,7 +67,7 @@ TEST(Ropes, SwingWithTheFrequencyOfATautString) {
 }
 
 TEST(Ropes, FallFreelyHoweverTheyBendAndSwingWithinThemselves) {
-  // The midpoint rule is exact for the motion of the centre; only the solver's residual remains.
+  // The midpoint rule is exact for the motion of the centre of mass. Tolerance: the residual of the solver.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.4\nstep = 0.005\nintegrator = \"implicit_midpoint\"\n[physics]\nair_density = 0\n"
       "[contact]\nself = false\n[solver]\nnewton_tolerance = 1e-6\nlinear_tolerance = 1e-3\n" +
