@@ -166,7 +166,7 @@ std::string run_isolated(const std::function<std::string()>& work, const Isolati
   pipe.close_write_end();
   std::string answer = receive(pipe.read_end(), isolation);
   const int status = child.wait();
-  // The signal that set `stop` may also have ended the child; this is an interruption, not a crash.
+  // A SIGTERM to the process group sets `stop` in this process and also ends the child. This is no crash of the child.
   if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);

@@ -155,8 +155,8 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const simulation::FrameRe
   }
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
-  // Because of the lock, no other Weft process writes here. A frame file that did not exist when this Writer was
-  // created thus belongs to another program, and must not be replaced.
+  // Because of the lock, no other Weft process writes to this folder. If a frame file that did not exist when this
+  // Writer was created exists now, another program wrote it. Such a file must not be replaced.
   if (own_frames_.insert(snapshot.frame).second) protect_missing_file(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();

@@ -14,15 +14,16 @@ namespace weft::render {
 struct Style {
   Vec3 sky_color = Vec3::Ones();  ///< colour of the environment light on a horizontal surface
   double sky_intensity = 0.45;    ///< fraction of all light that the environment provides
-  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon; if it is grey: a factor on the colour of open floor
-  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above; if `horizon` is grey: also a factor
+  Vec3 horizon = Vec3::Ones();    ///< backdrop at the horizon; if grey: factor on Exposure::floor (unshaded floor)
+  Vec3 zenith = Vec3::Ones();     ///< backdrop straight above; if `horizon` is grey: factor on Exposure::floor
   double glow = 0;                ///< fraction by which the backdrop is darker far from the subjects than behind them
   double floor_tint = 1;          ///< factor on the colour of the floor
   double floor_roughness = 1;     ///< upper limit on the roughness of a floor, unless the floor is fully matte (1)
   double toe = 0;                 ///< linear light below which tones are darkened, as on film; 0: none
-  bool exposes = true;            ///< increases direct light, within limits, until floor has its own colour (expose())
-  bool plain = false;             ///< draws all surfaces as clay, without their own colours
-  bool edges = false;             ///< draws the edges of faces
+  /// Whether expose() increases the direct light, within limits, until unshaded floor is as bright as its own colour.
+  bool exposes = true;
+  bool plain = false;  ///< draws all surfaces as clay, without their own colours
+  bool edges = false;  ///< draws the edges of faces
 };
 /// The style of the look, with the sky colour and intensity of `stage` if these are set.
 Style style_of(const frame::Stage& stage);
@@ -41,8 +42,8 @@ struct Surroundings {
   std::array<Box, kBoxes> boxes;
 
   /// Light from direction `toward` (unit), blurred as by a reflection with roughness squared
-  /// `alpha`. surroundings() in shaders/surroundings.glsl has the same formula, but less light from
-  /// below (pack_frame()).
+  /// `alpha`. surroundings() in shaders/surroundings.glsl has the same formula for reflections, with
+  /// half of `ground`, because the floor near glossy surfaces is often shaded (pack_frame()).
   Vec3 light(const Vec3& toward, double alpha) const;
 };
 

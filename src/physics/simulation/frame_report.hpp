@@ -18,8 +18,10 @@ struct EnclosedAir {
 /// The load of an attachment, or of a seam that can tear.
 struct AttachmentLoad {
   std::string name;
-  double load = 0;     ///< sum of the forces of its springs, at the end of the frame [N]
-  bool holds = false;  ///< whether the attachment, or any tie of the seam, is closed and not torn at that time
+  double load = 0;  ///< sum of the magnitudes of its spring forces, at the end of the frame [N]
+  /// Whether it holds at the end of the frame. Attachment: it has begun, and is neither released nor broken. Seam: at
+  /// least one tie (spring between the two edges) is closed and not torn.
+  bool holds = false;
 };
 
 /// Computation time and counts of one frame, and quantities measured in it.

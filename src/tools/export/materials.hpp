@@ -12,16 +12,15 @@
 namespace weft::exporter {
 
 /// A picture beside or inside the exported files. The export formats cannot combine a picture with
-/// a colour as Weft does, so the pixels already include the surface's colour. The colour is
-/// multiplied by the picture; with Alpha::over_color, it shows through transparent parts of the
-/// picture and on the rim.
+/// a colour as Weft does, so png() puts the surface's colour into the pixels: each pixel is the
+/// product of picture and colour. With Alpha::over_color, transparent pixels have the colour alone.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
   Vec3 color;  ///< linear colour of the surface
   frame::Paint::Alpha alpha = frame::Paint::Alpha::ignored;
-  /// Whether one transparent pixel is added at both ends of this axis. With Wrap::clamp, readers
-  /// repeat this pixel beyond the edges.
+  /// Whether png() adds one transparent pixel at both ends of this axis (a rim). With Wrap::clamp,
+  /// readers repeat this pixel beyond the edges, so the picture occurs once, as with Wrap::once.
   bool rim_u = false, rim_v = false;
 
   /// The bytes of the PNG file; it has alpha only if the picture cuts holes.
@@ -36,8 +35,8 @@ struct Material {
   std::size_t picture = kNoPicture;  ///< index in Materials::pictures
   frame::Paint::Wrap wrap_u = frame::Paint::Wrap::repeat, wrap_v = frame::Paint::Wrap::repeat;  ///< never Wrap::once
   bool cutout = false;  ///< whether the alpha of the picture cuts holes
-  /// Linear colour of the back of cloth, if it differs from the front and shows no picture; only Blender's script has
-  /// it.
+  /// Linear colour of the back of cloth, if it differs from the front and shows no picture. Only Format::blender
+  /// exports it.
   std::optional<Vec3> back = {};
   /// Maps (u, v, 1) of the surface to the picture: 0 to 1 from left to right and from bottom to top.
   Eigen::Matrix<double, 2, 3> picture_from_uv = Eigen::Matrix<double, 2, 3>::Identity();

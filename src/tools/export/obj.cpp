@@ -21,10 +21,11 @@ namespace {
 // Largest specular exponent: readers such as Blender compute the roughness as 1 - sqrt(Ns / 1000).
 constexpr double kMaxSpecularExponent = 1000;
 
-// A face, with its corners as corners of triangles.
+// A triangle or quad of the file. Each corner is given as a corner of a triangle of the surface, because texture
+// coordinates and normals are stored by triangle.
 struct Face {
   std::size_t material = 0;                                  // index of the first material with the same look
-  std::vector<std::pair<std::size_t, std::size_t>> corners;  // triangle, and corner in it
+  std::vector<std::pair<std::size_t, std::size_t>> corners;  // index of the triangle; 0, 1 or 2: its corner
 };
 
 std::vector<Face> triangles_of(const frame::Surface& surface) {

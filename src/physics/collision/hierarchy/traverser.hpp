@@ -157,8 +157,8 @@ class Traverser {
   }
 
   /// Lists all pairs of a triangle below ref_a and one below ref_b. The bounds of ref_a and ref_b
-  /// must overlap. Unless kLonger, descends into both nodes, because testing a bound against all
-  /// children of a node costs as much as against one.
+  /// must overlap. Unless kLonger, descends into both nodes, because overlap_mask() compares a bound
+  /// with all children of a node at once (SIMD).
   void traverse_pair(Ref ref_a, Ref ref_b) {
     if (deferred_ != nullptr) return deferred_->push_back({ref_a, ref_b, false});
     open(ref_a, ref_b);
