@@ -25,7 +25,7 @@ frame::Camera found_camera(Kind kind) {
   return camera;
 }
 
-/// A body that walks six metres to the right and moves up and down once a second, under a static banner.
+/// A body that walks six metres to the right and moves up and down by 3 cm once a second, under a static banner.
 std::vector<frame::FrameSnapshot> walk(const frame::Camera& camera) {
   std::vector<frame::FrameSnapshot> run;
   for (int k = 0; k < kFrames; ++k) {
@@ -70,7 +70,7 @@ TEST(CameraPath, WholeStandsStillWithAllFramesInViewAndNoFurtherThanTheyNeed) {
     EXPECT_EQ(camera.position, path.at(run[0]).position);
     for (const std::size_t surface : {0, 1}) largest = std::max(largest, extent(snapshot, camera, surface));
   }
-  // The margin is 14 percent; the fit is exact.
+  // Cameras leave a margin of 14 % of half the picture; the fit is exact.
   EXPECT_NEAR(largest, 0.86, 1e-9);
 }
 
@@ -87,7 +87,8 @@ TEST(CameraPath, FollowKeepsItsSubjectInTheMiddleWithoutTakingOverItsSteps) {
   EXPECT_NEAR(largest, 0.86, 1e-9);
   for (std::size_t k = 1; k + 1 < eyes.size(); ++k) {
     EXPECT_NEAR((eyes[k] - eyes[k - 1]).x(), 1.5 / kFps, 1e-9) << "an even walk is followed evenly, from the start";
-    // A Gaussian of half a second damps 1 Hz to exp(-(pi)^2 / 2) = 0.7 percent; at both ends of the run, it damps less.
+    // The camera follows the Gaussian mean (standard deviation 0.5 s) of the walker's height. The mean damps an
+    // oscillation of 1 Hz to exp(-pi² / 2) = 0.7 %, and less at both ends of the run.
     const double bend = (eyes[k + 1] - 2 * eyes[k] + eyes[k - 1]).z();
     const double own = 0.03 * std::pow(2 * 3.14159265 / kFps, 2);
     EXPECT_LT(std::abs(bend), 0.1 * own) << k;
@@ -103,8 +104,8 @@ TEST(CameraPath, CloseComesNearerWhereTheSubjectIsSmallAndNeverCutsIt) {
     }
   const CameraPath path = path_of(run);
   const auto distance = [&](std::size_t k) { return (path.at(run[k]).position - path.at(run[k]).target).norm(); };
-  // A fifth of the size allows a fifth of the distance. A margin is needed for the oscillation, which the camera does
-  // not follow.
+  // From frame 50 on, the walker has a fifth of its size, which alone would allow a fifth of the distance. Its
+  // oscillation, which the camera does not follow, needs more.
   EXPECT_LT(distance(100), 0.35 * distance(0));
   for (const frame::FrameSnapshot& snapshot : run) EXPECT_LT(extent(snapshot, path.at(snapshot), 0), 0.86 + 1e-9);
 }
@@ -122,12 +123,13 @@ TEST(CameraPath, TrackStaysWhereItIsPutAndOpensAsWideAsItsSubjectNeeds) {
     largest = std::max(largest, extent(snapshot, at, 0));
   }
   EXPECT_LT(largest, 0.86 + 1e-9);
-  EXPECT_GT(largest, 0.6);  // the bounding box of a ball is up to sqrt(3) times as wide
+  // The field of view is fitted to the bounding box of the ball, whose corners are farther out than the ball.
+  EXPECT_GT(largest, 0.6);
 }
 
 TEST(CameraPath, TrackStandsUprightWhereverItLooks) {
   frame::Camera camera = found_camera(Kind::track);
-  camera.position = Vec3(4, 0, 1);  // far from the default azimuth
+  camera.position = Vec3(4, 0, 1);  // not at the default azimuth
   frame::FrameSnapshot snapshot;
   add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, 0, 1), Vec3::UnitX(), Vec3::UnitY(), 1).name = "pole";
   for (Vec3& position : snapshot.states[0].positions) position.y() *= 0.01;
@@ -148,7 +150,7 @@ TEST(CameraPath, OrbitGoesAroundAtOneDistanceWithEverythingInView) {
     for (const std::size_t surface : {0, 1}) largest = std::max(largest, extent(snapshot, at, surface));
   }
   EXPECT_NEAR(largest, 0.86, 1e-9);
-  // One second is a quarter of the orbit. Seen from above, the directions to both eyes are at right angles.
+  // In one second, the azimuth grows by 90 degrees. Seen from above, the directions to the two eyes are perpendicular.
   const Vec3 first = path.at(run[0]).position - path.at(run[0]).target;
   const Vec3 later = path.at(run[25]).position - path.at(run[25]).target;
   EXPECT_NEAR(first.head<2>().dot(later.head<2>()), 0, 1e-9);

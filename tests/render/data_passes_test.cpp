@@ -1,4 +1,4 @@
-// Compares the data layers at random pixels with a search through all triangles.
+// Data layers (depth, position, normal, ids, motion), compared at random pixels with a search through all triangles.
 #include "film/render/data_passes.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,8 @@ namespace {
 
 constexpr int kPassWidth = 192, kPassHeight = 108;
 
-/// A sheet around a sphere, in front of a floor. `phase` deforms and moves the sheet.
+/// A sheet that intersects a sphere, above a floor. `phase` deforms and moves the sheet, and raises the camera. `same`:
+/// another frame of the run, whose surfaces this frame shares; may be null.
 frame::FrameSnapshot moment(double phase, const frame::FrameSnapshot* same) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -50,6 +51,8 @@ frame::FrameSnapshot moment(double phase, const frame::FrameSnapshot* same) {
   return snapshot;
 }
 
+/// What a ray hits. `object` and `part`: as in the layers, 0 for none. `before`: where the point was in the frame
+/// before.
 struct Found {
   double depth = 1e9, object = 0, part = 0, heat = 0;
   Vec3 position{0, 0, 0}, before{0, 0, 0}, face{0, 0, 0}, normal{0, 0, 0};
@@ -157,7 +160,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
     const Found found = search(second_, first_, viewer.eye, viewer.along(pixel));
     const auto at = [&](const char* name) { return value(layers, name, x, y); };
     if (at("id.object") != found.object || at("id.part") != found.part) {
-      ++beside;  // an edge passes near the centre of the pixel
+      ++beside;  // at an edge, rounding decides which surface the centre shows
       continue;
     }
     ++counts[static_cast<int>(found.object)];
@@ -165,7 +168,7 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
       EXPECT_TRUE(std::isinf(at("depth.Z")));
       continue;
     }
-    // Tolerance for 32-bit numbers of some metres; the floor near the horizon is far away.
+    // Tolerance [m]: the layers are 32-bit floats, whose rounding error grows with the distance.
     const double rounding = 2e-7 * std::max(1.0, found.depth);
     EXPECT_NEAR(at("depth.Z"), found.depth, rounding);
     EXPECT_NEAR(at("position.X"), found.position.x(), rounding);
@@ -177,7 +180,8 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
     const Vec2 motion = pixel - viewer_before.pixel(found.before);
     EXPECT_NEAR(at("motion.X"), motion.x(), 1e-5);
     EXPECT_NEAR(at("motion.Y"), motion.y(), 1e-5);
-    // The normal faces the viewer. The sphere has duplicate vertices along one meridian, so its normals differ there.
+    // The normal faces the viewer. Tolerance: 0.02 for the sphere (object 2), because smooth_normal() does not know its
+    // crease angle.
     const Vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
     const Vec3 expected = found.normal * (found.face.dot(viewer.along(pixel)) > 0 ? -1 : 1);
     EXPECT_LT((normal - expected).norm(), found.object == 2 ? 0.02 : 1e-6);
@@ -190,7 +194,8 @@ TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
   expect_exact(layers_, 0, kPassHeight);
 }
 
-// OpenImageIO prints a file of some rows: the channel names in order, then one line for each pixel.
+// Writes some rows of the layers to an OpenEXR file. A program of OpenImageIO prints this file: the channel names in
+// order, then one line for each pixel. The printed values are compared with the search.
 TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
   constexpr int kTop = 44, kRows = 20;
   image::Layers rows{kPassWidth, kRows, layers_.channels};
@@ -238,7 +243,7 @@ TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
   EXPECT_EQ(count, 2);
 }
 
-// The camera moves backward past a square, which was behind the camera before.
+// Between the frames, the camera moves backward past a square. In the frame before, the square was behind the camera.
 TEST_F(DataPassesTest, WhatWasBehindTheCameraDoesNotMove) {
   frame::FrameSnapshot before;
   before.stage = stage_without_sky();
@@ -281,15 +286,15 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
     }
   }
   EXPECT_GT(whole, 1000);
-  // In this small picture, half of the pixels are at folds. They differ, since the picture averages encoded colours,
-  // and this pass linear ones.
+  // About half of the fully covered pixels are at folds. In these pixels, the picture is a mean of encoded colours, but
+  // the layer is a mean of linear colours.
   EXPECT_GT(same, 0.45 * whole);
   EXPECT_GT(partly, 100) << "outlines are smooth";
 }
 
-// The floor, composited over a background picture, is black where a ray to the sun hits something, because this scene
-// has no ambient light. Elsewhere, it leaves the picture unchanged. Pixels in the penumbra, a few percent, are
-// excluded.
+// On open floor, caught.A is the fraction of the light that shadows block. The sun is the only light, so caught.A must
+// be near 1 where a ray toward the sun hits something, and near 0 elsewhere. At most 5 % of the pixels may be in
+// between: in the penumbra.
 TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
   const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
   int lit = 0, dark = 0, otherwise = 0;

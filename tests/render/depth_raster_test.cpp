@@ -17,8 +17,8 @@ std::vector<float> fill(const Eigen::Vector3f& a, const Eigen::Vector3f& b, cons
   return depths;
 }
 
-// Compares every texel with the signed distances of its centre from the three sides, for both orientations of the
-// triangle.
+// If the centre of a texel is on the inner side of all three edges, the texel must have the depth of the triangle's
+// plane; otherwise, it must keep its initial value 9. Tests both orientations of the triangle.
 TEST(DepthRaster, CoversTheTexelsWhoseCentresLieInsideAndGivesThemTheDepthOfThePlane) {
   const Eigen::Vector3f a(3.2f, 5.1f, 0.1f), b(60.7f, 20.3f, 0.5f), c(17.9f, 58.6f, 0.9f);
   for (const bool turned : {false, true}) {
@@ -41,14 +41,14 @@ TEST(DepthRaster, CoversTheTexelsWhoseCentresLieInsideAndGivesThemTheDepthOfTheP
 TEST(DepthRaster, WhatReachesOutOfTheMapIsCutOff) {
   const std::vector<float> depths = fill({-500, -500, 0.5f}, {500, -500, 0.5f}, {0, 900, 0.5f});
   for (const float depth : depths) EXPECT_EQ(depth, 0.5f);
-  // Corners beyond the range of int.
+  // These corners are beyond the range of int.
   for (const float depth : fill({-1e10f, -1e10f, 0.5f}, {1e10f, -1e10f, 0.5f}, {0, 2e10f, 0.5f}))
     EXPECT_EQ(depth, 0.5f);
   for (const float depth : fill({70, 3, 0}, {90, 3, 0}, {80, 30, 0})) EXPECT_EQ(depth, 9);
 }
 
-// The near plane is z = w. It cuts a triangle with one corner behind it to a quad of 3/4 of its area, and one with two
-// corners behind it to a triangle of 1/4.
+// The near plane is z = w, here z = 1, which halves an edge from z = 0 to z = 2. If one corner is behind the plane, 3/4
+// of the area remain; if two corners are behind it, 1/4.
 TEST(DepthRaster, ClippingLeavesWhatLiesInFrontOfTheNearPlane) {
   const auto area_left = [](double z_a, double z_b, double z_c) {
     double area = 0;

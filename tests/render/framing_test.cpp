@@ -34,7 +34,7 @@ std::shared_ptr<frame::Stage> stage_with_up(const Vec3& up) {
 
 TEST(Framing, ViewsStraightDownAreThoseFromTheFrontThatAreNearlySo) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
-    const Vec3 front = Vec3::UnitX().cross(up);  // from which a scene is seen
+    const Vec3 front = Vec3::UnitX().cross(up);  // points from the scene to a viewer in front of it
     for (const double offset : {1e-3, 1e-7, 0.0, -1e-7}) {
       const ViewAxes axes = view_axes(-up - offset * front, up);
       EXPECT_LT((axes.right - Vec3::UnitX()).norm(), 1e-6) << up.transpose() << ", " << offset;
@@ -43,7 +43,8 @@ TEST(Framing, ViewsStraightDownAreThoseFromTheFrontThatAreNearlySo) {
   }
 }
 
-// A lens of 2,000 mm shows 0.58 degrees of the height, one of 1 mm 169 degrees, on a wide sensor more.
+// Vertical fields of view. On a sensor 20.25 mm high, a lens of 2,000 mm gives 0.58 degrees, and one of 1 mm 169
+// degrees. The angles 0.12 and 177 are beyond this range.
 TEST(Framing, LongAndShortLensesKeepTheirAngles) {
   for (const double angle : {0.12, 0.58, 169.0, 177.0}) {
     const View view = make_view(camera_at(Vec3(0, -5, 0), Vec3::Zero(), angle), Vec3::UnitZ(), 1,
@@ -110,8 +111,8 @@ TEST(Framing, InvisibleSurfacesDoNotCount) {
   EXPECT_LT(subject_bounds(snapshot).max().x(), 1.001);
 }
 
-// Two squares are 300 m away, one 10 cm behind the other. In the picture, they are as large as a square beside them
-// that is 20 cm away.
+// On the right, a red square is 300 m away and hides a blue one 10 cm behind it. On the left, a red square is 20 cm
+// away. All have the same size in the picture, so both places must be red.
 TEST(Framing, CloseClothIsInViewBeforeDistantThingsThatHideEachOther) {
   for (const bool red_first : {true, false}) {
     frame::FrameSnapshot snapshot;

@@ -23,7 +23,7 @@ TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
     add_square(snapshot, frame::ObjectKind::obstacle, Vec3(1700 * side, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 1);
   snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
   snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
-  // Row of the horizon, counted from the top: 0.005 / tan 15° of half a picture above the middle.
+  // Row of the horizon, counted from the top: above the middle by 0.005 / tan 15° of half the height.
   const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
   for (const Quality quality : {Quality::preview, Quality::final}) {
     Settings settings;
@@ -37,7 +37,7 @@ TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
   }
 }
 
-// The drawn floor extends for 130 km, where single precision rounds by millimetres.
+// The drawn floor extends for 130 km. At this distance, single precision rounds by millimetres.
 TEST(Picture, TiltedFloorOfKilometresIsDrawn) {
   constexpr int kTilts = 8;
   for (int k = 0; k < kTilts; ++k) {
@@ -57,7 +57,7 @@ TEST(Picture, TiltedFloorOfKilometresIsDrawn) {
     settings.width = 32;
     settings.height = 20;
     settings.quality = Quality::draft;
-    // Where the floor is missing, the backdrop is darker by 20 levels.
+    // If the floor were missing, this pixel would show the backdrop, which is 20 levels darker.
     EXPECT_NEAR(Renderer(settings).draw(snapshot).pixel(16, 10)[1], 0.6 * 255, 4) << k;
   }
 }

@@ -24,7 +24,7 @@ Settings small_settings() {
   return settings;
 }
 
-/// A white square of 0.2 m in front of black, by default 2 m from the camera, where a pixel is 7.3 mm wide.
+/// A white square of 0.2 m in front of black, by default 2 m from the camera, where a pixel is 7.1 mm wide.
 frame::FrameSnapshot square_at(double x, double distance = 2) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -44,8 +44,9 @@ double linear_at(const image::Image16& image, int x) {
   return std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-// The shutter of 180 degrees closes at the time of the frame. A square that moved by 40 pixels is visible over the last
-// 20 of them, and its edges are ramps of this length.
+// A shutter of 180 degrees is open for half of the time between frames, and closes at the time of the frame. A square
+// that moves by 40 pixels between frames moves by 20 while the shutter is open. Its edges thus become ramps 20 pixels
+// wide.
 TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   const double pixel = 2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight;
   const frame::FrameSnapshot now = square_at(20 * pixel), before = square_at(-20 * pixel);
@@ -56,11 +57,12 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   const image::Image16 image = renderer.image16();
   const double white = linear_at(image, 110);
   EXPECT_GT(white, 0.8);
-  // 0.1 m are 14.2 pixels: the right edge moved from 114.2 to 134.2, the left one from 85.8 to 105.8.
+  // Half the square is 14.2 pixels wide. While the shutter is open, its right edge moves from 114.2 to 134.2, and its
+  // left edge from 85.8 to 105.8.
   EXPECT_NEAR(linear_at(image, 124) / white, 0.5, 0.06);
   EXPECT_NEAR(linear_at(image, 119) / white, 0.75, 0.06);
   EXPECT_NEAR(linear_at(image, 95) / white, 0.5, 0.06);
-  // The ramp has no steps. (A mean of only four sharp pictures would differ by 0.12 in some pixels.)
+  // The right ramp has no steps. A mean of four sharp pictures would differ from the ramp by up to 0.12.
   for (int x = 116; x < 133; ++x) EXPECT_NEAR(linear_at(image, x) / white, (134.2 - x - 0.5) / 20, 0.05) << x;
   EXPECT_LT(linear_at(image, 84), 0.02);
   EXPECT_LT(linear_at(image, 136), 0.02);
@@ -77,7 +79,7 @@ TEST(Instants, NothingIsBlurredUnasked) {
 // focus plane.
 TEST(Instants, LensBlursWhatIsOutOfFocus) {
   frame::FrameSnapshot snapshot = square_at(0, 4);
-  snapshot.cameras[0].aperture = 0.5;  // 12 mm / tan 10 / 0.5 = 136 mm wide
+  snapshot.cameras[0].aperture = 0.5;  // f-number: 12 mm / tan 10° / 0.5 = 136 mm wide
   const double width = 0.136 / 2 / (2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight);  // 9.6 pixels
   Renderer renderer(small_settings());
   const auto middle_of_edge = [&] {
@@ -93,9 +95,9 @@ TEST(Instants, LensBlursWhatIsOutOfFocus) {
   EXPECT_LE(middle_of_edge(), 2);
 }
 
-// Seen from straight above, no direction of the world points up in the picture; still, the pictures from all points of
-// the lens must have the same up direction. The square is in focus and 28 pixels wide. A mean of rotated squares would
-// lose its corners.
+// The camera looks straight down, so the up axis of the scene does not define the up direction of the picture. Still,
+// the pictures from all points of the lens must have the same up direction. The square is in focus and 28 pixels wide;
+// a mean of rotated squares would have no corners.
 TEST(Instants, LensDoesNotRotateThePictureFromAbove) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = square_at(0).stage;
@@ -109,8 +111,8 @@ TEST(Instants, LensDoesNotRotateThePictureFromAbove) {
   EXPECT_GT(image.pixel(112, 38)[1], 0.95 * image.pixel(100, 50)[1]);
 }
 
-// The ground extends behind the camera. Its diagonal appears as a vertical line, at 0.866 of the half width to the
-// right of the middle: at 186.6 pixels.
+// The ground extends behind the camera. The diagonal between its two triangles appears as a vertical line, to the right
+// of the middle by 0.866 of half the width: at 186.6 pixels.
 TEST(Looks, WireShowsThePartOfAnEdgeBeforeTheCamera) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = square_at(0).stage;
@@ -164,22 +166,23 @@ TEST(Looks, ExposureIsInStops) {
     renderer.draw(snapshot);
     return linear_at(renderer.image16(), 100);
   };
-  // The fitted sRGB curve differs by 0.1 levels, which is 0.2 % here.
+  // Tolerance: the error of the fitted sRGB curve is 0.1 levels of 255, 0.2 % of this light.
   EXPECT_NEAR(light(1) / light(0), 2, 0.01);
   EXPECT_NEAR(light(-1) / light(0), 0.5, 0.005);
 }
 
-// Chords of a circle of 1 cm: the middle of each must be on the circle, to fourth order of the angle. For 0.26 rad, the
-// error is 1.1e-4 of the radius.
+// The middle of a chord must be on the circle. The error is of fourth order in the angle; for 0.26 rad, it is 1.1e-4 of
+// the radius.
 TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const double angle = std::numbers::pi / 12;
-  const double radius = 0.01;  // m
+  const double radius = 0.01;  // [m]
   const Vec3 from(1, 0, 0), to(std::cos(angle), std::sin(angle), 0), a = radius * from, b = radius * to;
   const Middle half = middle(a, b, from, to, 1e-3);
   EXPECT_NEAR(half.position.norm(), radius, 1.5e-4 * radius);
   EXPECT_LT((half.normal - half.position.normalized()).norm(), 1e-12);
-  // A plane stays plane, and contradicting normals cause no spike.
+  // A plane stays plane.
   EXPECT_LT((middle(a, b, Vec3::UnitZ(), Vec3::UnitZ(), 1e-3).position - 0.5 * (a + b)).norm(), 1e-15);
+  // Normals that contradict each other move the middle by at most the given 0.3 mm.
   EXPECT_LE((middle(from, to, (b - a).normalized(), Vec3::UnitZ(), 3e-4).position - 0.5 * (from + to)).norm(),
             3.001e-4);
 }
@@ -199,7 +202,7 @@ TEST(Refinement, NeighboursShareTheirMiddles) {
   EXPECT_EQ(shared, 1);
 }
 
-// Cloth of 2 cm with cells of 1 mm. A ball of 1 mm lies 0.1 mm in front of it.
+// Cloth of 2 cm with cells of 1 mm. A ball with a diameter of 1 mm is 0.1 mm in front of it.
 TEST(Refinement, SmallClothDoesNotCoverWhatIsCloseInFrontOfIt) {
   constexpr Index kSide = 21;
   std::vector<Vec3> positions;

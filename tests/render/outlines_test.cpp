@@ -23,25 +23,27 @@ View test_view() {
   return view;
 }
 
-/// World position that appears at this place of the picture [pixels], at this distance [m].
+/// World position that appears at (x, y) in the picture [pixels from the lower left corner], at this distance along the
+/// view axis [m].
 Vec3 seen_at(double x, double y, double distance) {
   return distance *
          Vec3(2 * x / kOutlinedWidth - 1, 1, (2 * y / kOutlinedHeight - 1) * kOutlinedHeight / kOutlinedWidth);
 }
 
-/// A mesh with its flat colour and its content of the geometry buffer.
+/// A mesh of one flat colour.
 struct Thing {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
   std::uint64_t color;
 };
 
+/// Things, and the pixels that they cover: distances, surfaces and colours, without antialiasing at first.
 struct Scene {
   std::vector<Thing> things;
   std::vector<Seen> seen = std::vector<Seen>(kOutlinedWidth * kOutlinedHeight, Seen{100, kNothing});
   std::vector<std::uint64_t> picture = std::vector<std::uint64_t>(kOutlinedWidth * kOutlinedHeight, kBlack);
 
-  /// Adds a thing that covers the pixels whose centres have `covers(x, y)`.
+  /// Adds a thing. Its pixels are those for whose centres covers(x, y) is true. `back`: 0.5 if they show its back.
   template <class Covers>
   void add(const Thing& thing, float distance, const Covers& covers, float back = 0) {
     things.push_back(thing);
@@ -70,8 +72,9 @@ Thing quad(double x0, double y0, double x1, double y1, double distance, std::uin
           color};
 }
 
-// Each pixel has sixteen samples, no two of them in the same sixteenth of its width. For an edge at any position, the
-// covered fraction is thus exact to half a sample. Its sum over a row of pixels is the width of the quad.
+// Each pixel has sixteen samples, no two of them in the same sixteenth of its width. For a vertical edge at any
+// position, the covered fraction is thus exact to half a sample. The sum of the fractions over a row is the width of
+// the quad.
 TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
   for (const double edge : {20.0625, 20.3, 20.5, 20.8, 21.0}) {
     Scene scene;
@@ -86,12 +89,13 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
   }
 }
 
-// Two sheets are half a millimetre apart at 2 m. The step of 1 / distance is not significant, but their ids differ.
+// Two sheets, 0.5 mm apart, at a distance of 2 m. The difference of 1 / distance is too small to reveal an outline, but
+// the numbers of the surfaces differ.
 TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
   Scene scene;
   scene.add(quad(0, 0, kOutlinedWidth, kOutlinedHeight, 2.0005, 0x404040404040), 2.0005f,
             [](double, double) { return true; });
-  // The border of the sheet rises by one pixel in eight.
+  // The border of the sheet rises by one pixel in eight columns.
   const auto border = [](double x) { return 20 + x / 8; };
   const Thing sheet{{seen_at(0, 0, 2), seen_at(kOutlinedWidth, 0, 2),
                      seen_at(kOutlinedWidth, border(kOutlinedWidth), 2), seen_at(0, border(0), 2)},
@@ -99,7 +103,7 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
                     kWhite};
   scene.add(sheet, 2, [&](double x, double y) { return y < border(x); });
   scene.antialias();
-  // The column is covered up to the border at its middle. Each sample counts as 1/16.
+  // Each column is covered up to the height [pixels] of the border at its middle. Tolerance: about one sample of 16.
   for (int x = 8; x < 88; ++x) {
     double covered = 0;
     for (int y = 0; y < kOutlinedHeight; ++y) covered += (scene.red(x, y) - 64) / 191.0;
@@ -108,8 +112,8 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
 }
 
 TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
-  // A sheet that is folded along a line: both sides are the same surface at the same distance, but one is seen from
-  // behind.
+  // A sheet that is folded at x = 40.5. Both sides of the fold are the same surface at the same distance, but the right
+  // side shows its back.
   Scene scene;
   Thing folded{{seen_at(10, 10, 2), seen_at(40.5, 10, 2), seen_at(40.5, 50, 2), seen_at(10, 50, 2)},
                {{0, 1, 2}, {0, 2, 3}},
@@ -141,8 +145,8 @@ TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
                     kQuad,
                     kWhite};
     scene.add(cut, 2, [](double, double) { return true; });
-    // A black pixel at another distance makes outlines in the middle; if the sample belonged to no triangle, black
-    // would show.
+    // The black pixel (49, 32) is at another distance, so pixel (48, 32) beside it gets samples. A sample that belonged
+    // to no triangle would be black.
     scene.seen[32 * kOutlinedWidth + 49] = {100, kNothing};
     scene.picture[32 * kOutlinedWidth + 49] = kBlack;
     scene.antialias();
@@ -171,8 +175,9 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
   }
 }
 
-// Two sides of a box, white and grey, meet in an upright edge: same surface, and same distance there. The second edge
-// passes a hundredth of a pixel beside the centre of a pixel, which is thus near the planes of both sides.
+// Two sides of a box, white and grey, meet in a vertical edge. They are the same surface and have the same distance at
+// the edge. The second edge passes 0.01 pixels beside the centre of a pixel, which is thus near the planes of both
+// sides.
 TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   for (const auto& [edge, white_samples] : {std::pair(40.25, 4), std::pair(40.51, 8)}) {
     Scene scene;
@@ -202,7 +207,7 @@ TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
   // A strip on the ground, 1 m below the viewer. It begins behind the viewer and covers the lower part of the picture.
   Scene scene;
   const Thing strip{{Vec3(-50, -5, -1), Vec3(50, -5, -1), Vec3(50, 3.2, -1), Vec3(-50, 3.2, -1)}, kQuad, kWhite};
-  // The strip ends at 3.2 m, 1 m below: 15 pixels below the middle.
+  // The strip ends 3.2 m in front of the viewer: 48 / 3.2 = 15 pixels below the middle, above row 16.
   for (int y = 0; y < 17; ++y) {
     const float distance = static_cast<float>(1 / ((32 - y - 0.5) / 48));
     for (int x = 0; x < kOutlinedWidth; ++x) {

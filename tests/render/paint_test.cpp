@@ -16,7 +16,7 @@ namespace weft::render {
 namespace {
 
 using Alpha = frame::Paint::Alpha;
-constexpr int kPaintedSide = 160;  // of a picture [pixels]
+constexpr int kPaintedSide = 160;  // width and height of a picture [pixels]
 
 Settings painted_settings(Quality quality = Quality::final) {
   Settings result;
@@ -26,8 +26,8 @@ Settings painted_settings(Quality quality = Quality::final) {
   return result;
 }
 
-/// A picture of coloured fields in rows from the top. Each has `size` x `size` pixels, so that llvmpipe's filter stays
-/// within one field.
+/// A texture of coloured fields in rows from the top. Each field has `size` x `size` texels. With the default size, the
+/// texture filter of llvmpipe stays within one field.
 std::shared_ptr<const frame::Texture> texture(int columns, int rows,
                                               const std::vector<std::array<std::uint8_t, 4>>& fields, int size = 32) {
   frame::Texture made{columns * size, rows * size, {}};
@@ -43,8 +43,8 @@ std::shared_ptr<const frame::Texture> texture(int columns, int rows,
 constexpr std::array<std::uint8_t, 4> kRedPixel{180, 20, 20, 255}, kGreenPixel{20, 180, 20, 255},
     kBluePixel{20, 20, 180, 255}, kWhitePixel{180, 180, 180, 255}, kHolePixel{180, 20, 20, 0};
 
-/// A square of 0.5 m, seen and lit from the front, which fills 0.687 of the picture. u points right and v up, in
-/// metres.
+/// A square of 0.5 m, seen and lit from the front, which fills 0.687 of the picture's width. u [m] points right, v [m]
+/// up.
 frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<const frame::Texture> picture,
                                     Alpha alpha) {
   frame::FrameSnapshot snapshot;
@@ -60,7 +60,8 @@ frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<cons
   return snapshot;
 }
 
-/// Expects about this colour at a place given by fractions of the picture from left and top.
+/// Whether the picture has about this colour at a place, given as fractions of the picture from the left and the top.
+/// `tolerance`: levels of 255.
 testing::AssertionResult shows(const image::Image& image, double x, double y, const std::array<std::uint8_t, 4>& color,
                                double tolerance = 6) {
   const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kPaintedSide), static_cast<int>(y * kPaintedSide));
@@ -87,11 +88,11 @@ TEST(Paint, LiesWithItsTopUpwardAndItsLeftToTheLeft) {
 TEST(Paint, RepeatsInMetresOrLiesOnceOnItsColor) {
   auto snapshot = painted_square(frame::ObjectKind::cloth, texture(1, 2, {kRedPixel, kGreenPixel}), Alpha::over_color);
   auto& paint = const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.paint;
-  paint.texture_from_uv << 4, 0, 0, 0, 4, 0;  // tiles of 0.25 m: stripes of half of that
+  paint.texture_from_uv << 4, 0, 0, 0, 4, 0;  // tiles of 0.25 m with two stripes
   const image::Image tiled = Renderer(painted_settings()).draw(snapshot);
   const auto height = [](double v) {
     return 0.5 - 0.687 * (v - 0.5);
-  };  // picture fraction of a fraction v of the square
+  };  // fraction of the picture from the top, for a fraction of the square from below
   EXPECT_TRUE(shows(tiled, 0.5, height(0.125), kGreenPixel));
   EXPECT_TRUE(shows(tiled, 0.5, height(0.375), kRedPixel));
   EXPECT_TRUE(shows(tiled, 0.5, height(0.625), kGreenPixel));
@@ -105,16 +106,17 @@ TEST(Paint, RepeatsInMetresOrLiesOnceOnItsColor) {
 TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
   for (const Quality quality : {Quality::draft, Quality::final}) {
     auto snapshot = painted_square(frame::ObjectKind::cloth, texture(2, 1, {kHolePixel, kRedPixel}), Alpha::cutout);
-    // A white wall behind it, in the transmitted light.
+    // A wall 0.5 m behind the cloth.
     add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0.5, 0), -Vec3::UnitY(), Vec3::UnitX(), 2)
         .appearance.color = Vec3(0.7, 0.7, 0.7);
     const image::Image image = Renderer(painted_settings(quality)).draw(snapshot);
     EXPECT_TRUE(shows(image, 0.67, 0.5, kRedPixel));
     EXPECT_TRUE(shows(image, 0.3, 0.5, kWhitePixel)) << "the wall, lit through the hole";
-    // Seen from the side, only the right half casts a shadow on the wall. There, a metre is 0.82 of the picture.
+    // A camera at the side sees the wall beside the cloth. Only the right half of the cloth casts a shadow.
     snapshot.cameras = {camera_at(Vec3(1.2, -1, 0), Vec3(0, 0.5, 0), 40)};
     const frame::Camera& camera = snapshot.cameras[0];
     const Vec3 forward = (camera.target - camera.position).normalized(), right = forward.cross(Vec3::UnitZ());
+    // Fraction of the picture from the left, for the place x [m] on the wall.
     const auto across = [&](double x) {
       const Vec3 to = Vec3(x, 0.5, 0) - camera.position;
       return 0.5 + 0.5 * right.dot(to) / (forward.dot(to) * std::tan(20 * 3.14159265 / 180));
@@ -156,8 +158,8 @@ TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
       green += image.pixel(x, y)[1];
     }
   }
-  // Half of the samples show the wall, in half of the light that the veil transmits, so its level is below 180. Red
-  // exceeds green by half of 160, within the accuracy of sixteen samples and thresholds.
+  // Half of the samples show the grey wall, the others the veil, whose red exceeds its green by 160 levels: 80 on
+  // average. Tolerance: there are only sixteen samples and thresholds.
   EXPECT_NEAR((red - green) / count, 80, 12);
 }
 

@@ -57,14 +57,14 @@ frame::FrameSnapshot facing_square(frame::ObjectKind kind, double half, const Ve
 }
 
 // A side of 2 h at distance d is h / (d tan(fov / 2)) of the height of the picture: 200 * 0.3 / (2 tan 20) = 82.4
-// pixels. Along each of the four sides, half a pixel may or may not count.
+// pixels. Tolerance of the number of pixels: half a pixel along each of the four sides.
 TEST(Picture, SquareCoversThePixelsThatPerspectiveGives) {
   const double side = kPictureHeight * 0.3 / (2 * std::tan(20 * std::numbers::pi / 180));
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
     Renderer renderer(settings(quality));
     const image::Image image = renderer.draw(facing_square(frame::ObjectKind::obstacle, 0.3, kRed));
     EXPECT_NEAR(count(image, reddish), side * side, 2 * side) << static_cast<int>(quality);
-    // The square is centred: test the middle of each side, one pixel inside and one outside.
+    // The square is centred. Tests the middles of its left and lower sides, 1.2 pixels inside and 1.8 pixels outside.
     const int reach = static_cast<int>(side / 2);
     EXPECT_TRUE(reddish(image.pixel(kPictureWidth / 2 - reach + 1, kPictureHeight / 2)));
     EXPECT_FALSE(reddish(image.pixel(kPictureWidth / 2 - reach - 3, kPictureHeight / 2)));
@@ -120,8 +120,8 @@ TEST(Picture, ClosedSurfacesAreSeenFromWithinAsWell) {
   }
 }
 
-// A matte surface that faces a light of intensity 1 shows its own colour. Tolerance: a rough highlight of f0 = 0.004
-// adds less than 1 level, dithering and the fitted sRGB curve less than 1.
+// A matte surface that faces a light of intensity 1 shows its own colour. Tolerance: the highlight of a rough surface
+// (f0 = 0.004) adds less than 1 level; dithering and the fitted sRGB curve add less than 1 level.
 TEST(Picture, MatteSurfaceFacingTheLightShowsItsOwnColor) {
   const Vec3 color(0.65, 0.35, 0.2);
   for (const auto kind : {frame::ObjectKind::obstacle, frame::ObjectKind::character, frame::ObjectKind::cloth}) {
@@ -173,7 +173,8 @@ TEST(Picture, ClothShowsItsTwoColorsOnItsTwoSides) {
   EXPECT_EQ(count(back, reddish), 0);
 }
 
-/// Floor seen vertically from 4 m, field of view 40 degrees: 100 pixels are 4 tan 20 = 1.456 m.
+/// A square of 0.4 m, 0.5 m above a floor, seen vertically from 4 m above the floor. Field of view 40 degrees: half the
+/// height of the picture is 4 tan 20 = 1.456 m of the floor.
 frame::FrameSnapshot box_over_floor(const frame::Light& light) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -184,6 +185,7 @@ frame::FrameSnapshot box_over_floor(const frame::Light& light) {
   return snapshot;
 }
 
+/// Green level of the place `across` [m] to the right of the middle of the floor and `along` [m] above it.
 int brightness(const image::Image& image, double across, double along) {
   const double scale = 0.5 * image.height / (4 * std::tan(20 * std::numbers::pi / 180));
   const int x = static_cast<int>(std::lround(0.5 * image.width + scale * across));
@@ -195,8 +197,8 @@ int brightness(const image::Image& image, double across, double along) {
 // undefined, so the test accepts any direction: the shadow must be on exactly one of four sides.
 TEST(Picture, ShadowLiesWhereTheLightPutsIt) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
-    // 1 cm is 2.7 pixels. In preview quality, soft light is computed at a quarter of the size, which blurs steps over
-    // two of its pixels.
+    // 1 cm of the floor is 2.7 pixels. In preview quality, light is computed at a quarter of the width and height,
+    // which blurs edges over 8 pixels of the picture.
     Settings large = settings(quality);
     large.width = 1280;
     large.height = 800;
@@ -232,17 +234,17 @@ TEST(Picture, SpotShadowGrowsWithDistance) {
   large.width = 1280;
   large.height = 800;
   const image::Image image = Renderer(large).draw(snapshot);
-  // In the view of the camera, the square covers a half side of 0.2 * 4 / 3.5 = 0.229 m of the floor.
+  // For the camera, the square hides the floor up to 0.2 * 4 / 3.5 = 0.229 m from the middle.
   EXPECT_LT(brightness(image, 0.248, 0), 60);
   EXPECT_GT(brightness(image, 0.30, 0), 120);
   EXPECT_LT(brightness(image, 0, 0.248), 60);
   EXPECT_GT(brightness(image, 0, 0.30), 120);
-  // Outside the cone of 45 degrees to each side there is no light.
+  // At the floor, the cone has a radius of 2 m. There is no light outside.
   EXPECT_LT(brightness(image, 2.05, 0), 250);
 }
 
-// A strip 2 m tall that ends 2 cm above the floor hides almost no sky from floor at least 0.5 m away (form factor of a
-// strip 2 cm wide: below 0.3 percent).
+// A vertical strip, 2 cm wide and 2 m tall, with its lower end 2 cm above the floor. From floor at least 0.5 m away, it
+// hides almost no sky (form factor below 0.3 %).
 TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
     frame::FrameSnapshot snapshot = box_over_floor(sun(-Vec3::UnitZ()));
@@ -255,17 +257,17 @@ TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
     snapshot.cameras = {camera_at(Vec3(0, -3, 5), Vec3::Zero(), 40)};
     const image::Image image = Renderer(settings(quality)).draw(snapshot);
     for (const int x_pixel : {20, 80, 120, 200, 240, 300}) {
-      // 2.4 m away, at the borders of the picture, the studio light falls off by 4 levels.
+      // Tolerance [levels]: at the borders of the picture, 2.4 m from the middle, the studio light is 4 levels darker.
       const double tolerance = std::abs(x_pixel - 160) > 100 ? 5 : 3;
       EXPECT_NEAR(image.pixel(x_pixel, 100)[1], 255 * snapshot.surfaces[0]->appearance.color[1], tolerance) << x_pixel;
     }
   }
 }
 
-// Sky 0.6, and a light of 0.4 with cosine 0.6, give the floor 0.84: the program amplifies direct light until the floor
-// shows its own colour. Three times this light is too much, but is not reduced. Tolerance 4 levels: half a metre from
-// the middle, the square hides 5 percent of the sky, and the studio is darker by 1 level, together 3 levels; dither
-// adds one.
+// The sky gives the floor 0.6 of its colour, and the sun 0.4 with cosine 0.6: together 0.84. The program increases
+// direct light until the floor shows its own colour. Three times the sun is too much, but the program does not reduce
+// it. Tolerance 4 levels: half a metre from the middle, the square hides 5 % of the sky, and the studio is 1 level
+// darker, together 3 levels; dithering adds 1 level.
 TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
   auto stage = std::make_shared<frame::Stage>();
   stage->sky_color = Vec3(1, 1, 1);
@@ -281,16 +283,16 @@ TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
     const std::uint8_t* pixel = image.pixel(185, 75);
     return Vec3(pixel[0], pixel[1], pixel[2]);
   };
-  // 0.4 * 0.6 = 0.24 is raised to 0.4 by a gain of 1.67.
+  // A gain of 1.67 increases the light of the sun from 0.4 * 0.6 = 0.24 to 0.4.
   EXPECT_LE((draw(1) - 255 * Vec3(0.7, 0.6, 0.5)).cwiseAbs().maxCoeff(), 4) << draw(1).transpose();
-  // 0.6 + 3 * 0.24 = 1.32.
+  // Sky and three times the sun: 0.6 + 3 * 0.24 = 1.32.
   const Vec3 bright = image::srgb_from_linear(Vec3(1.32 * image::linear_from_srgb(Vec3(0.7, 0.6, 0.5))));
   EXPECT_LE((draw(3) - 255 * bright).cwiseAbs().maxCoeff(), 4) << draw(3).transpose();
 }
 
 TEST(Picture, ThinSheetDoesNotShadeItself) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::cloth, 0.3, Vec3(0.6, 0.6, 0.6));
-  snapshot.lights = {sun(Vec3(1, 0.35, -0.4))};  // 17 degrees above the sheet
+  snapshot.lights = {sun(Vec3(1, 0.35, -0.4))};  // 18 degrees between light and sheet
   const image::Image image = Renderer(settings()).draw(snapshot);
   int lowest = 255, highest = 0;
   for (int y = 70; y < 130; ++y) {
@@ -299,8 +301,8 @@ TEST(Picture, ThinSheetDoesNotShadeItself) {
       highest = std::max<int>(highest, image.pixel(x, y)[1]);
     }
   }
-  // Across the sheet, the viewing angle changes the highlight by a level or two; shadow acne would change it by tens of
-  // levels.
+  // Across the sheet, the highlight changes by a level or two with the viewing angle. Shadow acne (a surface that
+  // shadows itself because of rounding) would change tens of levels.
   EXPECT_LE(highest - lowest, 6);
   EXPECT_GT(lowest, 60);
 }
@@ -310,13 +312,13 @@ TEST(Picture, LayerTwoMillimetresAboveShadesTheOneBelow) {
     frame::FrameSnapshot snapshot;
     snapshot.stage = stage_without_sky();
     add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 0.3 * scale);
-    // A pixel is 0.8 mm: the shadow is about five pixels wide.
+    // For scale 1, a pixel is 0.8 mm, and the shadow below about five pixels wide.
     snapshot.cameras = {camera_at(scale * Vec3(0, -0.15, 0.15), Vec3::Zero(), 40)};
     snapshot.lights = {sun(Vec3(0.2, 0.95, -0.3))};
     Renderer renderer(settings());
     const int open = renderer.draw(snapshot).pixel(160, 100)[1];
-    // The edge is 3 mm from the middle, toward the light. The light falls by 0.3 for each 0.95 along y, so that the
-    // shadow extends 6.3 mm further, past the middle.
+    // Sizes for scale 1: the upper layer ends at y = -3 mm, on the side of the light. Light descends by 0.3 per 0.95
+    // along y, so the shadow extends 6.3 mm further, past the middle.
     add_square(snapshot, frame::ObjectKind::cloth, scale * Vec3(0, -0.103, 0.002), Vec3::UnitZ(), Vec3::UnitX(),
                0.1 * scale);
     const int shaded = renderer.draw(snapshot).pixel(160, 100)[1];
@@ -337,7 +339,7 @@ TEST(Picture, HeatShowsTheEndsAndTheMiddleOfTheScale) {
     const image::Image image = renderer.draw(snapshot);
     const Vec3 expected = image::srgb_from_linear(image::heat_color(share));
     for (int channel = 0; channel < 3; ++channel) {
-      // Above 0.8, the tone curve bends, so the test compares only darker values.
+      // The tone curve compresses linear light above 0.8, so the test compares only darker values.
       if (image::linear_from_srgb(expected.maxCoeff()) > 0.8) continue;
       EXPECT_NEAR(image.pixel(160, 100)[channel], 255 * expected[channel], 4) << share << " " << channel;
     }
@@ -378,7 +380,7 @@ TEST(Picture, SameSnapshotGivesSameBytesWhateverWasDrawnBefore) {
   EXPECT_EQ(a.rgb, c.rgb);
 }
 
-/// FNV-1a hash of the picture; the child process of the next test prints it.
+/// FNV-1a hash of the picture of busy_scene().
 std::uint64_t picture_hash() {
   std::uint64_t hash = 1469598103934665603ull;
   for (const std::uint8_t byte : Renderer(settings()).draw(busy_scene()).rgb) hash = (hash ^ byte) * 1099511628211ull;
@@ -435,8 +437,8 @@ TEST(Picture, OddSnapshotsAreDrawn) {
   EXPECT_THROW(renderer.draw(broken), Error);
 }
 
-// The expected CPU time is that of the process minus that of a busy thread, which must not count. Idle TBB threads that
-// look for work add a few percent.
+// A second thread is busy, and its CPU time must not count. Expected: CPU time of the process minus that of this
+// thread. Tolerance: idle TBB threads that search for work add a few percent.
 TEST(Picture, TimesAreThoseOfDrawingAlone) {
   Renderer renderer(settings());
   renderer.draw(busy_scene());  // compiles the shaders

@@ -38,7 +38,7 @@ TEST(Saliency, CoverageIsTheShareOfThePictureThatShowsCloth) {
   frame::FrameSnapshot snapshot = seen_from_before();
   EXPECT_EQ(compute_saliency(snapshot).score(), 0);
   add_upright(snapshot, kCloth, {1, 0, 0.5}, 1);
-  // The cloth is 2 m by 2 m of the visible 8 m by 4 m; its edges coincide with edges of cells.
+  // The cloth is 2 m by 2 m of the visible 8 m by 4 m. Its edges coincide with edges of raster cells.
   EXPECT_NEAR(compute_saliency(snapshot).coverage, 4.0 / 32, 1e-12);
   add_upright(snapshot, kCloth, {-4, 0, 0}, 1);  // half of it is outside the picture
   EXPECT_NEAR(compute_saliency(snapshot).coverage, 6.0 / 32, 1e-12);
@@ -55,9 +55,9 @@ TEST(Saliency, OfAVeryWidePictureNeedsLittleMemory) {
 TEST(Saliency, ClothBehindSomethingOrBehindTheCameraDoesNotCount) {
   frame::FrameSnapshot snapshot = seen_from_before();
   add_upright(snapshot, kCloth, {0, 0, 0}, 1);
-  add_upright(snapshot, kObstacle, {0, -5, 0}, 0.25);  // at half the distance, so it hides 1 m by 1 m
+  add_upright(snapshot, kObstacle, {0, -5, 0}, 0.25);  // at half the distance, so it hides 1 m by 1 m of the cloth
   EXPECT_NEAR(compute_saliency(snapshot).coverage, 3.0 / 32, 1e-12);
-  add_upright(snapshot, kObstacle, {0, 5, 0}, 3);  // behind it
+  add_upright(snapshot, kObstacle, {0, 5, 0}, 3);  // behind the cloth
   EXPECT_NEAR(compute_saliency(snapshot).coverage, 3.0 / 32, 1e-12);
   add_upright(snapshot, kCloth, {0, -20, 0}, 1);
   EXPECT_NEAR(compute_saliency(snapshot).coverage, 3.0 / 32, 1e-12);
@@ -86,11 +86,11 @@ TEST(Saliency, MotionIsThatOfTheShapeNotOfTheWhole) {
   frame::FrameSnapshot after = before;
   for (Vec3& x : after.states[0].positions) x += Vec3(0.3, 0.2, -0.5);
   EXPECT_NEAR(compute_saliency(after, &before).motion, 0, 1e-12) << "it only falls";
-  // In pairs, the corners move by 5 cm in 0.1 s: half the size of the cloth per second.
+  // In 0.1 s, two opposite corners move by 5 cm along +y, the others along -y: per second, half the size of the cloth.
   after = before;
   for (const std::size_t v : {0u, 2u}) after.states[0].positions[v].y() += 0.05;
   for (const std::size_t v : {1u, 3u}) after.states[0].positions[v].y() -= 0.05;
-  EXPECT_NEAR(compute_saliency(after, &before).motion, 0.5, 5e-3);  // the bent surface is 1 % larger
+  EXPECT_NEAR(compute_saliency(after, &before).motion, 0.5, 5e-3);  // tolerance: the bent surface is 1 % larger
   EXPECT_EQ(compute_saliency(after).motion, 0) << "nothing is known of the motion in the first frame";
 }
 

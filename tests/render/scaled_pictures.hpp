@@ -5,8 +5,9 @@
 
 namespace weft::render {
 
-inline constexpr int kWidth = 160, kHeight = 100;  // at scale 1
+inline constexpr int kWidth = 160, kHeight = 100;  // size of a picture at scale 1 [pixels]
 
+/// Draws a picture of `scale` times kWidth x kHeight pixels.
 inline image::Image drawn(const frame::FrameSnapshot& snapshot, int scale, Quality quality = Quality::final) {
   Settings settings;
   settings.width = scale * kWidth;
@@ -15,7 +16,7 @@ inline image::Image drawn(const frame::FrameSnapshot& snapshot, int scale, Quali
   return Renderer(settings).draw(snapshot);
 }
 
-/// Mean green level of a block of pixels.
+/// Mean green level of a block of `size` x `size` pixels with the upper left corner (x0, y0).
 inline double mean(const image::Image& image, int x0, int y0, int size) {
   double sum = 0;
   for (int y = y0; y < y0 + size; ++y)

@@ -18,6 +18,7 @@ ShadedMesh shade_all(const frame::FrameSnapshot& snapshot, double crease_angle) 
   return make_shaded_mesh(triangles, CornerMap(triangles, positions.size()), positions, crease_angle);
 }
 
+/// Largest error of the vertex normals of a sphere with n rings, except near the poles.
 double worst_sphere_normal(int n) {
   frame::FrameSnapshot snapshot;
   const Vec3 center(0.3, -0.2, 0.5);
@@ -91,14 +92,15 @@ TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
   const std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
   EXPECT_TRUE(is_closed(tetrahedron));
   EXPECT_FALSE(is_closed(std::span(tetrahedron).first(3)));
-  // One triangle is inverted; then, one triangle is duplicated and one is missing.
+  // The first triangle is inverted.
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
+  // The last triangle occurs twice.
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed({}));
 }
 
-// A sphere of 16 columns, with its terminator in the middle of the picture. Light is evaluated on the smooth sphere;
-// otherwise, coarse faces would shadow themselves where they still face the light.
+// A sphere of 16 columns; the border between its lit (left) and dark half is in the middle of the picture. Light is
+// evaluated on the smooth sphere; otherwise, coarse faces would shadow themselves where they still face the light.
 TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -109,7 +111,7 @@ TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   settings.width = 320;
   settings.height = 320;
   const image::Image image = Renderer(settings).draw(snapshot);
-  // The radius is 142 pixels. Below a cosine of 0.06, direct light fades out.
+  // The radius is 142 pixels. Columns with a cosine below 0.08 are excluded, because direct light fades out below 0.06.
   for (int x = 70; x < 148; ++x) {
     const double cosine = (160 - (x + 0.5)) / 142;
     const Vec3 shown = image::srgb_from_linear(cosine * image::linear_from_srgb(Vec3::Constant(0.8)));

@@ -24,7 +24,7 @@ frame::FrameSnapshot wall() {
   return snapshot;
 }
 
-/// Adds a blue veil in front of the wall.
+/// Adds a blue veil at y [m], in front of the wall. `sheer`: Finish::sheer.
 void hang(frame::FrameSnapshot& snapshot, double y, double sheer) {
   frame::Surface& veil =
       add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, y, 0), -Vec3::UnitY(), Vec3::UnitX(), 0.5);
@@ -41,8 +41,9 @@ TEST(Sheer, CloseWeavesHideWhatIsBehindAndOpenOnesHalf) {
   hang(dense, -1, 0.5);
   hang(veiled, -1, 0.9);
   const image::Image red = drawn(bare, 1), blue = drawn(dense, 1), both = drawn(veiled, 1);
-  // The dense veil transmits almost no red. Chiffon transmits half of the wall's red, which its shadow darkens further.
+  // The dense veil transmits almost no red.
   EXPECT_LT(blue.pixel(80, 50)[0], 90);
+  // The open veil transmits half of the wall's red. Its shadow makes the wall darker.
   const double through = linear(both.pixel(80, 50)[0]) / linear(red.pixel(80, 50)[0]);
   EXPECT_GT(through, 0.25);
   EXPECT_LT(through, 0.55);
@@ -129,7 +130,8 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   view.view_from_world = look_along(view.eye, view.axes);
   view.clip_from_world = perspective(0.5, 0.3, 0.1) * view.view_from_world;
   const View below = mirror_view(view, floor);
-  // A point and its mirror image are in the same column, in rows counted from opposite sides, at the same distance.
+  // The view from below shows a point where the original view shows its mirror image, but upside down: in the same
+  // column, in the opposite row, at the same distance.
   for (const Vec3& p : {Vec3(0.1, 0.2, 0.5), Vec3(-0.4, 1, 0.3)}) {
     const Vec3 image(p.x(), p.y(), 0.4 - p.z());
     const Eigen::Vector4d seen = view.clip_from_world * image.homogeneous(),
@@ -140,8 +142,9 @@ TEST(Mirror, AViewFromBelowMeetsWhatTheFloorReflects) {
   }
 }
 
-// Where a ball touches the floor, in the shadow of a sheet, there are few pixels of floor over which the noise of light
-// can be averaged. Levels must hardly alternate from pixel to pixel.
+// Below a ball that almost touches the floor, in the shadow of a sheet, few pixels show floor over which the noise of
+// traced light can be averaged. If a pixel is brighter or darker than both pixels at a distance of two, one of the
+// differences must be at most 2 levels.
 TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();
@@ -165,8 +168,8 @@ TEST(Occlusion, HasNoStreaksWhereABallTouchesTheFloor) {
   EXPECT_LE(worst, 2);
 }
 
-// Along a column that crosses the edge of a shadow once, the light must only increase. Otherwise, an almost horizontal
-// edge would look dashed.
+// From top to bottom, each column leaves a shadow once, so its level must not fall by more than the noise (5 levels).
+// Otherwise, the almost horizontal edge of the shadow would look dashed.
 TEST(Shadows, EdgesThatRunNearlyLevelAreNotDashed) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();

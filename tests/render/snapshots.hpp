@@ -8,6 +8,7 @@
 
 namespace weft::render {
 
+/// Adds a matte surface (roughness 1). Cloth has no creases.
 inline frame::Surface& add_surface(frame::FrameSnapshot& snapshot, frame::ObjectKind kind, std::vector<Vec3> positions,
                                    std::vector<std::array<Index, 3>> triangles) {
   auto surface = std::make_shared<frame::Surface>();
@@ -28,7 +29,7 @@ inline frame::Surface& add_square(frame::FrameSnapshot& snapshot, frame::ObjectK
                      {{0, 1, 2}, {0, 2, 3}});
 }
 
-/// Adds a sphere of n rings and 2 n columns. At each pole, n triangles have no area.
+/// Adds a sphere of n rings and 2 n columns. At each pole, 2 n triangles have no area.
 inline frame::Surface& add_sphere(frame::FrameSnapshot& snapshot, const Vec3& center, double radius, int n) {
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> triangles;
@@ -49,6 +50,7 @@ inline frame::Surface& add_sphere(frame::FrameSnapshot& snapshot, const Vec3& ce
   return add_surface(snapshot, frame::ObjectKind::obstacle, positions, triangles);
 }
 
+/// Adds the infinite floor z = 0.
 inline frame::Surface& add_floor(frame::FrameSnapshot& snapshot) {
   frame::Surface& floor =
       add_square(snapshot, frame::ObjectKind::obstacle, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 5);
@@ -56,10 +58,12 @@ inline frame::Surface& add_floor(frame::FrameSnapshot& snapshot) {
   return floor;
 }
 
+/// `field_of_view`: vertical [degrees].
 inline frame::Camera camera_at(const Vec3& position, const Vec3& target, double field_of_view) {
   return {"test", position, target, field_of_view};
 }
 
+/// `direction`: in which the light travels.
 inline frame::Light sun(const Vec3& direction) {
   frame::Light light;
   light.direction = direction;

@@ -11,7 +11,7 @@
 namespace weft::render {
 namespace {
 
-constexpr int kSide = 160;  // of a picture [pixels]
+constexpr int kSide = 160;  // width and height of a picture [pixels]
 
 Settings settings(Quality quality = Quality::draft) {
   Settings result;
@@ -20,7 +20,7 @@ Settings settings(Quality quality = Quality::draft) {
   return result;
 }
 
-/// A red ball that fills most of the picture, in a studio.
+/// A red ball that fills most of the picture, in a studio. `gloss`: strength of the clear coat.
 frame::FrameSnapshot ball(double metal, double gloss, double roughness) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = std::make_shared<frame::Stage>();
@@ -51,7 +51,7 @@ Range green_of(const image::Image& image) {
 }
 
 TEST(Metal, ScattersNoLight) {
-  // The sun at the left is the only light, so the part that faces the camera reflects darkness.
+  // The only light is a sun at the left, so the part of the ball that faces the camera reflects the dark surroundings.
   const auto middle = [](double metal) {
     frame::FrameSnapshot snapshot = ball(metal, 0, 0.1);
     snapshot.stage = stage_without_sky();
@@ -65,7 +65,7 @@ TEST(Metal, ScattersNoLight) {
 }
 
 TEST(Metal, ReflectsInItsOwnColor) {
-  // Excess of red over green, for a ball with this colour.
+  // Ratio of red to green light of a ball with this colour.
   const auto redness = [](double metal, const Vec3& color) {
     frame::FrameSnapshot snapshot = ball(metal, 0, 0.3);
     const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.color = color;
@@ -116,7 +116,7 @@ TEST(FloorColor, IsThatOfClayInClay) {
 }
 
 TEST(Look, OfOneBodyLeavesThatOfOthers) {
-  // Two balls are side by side; only the right one is metal.
+  // Two balls are side by side. `metal`: of the right one.
   const auto pair = [](double metal) {
     frame::FrameSnapshot snapshot = ball(0, 0, 0.6);
     add_sphere(snapshot, Vec3(2, 0, 0), 0.5, 40).appearance.metal = metal;
@@ -128,7 +128,8 @@ TEST(Look, OfOneBodyLeavesThatOfOthers) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide / 2 - 10; ++x)
       for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(plain.pixel(x, y)[c] - metal.pixel(x, y)[c]));
-  EXPECT_LE(most, 2);  // metal scatters no light onto the other ball
+  // Tolerance [levels]: a metal ball scatters no light onto the other ball.
+  EXPECT_LE(most, 2);
   EXPECT_NE(plain.rgb, metal.rgb);
 }
 
@@ -149,7 +150,7 @@ frame::FrameSnapshot tiled_floor() {
     }
   floor.appearance.paint.texture = std::make_shared<const frame::Texture>(std::move(picture));
   floor.appearance.color = Vec3(0.5, 0.5, 0.5);
-  // A subject: a small object above the middle of the picture.
+  // A floor alone is no subject, so the scene has a small ball in the middle of the picture.
   add_sphere(snapshot, Vec3(0.5, 0.5, 0.02), 0.02, 6);
   snapshot.cameras = {camera_at(Vec3(0.5, 0.499, 3), Vec3(0.5, 0.5, 0), 18.4)};  // 0.97 m wide at the floor
   return snapshot;

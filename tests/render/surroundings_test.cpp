@@ -39,8 +39,8 @@ Vec3 summed(const Surroundings& around, const Vec3& n) {
   return sum;
 }
 
-// Nine spherical harmonics miss a few percent of the light of narrow boxes (Ramamoorthi and Hanrahan: 3 % on average, 9
-// % at most). The light is about 0.4; the measured error is 0.025.
+// Nine spherical harmonics miss a part of the light of narrow boxes (Ramamoorthi and Hanrahan: 3 % on average, at most
+// 9 %). The light is about 0.4; the measured error is 0.025.
 TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   for (const Look look : kLooks) {
     const Surroundings around = surroundings_of(look, Vec3(0.3, 0.2, 0.1));
@@ -53,8 +53,8 @@ TEST(Surroundings, IrradianceIsTheSumOverAllDirections) {
   }
 }
 
-// A horizontal surface receives the light of the style's sky. Tolerance: the sums use 24 rows of cells, in which the
-// ground (0.5), which a surface facing the sky does not see, adds 0.0015.
+// A horizontal surface receives the light of the style's sky, and none from the ground. Tolerance: irradiance_of() sums
+// over 24 rows of cells. By this error, a ground of 0.5 adds 0.0015.
 TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   for (const Look look : kLooks) {
     for (const double ground : {0.0, 0.5}) {
@@ -70,7 +70,8 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   }
 }
 
-/// Green levels at the left border of a picture. A sheet at this height neither covers nor shadows this border.
+/// Green levels along the left border of a picture with a sheet at this height [m]. The sheet neither covers the border
+/// nor casts a shadow on it.
 std::vector<int> left_border(double height) {
   frame::FrameSnapshot snapshot;
   add_floor(snapshot);
@@ -78,7 +79,7 @@ std::vector<int> left_border(double height) {
       Box3(Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 2));
   snapshot.cameras = {camera_at(Vec3(0, -8, 1.5), Vec3(0, 0, 0.8), 40)};
   Settings settings;
-  settings.width = 640;  // open floor is interpolated between every 16 pixels, too coarse for smaller pictures
+  settings.width = 640;  // [pixels]; open floor is interpolated over 16 pixels, too coarse for smaller pictures
   settings.height = 400;
   const image::Image image = Renderer(settings).draw(snapshot);
   std::vector<int> bytes;
@@ -88,7 +89,7 @@ std::vector<int> left_border(double height) {
 
 TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
   const std::vector<int> high = left_border(2), low = left_border(0.2);
-  // The left border is more than the width of the sheet away, so the sheet hides less than a 255th of the sky.
+  // The sheet is farther from the left border than it is wide, so it hides less than 1/255 of the sky there.
   for (std::size_t y = 0; y < high.size(); ++y) EXPECT_NEAR(high[y], low[y], 1) << y;
 }
 
@@ -110,14 +111,15 @@ TEST(Surroundings, BlurKeepsTheLightOfABox) {
     }
     return sum / (kRows * kColumns);
   };
-  // A Gaussian of sharpness s has the integral 2 pi / s (1 - exp(-2 s)); the widest has s = 2.4.
+  // The mean of a Gaussian of sharpness s over the sphere is (1 - exp(-2 s)) / (2 s). Blurring keeps that of the box,
+  // with s = 40. Tolerance: for alpha 0.9, s is 2.3 and exp(-2 s) 0.01.
   EXPECT_NEAR(whole(0.05), 2 / (2 * 40.0), 1e-3);
   EXPECT_NEAR(whole(0.9), 2 / (2 * 40.0), 1e-3);
   EXPECT_LT(around.light(Vec3(0.6, 0, 0.8), 0.9).x(), 0.5);
 }
 
-/// White floor in front of a wall 0.6 m wide and high with its lower edge at `height`. `shelf`: adds a black shelf
-/// between them. Horizontal light from the front lights only the wall.
+/// White floor in front of a wall 0.6 m wide and high with its lower edge at `height` [m]. `shelf`: replaces a white
+/// sheet on the floor by a black one 0.3 m above the floor. Horizontal light from the front lights only the wall.
 image::Image wall(double height, bool shelf) {
   frame::FrameSnapshot snapshot;
   auto stage = std::make_shared<frame::Stage>();
@@ -127,7 +129,7 @@ image::Image wall(double height, bool shelf) {
   const auto add = [&](const Vec3& center, const Vec3& normal, const Vec3& color) {
     auto& look = add_square(snapshot, frame::ObjectKind::cloth, center, normal, Vec3::UnitX(), 0.3).appearance;
     look.color = look.back_color = color;
-    // No fuzz: at this angle, protruding fibres would add a quarter of light.
+    // No fuzz: at this angle, protruding fibres would reflect 25 % more light.
     look.finish = {0, 0.5, 0, 0};
   };
   add(Vec3(0, 0, height + 0.3), -Vec3::UnitY(), Vec3(0.9, 0.3, 0.3));
@@ -151,10 +153,10 @@ Vec3 light_on_floor(const image::Image& image) {
   return sum / 40;
 }
 
-// Floor without direct light receives light that a lit wall reflects. Expected: the form factor, summed over the wall,
-// with a tolerance of a tenth for the noise of some hundred points with four rays each. Since the open floor is dark,
-// the picture is exposed with direct light at its limit of 1.8. A shelf between wall and floor leaves less than a third
-// of the light.
+// Floor without direct light receives light that a lit wall reflects. Expected: the form factor of the wall, times the
+// light on the wall, which the program increases to its limit of 1.8, because the floor is dark. Tolerance 10 %: noise
+// of some hundred points with four rays each. A shelf between wall and floor must block more than two thirds of the
+// light.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
@@ -193,7 +195,7 @@ TEST(Floor, IsSeenHoweverItsHeightIsRounded) {
 }
 
 /// Light in the middle of a picture of grey floor. A lamp behind this place shines on it toward the viewer, at 50
-/// degrees.
+/// degrees from the vertical.
 double floor_before_a_lamp(double roughness, Quality quality) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -216,7 +218,7 @@ double floor_before_a_lamp(double roughness, Quality quality) {
 }
 
 // Expected: GGX facets with Smith masking (Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based
-// BRDFs", 2014, Eq. 99). The program uses Hammon's shorter form, which gives 9 % less here.
+// BRDFs", 2014, Eq. 99). The program uses Hammon's shorter form, which gives 9 % less in this case.
 TEST(Floor, MirrorsALampWhereItShinesMoreThanOthers) {
   const double roughness = 0.55, alpha = roughness * roughness, cosine = std::cos(50 * std::numbers::pi / 180);
   const double head_on = 0.04 * (1 - 0.9 * alpha), fresnel = head_on + (1 - head_on) * std::pow(1 - cosine, 5);

@@ -1,4 +1,4 @@
-// Light that rays find: what they hit, what that surface reflects, and how the noise of few rays is removed.
+// Traced light: which surfaces rays hit, what these surfaces reflect, and how the noise of few rays is removed.
 #include "film/render/traced_light.hpp"
 
 #include <gtest/gtest.h>
@@ -105,7 +105,8 @@ TEST(RayScene, TranslucentClothStopsItsFractionOfRays) {
 }
 
 /// Fraction of a cosine lobe that a rectangle of 2a x 2b at distance c covers, seen from below its middle: four times
-/// that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
+/// that of a quarter, seen from below its corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors",
+/// B-4).
 double form_factor(double a, double b, double c) {
   const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
   return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
@@ -171,7 +172,7 @@ TEST(Lamps, ASpotHasTheConeOfItsScene) {
 }
 
 TEST(ReflectedLight, SurfacesAreShadedByOthers) {
-  // A plate is between the sun and the lit rectangle.
+  // The second mesh, a plate, is between the sun and the first.
   std::vector<Mesh> meshes{rectangle(0.5, 0.5, 1), rectangle(1, 1, -1)};
   std::vector<DrawnMesh> drawn;
   for (const Mesh& mesh : meshes) drawn.push_back(mesh.drawn());
@@ -200,8 +201,9 @@ TEST(ReflectedLight, TheFloorHidesWhatIsBelowIt) {
   EXPECT_EQ(found.light.at(0), Vector3f::Zero());
 }
 
-// The light of the surroundings contains a floor that suns light, but no light of spots. A white floor is 1 m above the
-// origin; the lamp is far below it, behind a plate in the second case.
+// The surroundings already contain a floor that is lit by suns but not by spots. Thus a spot adds its light on the
+// floor, and a shadow on the floor subtracts the light of a sun. A white floor is 1 m above the origin; the lamp is far
+// below it, in the second case behind a plate.
 TEST(ReflectedLight, FloorInTheLightOfASpotAddsThisLight) {
   frame::Light sun, spot;
   sun.direction = Vec3(0, 0, 1);
@@ -269,7 +271,7 @@ TEST(ReflectedLight, PictureThatLiesOnceHidesTheColorOnlyWhereItLies) {
   EXPECT_TRUE(color().isApprox(Vector3f(0.25f, 0, 0.75f))) << color().transpose();
 }
 
-/// Points of two planes, one in each half of the picture; the second is 0.1 m behind the first.
+/// Points of two planes that face the viewer: at 1 m in the left half of the picture, at 1.1 m in the right half.
 struct TwoPlanes {
   static constexpr int kWidth = 40, kHeight = 24;
   std::vector<Seen> seen;
@@ -303,7 +305,7 @@ TEST(JointFilter, AveragesNoiseButNotTwoSurfaces) {
   for (const int step : {1, 2}) smooth(planes, scratch, points, step);
   for (int y = 0; y < points.height(); ++y)
     for (int x = 0; x < points.width(); ++x)
-      // Noise of 0.058 rms is averaged over 25 points (over 9 in corners). Tolerance: four standard deviations.
+      // Noise of 0.058 rms is averaged over 25 points (over 9 in corners). Tolerance: four standard deviations of 9.
       EXPECT_NEAR(planes[0].row(y)[x], level(x), 4 * 0.058 / 3) << x << ", " << y;
 }
 
@@ -314,7 +316,7 @@ TEST(JointFilter, AveragesAsManyPointsOfAnObliquePlaneAsOfAFacingOne) {
     view.tan_half_width = view.tan_half_height = 0.1;
     std::vector<Seen> seen;
     for (int i = 0; i < kPoints * kPoints; ++i) {
-      // Angles between the rows of the oblique plane and the view are 4 to 15 degrees.
+      // The rays of view meet the oblique plane at angles of 4 to 15 degrees.
       const float high = 0.1f * (2 * (static_cast<float>(i / kPoints) + 0.5f) / kPoints - 1);
       seen.push_back({oblique ? 0.2f / (0.05f - 0.3f * high) : 1.0f, static_cast<float>(kFirstSurface)});
     }
@@ -352,7 +354,8 @@ TEST(JointFilter, InterpolationKeepsSurfacesApartAndFollowsSlopes) {
     for (int y = 0; y < many.height(); ++y)
       for (int x = 0; x < many.width(); ++x) {
         const bool left = x < TwoPlanes::kWidth / 2;
-        // At borders of a surface and of the picture, the nearest point of the surface counts.
+        // Tolerance: at the borders of a surface and of the picture, the value of the nearest point is kept, which is
+        // less than `divisor` pixels away.
         EXPECT_NEAR(results[static_cast<std::size_t>(y) * many.width() + x][0], value(static_cast<float>(x), left),
                     left ? 0.01 * divisor : 1e-3)
             << divisor << ": " << x << ", " << y;
@@ -383,7 +386,7 @@ double beyond_line(double d) {
   return (std::acos(d) - d * std::sqrt(1 - d * d)) / std::numbers::pi;
 }
 
-/// A plate 1 m above the floor, which ends at x = 0. The sun is overhead, and 8 degrees wide.
+/// A plate 1 m above the floor, with an edge at x = 0. The sun is overhead, and 8 degrees wide.
 frame::FrameSnapshot plate_above_floor() {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -400,7 +403,8 @@ TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
   constexpr int kPixels = 200, kRows = 20;
   const double radius = std::tan(4 * std::numbers::pi / 180);
   const double lit = image::linear_from_srgb(Vec3::Constant(0.5)).x();
-  // The whole penumbra, which is 100 pixels wide, and the lit half of one of 300 pixels.
+  // First view: the whole penumbra, 100 pixels wide. Second view: the lit half of the penumbra, which is 300 pixels
+  // wide.
   for (const auto& [field_of_view, aim] : {std::pair(12.0, 0.0), std::pair(4.0, 0.05)}) {
     const Vec3 target(aim, 0, 0), away(0, -1.2, 0.6);
     snapshot.cameras = {camera_at(target + away, target, field_of_view)};
@@ -419,14 +423,16 @@ TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
           found += image::linear_from_srgb(Vec3::Constant(image.pixel(x, y)[1] / 255.0)).x() / lit / kRows;
           expected += beyond_line(-place / radius) / kRows;
         }
-        // The filter spans at most 25 of 100 pixels; 4 rays for each of 400 pixels leave a noise below 0.01.
+        // Tolerance: the filter spans at most 25 of 100 pixels; the noise of 4 rays for each of 400 pixels is below
+        // 0.01.
         EXPECT_NEAR(found, expected, 0.03) << field_of_view << ", " << static_cast<int>(quality) << ": " << x;
       }
     }
   }
 }
 
-// The lit half of a penumbra of 300 pixels. Stripes: differences between means over 16 pixels of neighbouring columns.
+// The lit half of a penumbra 300 pixels wide. Stripes: second differences, from column to column, of means over 16
+// rows.
 TEST(TracedLight, WidePenumbraHasNoStripes) {
   frame::FrameSnapshot snapshot = plate_above_floor();
   const Vec3 target(0.05, 0, 0);
@@ -447,11 +453,12 @@ TEST(TracedLight, WidePenumbraHasNoStripes) {
         means[x] += image::linear_from_srgb(image.rgb[3 * (y * kPixels + x)] / 65535.0) / lit / kRows;
     for (int x = kFirst; x < kEnd; ++x, ++count) sum += std::pow(means[x] / 2 - (means[x - 1] + means[x + 1]) / 4, 2);
   }
-  // By a model of rays and filters, 0.0004; with a matrix of Bayer for the rotations of rays, 0.0024.
+  // Root mean square, as a fraction of full light. A model of rays and filters gives 0.0004; if the rays were rotated
+  // by a Bayer matrix, it would give 0.0024.
   EXPECT_LT(std::sqrt(sum / count), 0.001);
 }
 
-// Far from the origin, coordinates in single precision are multiples of 0.5 mm.
+// At coordinates of 5 km, numbers in single precision are multiples of 0.5 mm.
 TEST(TracedLight, SheetFarFromTheOriginDoesNotShadeItself) {
   const Vec3 normal = Vec3(0.3, -1, 0.4).normalized(), along = normal.cross(Vec3::UnitZ()).normalized();
   const auto draw = [&](const Vec3& place) {

@@ -38,7 +38,7 @@ TEST(Trims, AreDistancesFromBordersAndSeams) {
     EXPECT_NEAR(trim.from_border(), std::min({at.x(), at.y(), 1 - at.x(), 1 - at.y()}), 1e-6) << at.transpose();
     EXPECT_NEAR(trim.distance[Trim::seam], std::abs(at.x() - 0.5), 1e-6) << at.transpose();
   }
-  // A diagonal across a corner: both of its ends are on the border.
+  // From (1/8, 0) to (0, 1/8), across a corner: both ends are on the border, the middle is 1/16 away from it.
   const Trim corner = trims.middle(0 + 1, 9);
   EXPECT_NEAR(corner.from_border(), 1.0 / 16, 1e-6);
   EXPECT_EQ(trims.rims().size(), 4U * 8);
@@ -60,8 +60,8 @@ TEST(Trims, PlacesAlongABorderGoOnFromEdgeToEdge) {
   EXPECT_EQ(jumps, 0) << "as each side has places of its own";
 }
 
-// Cells are wider than high, and split by either diagonal, so the nearest border changes within triangles near a
-// corner. Between vertices, both distances are linear, so their minimum is exact everywhere.
+// Cells are three times as wide as high, so near a corner the nearest border changes within triangles. In a triangle,
+// the distance from each pair of opposite borders is linear, so the minimum of both distances is exact everywhere.
 TEST(Trims, LinesTurnSharplyAtCorners) {
   frame::Surface surface = sheet(6, false);
   for (Vec2& at : surface.uv) at.x() *= 3;
@@ -84,8 +84,8 @@ TEST(Trims, LinesTurnSharplyAtCorners) {
   }
 }
 
-// Tests edges and their middles, with several orders of triangles: at a vertex of a line, two edges of this line are
-// equally near.
+// At a vertex of a line, two edges of this line are equally near. Their order must not matter, so the triangles are
+// tested in several orders.
 TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
   frame::Surface surface = sheet(8, true);
   for (const std::size_t stride : {5U, 11U, 37U}) {
@@ -117,7 +117,7 @@ TEST(Trims, DartsAreSeams) {
   for (const Triangle& t : surface.triangles)
     surface.paint_uv.push_back({surface.uv[t[0]], surface.uv[t[1]], surface.uv[t[2]]});
   EXPECT_EQ(Trims(surface).at(4).distance[Trim::seam], kNoTrim);
-  // Cells 0 and 1 of the lower row: the right one is rotated about the upper end of their common edge.
+  // In the drawing, the right cell of the lower row moves right by 0.1, except for vertex 4 in the middle of the sheet.
   for (std::size_t t : {2, 3})
     for (std::size_t k = 0; k < 3; ++k)
       if (surface.triangles[t][k] != 4) surface.paint_uv[t][k].x() += 0.1;
@@ -206,7 +206,7 @@ int dark_lines(const image::Image& image) {
   return lines;
 }
 
-// The hems are above and below the middle, at the same distance from it.
+// One hem is above the middle, one below. Each has one row of stitches in woven cloth, and two rows in a knit.
 TEST(Trims, KnitsAreHemmedInTwoRows) {
   EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false), 1)), 2);
   EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false, Threads::knit), 1)), 4);
@@ -224,8 +224,8 @@ TEST(Trims, ThreadOfDenimHasAColorOfItsOwn) {
   EXPECT_GT(reddest(Threads::denim), reddest(Threads::twill) + 20);
 }
 
-// Light comes from one side of a seam that is oblique to the pixels. If each pair of pixels had its own slopes, the
-// valley of the seam would look like bright and dark dashes.
+// Light comes from one side of a seam that is oblique to the columns of pixels. If the slope of the seam's groove were
+// computed for each pair of pixels, the groove would look like bright and dark dashes.
 TEST(Trims, SeamsOfFewPixelsAreLinesWithoutDashes) {
   for (const double distance : {0.15, 0.25, 0.35}) {
     frame::FrameSnapshot snapshot = sewn_cloth(distance, true);

@@ -10,7 +10,8 @@
 namespace weft::render {
 namespace {
 
-/// Cloth that fills the picture, tilted back by `degrees`, seen from a distance [m].
+/// Cloth that fills the picture, tilted back by `degrees`, seen from a distance [m]. `thread_spacing` [m]; 0: no
+/// threads.
 frame::FrameSnapshot leaning_cloth(double distance, double thread_spacing, Threads threads = Threads::plain,
                                    double degrees = 50) {
   frame::FrameSnapshot snapshot;
@@ -40,7 +41,7 @@ double mean_light(const image::Image& image) {
 TEST(Weave, KeepsTheMeanColorNearAndFar) {
   const double bare = mean_light(drawn(leaning_cloth(1, 0), 1));
   for (const double spacing : {0.0001, 0.0006, 0.03})
-    // If a picture shows few threads, it contains some yarns more often than others.
+    // Tolerance [levels]: a picture that shows few threads contains some yarns more often than others.
     EXPECT_NEAR(mean_light(drawn(leaning_cloth(1, spacing), 1)), bare, 4) << spacing;
   for (const Threads threads : {Threads::twill, Threads::denim, Threads::knit, Threads::none})
     EXPECT_NEAR(mean_light(drawn(leaning_cloth(1, 0.03, threads), 1)), bare, 4) << static_cast<int>(threads);
@@ -62,7 +63,8 @@ double alike(const image::Image& image, int right, int up) {
   return product / square;
 }
 
-// The lines of a twill rise to the right; a plain weave is symmetric; stitches form columns.
+// The lines of a twill rise to the right; a plain weave is symmetric; the stitches of a knit form
+// columns one thread wide.
 TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
   const double spacing = 8 * 2 * std::tan(15 * std::numbers::pi / 180) / 100;
   const auto seen = [&](Threads threads) { return drawn(leaning_cloth(1, spacing, threads, 0), 1); };
