@@ -82,7 +82,7 @@ TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
 }
 
 TEST(AccuracyPlan, SolvesNothingLessExactlyThanTheScene) {
-  constexpr double kScene = 5e-9;  // below 1e-8, at which the program ends dividing newton_tolerance by ten
+  constexpr double kScene = 5e-9;  // below 1e-8, the lowest value at which the program divides newton_tolerance by ten
   AccuracyPlan plan;
   plan.integrators = {Integrator::bdf2};
   plan.steps = {1};
@@ -128,8 +128,8 @@ TEST(AccuracyReference, IsAsUncertainAsItsCrossChecksShow) {
   EXPECT_DOUBLE_EQ(at(uncertainty, Quantity::position), 2e-3);
 }
 
-// Made-up results for a sheet of 1 m: Euler with errors 1/n and costs n, BDF2 with errors 1/n² and costs 2 n. The scene
-// uses Euler at 10 ms.
+// Made-up results for a sheet of 1 m and steps of 40 ms / n: Euler has errors of 80 mm / n and takes n CPU s; BDF2 has
+// errors of 80 mm / n² and takes 1.5 n CPU s. The scene uses Euler with steps of 10 ms.
 Accuracy accuracy_of_one_metre() {
   Accuracy accuracy;
   accuracy.cloth_size = 1;

@@ -114,8 +114,8 @@ TEST(Trajectories, MedianIsThatOfEachNumber) {
 }
 
 TEST(Trajectories, HoldTheNumbersOfAFlatSheetAtTheEnd) {
-  // All particles are pinned, with the middle of the sheet 2 m high; one half of the sheet faces away from the camera
-  // above.
+  // All particles are pinned. The sheet is tilted by 60 degrees, so its vertical shadow is half of its area. Its middle
+  // is 2 m high.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 0.08\nintegrator = \"bdf2\"\n[contact]\nself = false\n[[cloth]]\nname = \"a\"\nsize = [0.6, "
       "0.5]\n"
@@ -181,8 +181,8 @@ TEST(AccuracyOfASheet, ObservedOrdersAreThoseOfTheMethods) {
     EXPECT_DOUBLE_EQ(control_of(coarse), 2 * control_of(fine));
     for (Quantity q : {Quantity::position, Quantity::energy}) {
       ASSERT_TRUE(measured().resolved(fine, q));
-      // Measured: within 0.1. The difference is due to the next term of the error, and to the tenth of the error that
-      // the solver tolerance allows.
+      // Tolerance of the order: 0.1 is measured. Causes are the next term of the error, and the solver, which may add a
+      // tenth of the error.
       EXPECT_NEAR(std::log2(error_of(coarse, q) / error_of(fine, q)), expected_order(fine), 0.25) << name_of(q);
     }
   }
@@ -221,8 +221,8 @@ TEST(AccuracyOfASheet, ReferenceIsTheBetterKnownOfTwo) {
             at(accuracy.second.uncertainty(), Quantity::position));
   EXPECT_GE(at(accuracy.uncertainty, Quantity::position), at(accuracy.reference.uncertainty(), Quantity::position));
   EXPECT_GT(at(accuracy.difference, Quantity::position), 0);
-  // The reference is compared with a run of twice its step. Relative to the error of the finest run, the difference is
-  // 1/16 − 1/64 = 3/64. The solver adds about as much.
+  // The uncertainty is the difference between the reference and a run with twice its step. Relative to the error of the
+  // finest run in the table, this is 1/16 − 1/64 = 3/64. The solver adds about as much.
   EXPECT_LT(at(accuracy.uncertainty, Quantity::position),
             0.1 * error_of(*accuracy.step_limited_runs(Integrator::implicit_midpoint).back(), Quantity::position));
 }
@@ -237,8 +237,7 @@ TEST(AccuracyOfASheet, FailsOnlyWithBothReferences) {
   }
 }
 
-// Like cheapest(): the row with the least CPU time whose error plus uncertainty is within the target, if this is true
-// of all finer rows too.
+// A row of the table of runs. Units as in the table's header.
 struct Row {
   std::string axis, integrator;
   double step, tolerance, newton, cpu, error, uncertainty;
@@ -268,6 +267,8 @@ std::vector<Row> rows_of(const std::string& csv, const std::string& error, const
   return rows;
 }
 
+// Like cheapest(): describes the row with the least CPU time whose error plus uncertainty is within the target [m], and
+// for which this is also true of all finer rows.
 std::string cheapest_of(const std::vector<Row>& rows, double target) {
   const auto reaches = [&](const Row& row) { return row.error + row.uncertainty <= target; };
   const auto finer = [](const Row& a, const Row& b) {
@@ -294,7 +295,7 @@ TEST(AccuracyOfASheet, ConclusionFollowsFromTheTable) {
   const std::string text = conclusion(measured());
   for (const auto& [target, words] : {std::pair{0.01, "of 0.01 m: "}, {0.001, "; 0.001 m: "}, {0.0001, "; 0.0001 m: "}})
     EXPECT_NE(text.find(words + cheapest_of(rows, target)), std::string::npos) << target << "\n" << text;
-  // The text also gives the residual of the solver at the settings of the scene.
+  // The text also gives the error of the solver at the settings of the scene.
   const auto at_scene_settings = std::find_if(rows.begin(), rows.end(), [](const Row& row) {
     return row.axis == "grid" && row.integrator == "implicit_euler" && row.step == 0.01 &&
            row.newton == scene::Solver{}.newton_tolerance;
@@ -325,12 +326,13 @@ TEST(AccuracyWhereNothingMoves, SaysSoWithoutInfinities) {
   const std::string text = accuracy_markdown("x", accuracy, "a", "b") + csv(accuracy_table(accuracy)) +
                            work_svg("x", accuracy) + settings_svg("x", accuracy);
   EXPECT_NE(text.find("Nothing moves"), std::string::npos);
-  // Rounding errors do not appear as ratios.
+  // The errors are rounding errors. The text must not divide them by zero.
   for (const bench::Run& run : accuracy.runs) EXPECT_LT(error_of(run, Quantity::energy), 1e-9);
   for (const char* word : {"inf", "nan"}) EXPECT_EQ(text.find(word), std::string::npos) << word;
 }
 
-// Made-up results: Euler with errors 1/n and costs n, midpoint with errors 1/n² and costs 2 n.
+// Made-up results for steps of 40 ms / n: Euler has errors of 19.4 mm / n and takes n CPU s; midpoint has errors of
+// 19.4 mm / n² and takes 2 n CPU s.
 Accuracy made_up_accuracy() {
   Accuracy accuracy;
   accuracy.uncertainty.fill(1e-7);

@@ -71,8 +71,9 @@ TEST(Stability, MoreEnergyThanDrivesItIsUnbounded) {
 }
 
 TEST(Stability, PeriodsAreThoseOfAPlateAndOfAChain) {
-  // A plate half a metre long that hangs from its edge has the period 2π √(2 L / 3 g). Masses of 0.2 kg/m² · (50 mm)²
-  // between springs of 1000 N/m oscillate in opposite phase with the angular frequency 2 √(k / m).
+  // A plate half a metre long that hangs from its edge has the period 2π √(2 L / 3 g). In a chain of masses
+  // m = 0.2 kg/m² · (50 mm)² and springs k = 1000 N/m, neighbours oscillate in opposite phase with the angular
+  // frequency 2 √(k / m).
   EXPECT_NEAR(swing_period(), 1.1582, 1e-4);
   EXPECT_NEAR(stiffest_period(1000), 2 * std::numbers::pi / (2 * std::sqrt(1000 / (0.2 * 0.05 * 0.05))), 1e-12);
 }

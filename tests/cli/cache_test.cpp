@@ -189,7 +189,7 @@ TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {
   EXPECT_TRUE(contains(rest.err, "it has the look from before the scene was changed")) << rest.err;
   expect_well(again);
   expect_well({"render", "c", "-o", "b.mp4"});
-  // The cache holds all frames, but only the first three have the looks of the scene.
+  // After this run, the cache holds all frames, but only the first three have the looks of the scene.
   const Arguments back{"simulate", "s.toml", "--cache", "c", "--resume"};
   part = back;
   part.insert(part.end(), {"--frames", ":3"});

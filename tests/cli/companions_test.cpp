@@ -33,7 +33,7 @@ ErrorEstimate estimate_of(const scene::Scene& scene, const CompanionOptions& opt
   return estimate_error(scene, follow(scene), options);
 }
 
-// The reference: a method of second order, a sixteenth of the step, solved to a millionth.
+// The reference: a method of second order, with a sixteenth of the scene's step (10 ms) and a Newton tolerance of 1e-6.
 const Trajectory& truth() {
   static const Trajectory kTruth = follow(swinging({"time.integrator=implicit_midpoint", "time.step=0.000625",
                                                     "solver.newton_tolerance=1e-6", "solver.linear_tolerance=1e-3"}));
@@ -76,8 +76,8 @@ TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
   const std::vector<std::string> exact{"time.integrator=bdf2", "time.step=0.0025", "solver.newton_tolerance=1e-3"};
   scene::Scene scene = swinging(exact);
   const double estimated = part_of(estimate_of(scene, {.mesh = true}), ErrorSource::mesh);
-  // The estimate is compared with the difference to a mesh of four times the cells; only a sixteenth of the error is
-  // missing in it.
+  // The estimate is compared with the difference from a mesh with cells of a quarter of the size. The error of this
+  // mesh is a sixteenth.
   scene::Scene twice = scene, four_times = scene;
   refine(twice, 2);
   refine(four_times, 4);
@@ -138,8 +138,8 @@ TEST(Companions, ReportALowerBoundIfAPartOfTheErrorIsNotKnown) {
 }
 
 // Without contact, BDF2 shows its second order: the changes by half and by twice the step have the expected ratio.
-// Three cases: the step divides a frame evenly (5 ms; with 10 ms, the change by twice the step would be just
-// inconclusive); twice the step is two and a half steps a frame (8 ms); time.tolerance chooses the steps.
+// Three cases: steps of 5 ms, which divide a frame evenly (with 10 ms, the order would just not be recognised); steps
+// of 8 ms, of which the double does not divide a frame evenly; steps that time.tolerance chooses.
 TEST(Companions, ObserveTheOrder) {
   for (const char* steps : {"time.step=0.005", "time.step=0.008", "time.tolerance=1e-5"}) {
     const scene::Scene scene = swinging({"time.integrator=bdf2", steps});
@@ -154,7 +154,7 @@ TEST(Companions, ObserveTheOrder) {
 }
 
 TEST(Companions, WarnOfStepsWhoseErrorDoesNotFall) {
-  // A stiff sheet bounces off a floor: twice the step changes the result hardly more than half of it.
+  // A stiff sheet bounces off a floor: doubling the step changes the result hardly more than halving it.
   const scene::Scene bounces = support::scene_of_text(
       "[time]\nduration = 0.48\nintegrator = \"bdf2\"\n[[cloth]]\nname = \"a\"\nsize = 0.4\nparticles = 9\n"
       "position = [0, 0, 0.2]\nrotation = [20, 10, 0]\nmaterial = { stretch = 200, shear = 60, bend = 3e-3, "

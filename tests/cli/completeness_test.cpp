@@ -201,7 +201,7 @@ TEST_F(Completeness, RenderDoesNotTakeAThumbnailWithAnotherCameraForAPictureOfTh
   expect_well(render);
 }
 
-// Frame 0 follows after untangling and preroll.
+// The picture of the start shows the scene before untangling and preroll, frame 0 the scene after them.
 TEST_F(Completeness, RenderDoesNotTakeAPictureOfTheStartForFrame0) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"thumbnail", "s.toml", "--start", "-o", "p/00000.png"});

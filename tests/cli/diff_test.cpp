@@ -106,7 +106,8 @@ TEST_F(Diff, HeatMapsOfAnEarlierCallInAFolderAreNoPicturesToCompare) {
   expect({"diff", "ref", "out", "--heatmap", "out/maps", "--overwrite"}, 2, "is a picture to test, which is read");
 }
 
-// The heat map is first by name, and its metadata name no machine class.
+// The heat map of an earlier call is the first picture of the folder by name, and its metadata name no machine class.
+// The class must be that of the picture to test.
 TEST_F(Diff, HeatMapsTellNoClassOfMachinesAndBecomeNoReferences) {
   const auto draw = [&](const char* name) {
     image::Image image(32, 24);
@@ -267,7 +268,7 @@ TEST_F(Diff, OnlyWhatAMaskShowsWhiteIsCompared) {
   write("ref/b.png", 0);
   with_spot("out/a.png", 4);
   with_spot("out/b.png", 28);
-  image::Image mask(32, 24);  // the right half
+  image::Image mask(32, 24);  // selects the right half
   for (int y = 0; y < 24; ++y) std::fill_n(mask.pixel(16, y), std::size_t{3 * 16}, std::uint8_t{200});
   std::filesystem::create_directories(folder_ / "limits");
   image::write_png(folder_ / "limits/mask.png", mask);

@@ -81,8 +81,8 @@ TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, refused ? 5 : 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  // Temporary files are only in the cache of a run that was long enough to save its state. The video contains every
-  // finished frame.
+  // A refused run leaves its working cache, if it was long enough to save its state. No other temporary file is left.
+  // The video contains every finished frame.
   std::set<std::string> left = tree();
   if (refused) std::erase_if(left, [](const std::string& name) { return name.starts_with("output/.s.weft-cache/"); });
   EXPECT_EQ(left, (std::set<std::string>{"output/s.effective.toml", "output/s.mp4", "s.toml", "stats.json"}));

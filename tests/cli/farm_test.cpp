@@ -99,8 +99,8 @@ TEST_F(Farms, SubmitOnlyTheReportIfOnlyTheReportFailed) {
   EXPECT_FALSE(contains(submit().err, "all runs are done"));
 }
 
-// A changed look leaves the simulation valid: it only writes statistics of the changed scene. The pictures still show
-// the earlier scene, so the films are not done.
+// After a change of looks, the simulation is still valid; its tasks only write the statistics anew. But the pictures
+// show the earlier scene, so the films are not done.
 TEST_F(Farms, FilmsOfAFormerSceneAreNotDone) {
   ASSERT_EQ(submit().exit_code, 0);
   ASSERT_TRUE(do_tasks().empty()) << log("simulate_0");
@@ -146,7 +146,7 @@ TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
   EXPECT_NE(status.out.find("simulate_0 ended with exit code 3"), std::string::npos) << status.out;
 }
 
-// The signal before the time limit arrives during the pause between two tries.
+// SIGUSR1, which Slurm sends before the time limit, arrives during the pause between two tries.
 TEST_F(Farms, TasksThatAreToStopBeginNoOtherTry) {
   ASSERT_EQ(submit().exit_code, 0);
   support::write_bytes(folder_ / "failing", "#!/bin/sh\necho \"$1\"\nexit 6\n");
@@ -193,8 +193,8 @@ TEST_F(Farms, AreRememberedByADryRun) {
   EXPECT_EQ(support::read_bytes(folder_ / "a b/farm/jobs"), "7\tsimulate\n");
 }
 
-// If scripts were replaced, tasks in the queue would run scripts other than those with which they were submitted. Here,
-// Slurm does not answer whether tasks wait.
+// If scripts were replaced, tasks in the queue would run scripts other than those with which they were submitted. In
+// this test, Slurm does not answer whether tasks wait.
 TEST_F(Farms, ADryRunReplacesNoScriptsOfTasksThatMayWait) {
   const std::string command = "submit s.toml -o one --memory 100 --time 10 --dry-run";
   ASSERT_EQ(with_failing_slurm(command).exit_code, 0);

@@ -22,7 +22,7 @@ struct Script {
   int simulation_fails_at = kNever, drawing_fails_at = kNever, writing_fails_at = kNever;
   bool painter_missing = false, source_missing = false, finish_fails = false;
   std::atomic<bool>* stop = nullptr;
-  int stop_at = kNever;  // requested while this frame is simulated
+  int stop_at = kNever;  // the stop is requested while this frame is simulated
 
   bool motion = false;
   std::vector<int> simulated, drawn, written;

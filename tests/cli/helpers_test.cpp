@@ -167,7 +167,7 @@ TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
   EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
 }
 
-// The reading end of descriptor 9 is closed before the first byte; `weft man | head` closes it before the last one.
+// Descriptor 9 is a pipe whose reading end is closed, as that of `weft man | head` when `head` has ended.
 TEST_F(Helpers, EndsQuietlyWhereNobodyReadsWhatItPrints) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);

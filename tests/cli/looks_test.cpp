@@ -39,7 +39,7 @@ target = [0, 0, 0]
 name = "l"
 )";
 
-/// Visits every key that is not simulated, by its path.
+/// Calls `visit` for each key below `table` that has a value: with its path, its rule, and whether it is simulated.
 void each_change(const scene::Table& table, const std::string& path, bool simulated,
                  const std::function<void(const std::string&, const scene::Rule&, bool)>& visit) {
   const auto visit_rules = [&](const std::vector<scene::Rule>& rules) {
@@ -119,7 +119,7 @@ void expect_not_simulated(const std::string& change, const scene::Scene& before,
       << change;
 }
 
-// The looks of a character determine how its surface is divided; in a longer run, the ball moves farther.
+// The looks of a character also determine how its surface is divided. In a longer run, the ball moves farther.
 TEST(Looks, OfACharacterAndOfALongerRunAreThoseOfAnUninterruptedRun) {
   const auto scene_with_model = [](const std::vector<std::string>& overrides) {
     scene::LoadResult loaded = scene::load_text(

@@ -66,7 +66,7 @@ TEST_F(NothingLost, AVideoThatCannotHaveItsNameIsKeptUnderAnother) {
   const Outcome outcome = disturbed({"run", "s.toml", "-o", "a.mp4"}, [&] { write("a.mp4"); });
   EXPECT_TRUE(contains(outcome.err, "all 21 frames are kept in a.partial.mp4")) << outcome.err;
   EXPECT_TRUE(fs::exists(folder_ / "a.partial.mp4"));
-  // The next run that completes the video removes them, but no file of others.
+  // The next run that completes the video removes its own a.partial.mp4, but no file of others.
   fs::remove(folder_ / "a.mp4");
   write("b.partial.mp4");
   for (const char* video : {"a.mp4", "b.mp4"}) expect_well({"run", "s.toml", "-o", video, "--overwrite"});
@@ -139,7 +139,7 @@ TEST_F(NothingLost, AFolderThatIsRemovedWhileARunWorksEndsTheRun) {
   }
 }
 
-// Without a check, the lock file of the cache would get the number of the closed stream.
+// Without a check, the lock file of the cache would get the descriptor of the closed stream, and thus the messages.
 TEST_F(NothingLost, MessagesForAClosedStreamAreWrittenIntoNoFile) {
   const auto simulate = [&](const std::string& cache, const std::string& more) {
     return WEXITSTATUS(std::system(fmt::format("cd '{}' && '{}' simulate s.toml --frames :2 --cache {} {}",
@@ -152,7 +152,7 @@ TEST_F(NothingLost, MessagesForAClosedStreamAreWrittenIntoNoFile) {
   EXPECT_EQ(fs::file_size(folder_ / "d/lock"), 0u) << support::read_bytes(folder_ / "d/lock");
 }
 
-/// Inputs of every kind.
+/// Inputs that are no regular files, or whose content is extreme or damaged.
 class AnyInput : public NothingLost {
  protected:
   void SetUp() override {

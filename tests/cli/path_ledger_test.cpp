@@ -76,7 +76,7 @@ TEST_F(Ledger, RefusesWhatExistsUnlessItMayBeReplaced) {
   support::expect_error(ExitCode::output_failed, "is a folder", [&] { paths_.check_absent(true); });
 }
 
-// As the name of the effective scene beside a film whose own name just fits.
+// For example, the name of a film has the maximum length of 255 bytes, and that of its effective scene is longer.
 TEST_F(Ledger, RefusesNamesThatAreTooLongBeforeTheWork) {
   EXPECT_NO_THROW(paths_.writes("--stats", folder_ / std::string(255, 'x')));
   EXPECT_NO_THROW(paths_.check_absent(false));

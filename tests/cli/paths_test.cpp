@@ -137,7 +137,7 @@ class Paths : public support::TestFolder {
       image::write_png(folder_ / name, image);
     image.rgb.assign(image.rgb.size(), 200);
     for (const char* name : {"b.png", "out/a.png"}) image::write_png(folder_ / name, image);
-    // Outputs that are hard links to inputs.
+    // Values of Command::input that are hard links to the file that the scene names.
     for (const char* name : {"s.mp4", "in.png", "i/1.png", "in/cloth_00001.ply"})
       fs::create_hard_link(folder_ / "o.obj", folder_ / name);
     Arguments simulate{"simulate", "s.toml", "--cache", "c", "--progress", "none"};

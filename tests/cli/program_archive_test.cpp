@@ -123,7 +123,7 @@ TEST_F(ProgramArchives, AreUnpackedOnceAndRunByAllTasks) {
   ASSERT_EQ(programs().size(), 1u);
   const fs::path tar = programs()[0], unpacked = fs::path(tar).replace_extension();
   EXPECT_EQ(tar.extension(), ".tar");
-  // Leftovers of two other tasks that unpacked at the same time: one was killed, the other is about to finish first.
+  // A leftover of another task, which was killed while it unpacked the program.
   fs::create_directories(unpacked.string() + ".new.node.1/weft");
 
   std::ifstream in(folder_ / "a b/farm/tasks.tsv");

@@ -178,7 +178,7 @@ TEST_F(Program, StatsHoldEveryNamedKeyForEveryFrame) {
     EXPECT_GT(frame.at("render_ms"), 0);
     render_ms += frame.at("render_ms").get<double>();
   }
-  EXPECT_NEAR(stats.at("totals").at("render"), render_ms / 1e3, 1e-9);  // rounding of a sum of five
+  EXPECT_NEAR(stats.at("totals").at("render"), render_ms / 1e3, 1e-9);  // tolerance: rounding of a sum of five
 }
 
 TEST_F(Program, LogIsOneJsonObjectALine) {

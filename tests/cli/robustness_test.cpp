@@ -82,7 +82,7 @@ TEST_F(Robustness, KilledAtAnyMomentNoFileUnderAFinalNameIsHalf) {
   }
 }
 
-/// A file system of 64 MB in memory, in a mount namespace of this process, with which it disappears.
+/// A file system of 64 MB in memory, in a mount namespace of this process. It disappears when the process ends.
 class SmallDisk : public Robustness {
  protected:
   void SetUp() override {

@@ -89,7 +89,8 @@ TEST(SceneStability, ASceneThatBreaksSaysWhatHolds) {
   stability.trials.push_back({.factors = with(VariedParameter::step, 0.125), .is_free_of_faults = true});
   stability.trials.push_back({.factors = with(VariedParameter::step, 0.5), .is_free_of_faults = true});
   stability.trials.push_back({.factors = with(VariedParameter::mass, 10), .verdict = TrialVerdict::warned});
-  stability.trials.push_back({.factors = with(VariedParameter::friction, 1.5)});  // unstable, as the scene itself
+  // The trial with more friction is not free of faults, like the scene itself.
+  stability.trials.push_back({.factors = with(VariedParameter::friction, 1.5)});
   EXPECT_EQ(margin_sentence(stability), "The scene as it is breaks (refused: why); it goes through with step at 5 ms.");
 }
 

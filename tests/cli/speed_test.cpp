@@ -19,7 +19,7 @@ namespace {
 
 using cli::contains;
 
-// Made-up costs in 4 frames, as powers of the particle count n: forces cost n, the linear solver n^1.5.
+// Made-up costs of 4 frames. With the number n of particles, forces grow as n, the linear solver as n^1.5.
 SpeedRun run_with(double size, int threads, double step) {
   SpeedRun run{.setting = {size, threads, step}};
   run.particles = std::lround(10'000 * size * size);
@@ -158,8 +158,8 @@ TEST(SpeedReport, ConclusionIsComputedFromTheRows) {
 
 TEST(SpeedReport, BoundIsWhatMovesOverTheBandwidth) {
   SpeedRun run = run_with(1, 1, 1);
-  // Counted by hand. Full blocks have 9 numbers and a column index of 4 bytes each; isotropic blocks a number and a
-  // column index; each particle has 16 padded vectors of 16 bytes.
+  // Counted by hand. A full block has 9 numbers and a column index, an isotropic block a number and a column index,
+  // of 4 bytes each. Each particle has 16 padded vectors of 16 bytes.
   EXPECT_EQ(bytes_of_linear_iteration(run), 10'000 * (9 * 40 + 4 * 8 + 16 * 16));
   // Each number is moved three times in double and once in single precision; three evaluations move three vectors each.
   EXPECT_EQ(bytes_of_newton_iteration(run), 10'000 * (9 * 9 * 28 + 4 * 28 + 9 * 24));
@@ -167,7 +167,7 @@ TEST(SpeedReport, BoundIsWhatMovesOverTheBandwidth) {
   EXPECT_EQ(run.bytes_a_particle(), 2000);
   run.bandwidth = 0;
   EXPECT_EQ(memory_bound_s(run), 0) << "not known";
-  // The bandwidth is below that of registers and above that of a disk.
+  // Limits [bytes/s]: the bandwidth of memory is above that of a disk and below that of registers.
   EXPECT_GT(read_bandwidth(1e5), 1e8);
   EXPECT_LT(read_bandwidth(1e5), 1e13);
 }
@@ -238,7 +238,7 @@ TEST_F(BenchSpeed, WritesReportTableAndPlot) {
     double sum = 0;
     for (const char* stage : {"forces", "preconditioner", "linear_solver", "collisions", "rest", "drawing"})
       sum += std::stod(record[std::string(stage) + "_wall_ms"]);
-    // The file has six significant digits.
+    // Tolerance: the file has six significant digits.
     EXPECT_NEAR(sum, std::stod(record["all_wall_ms"]), 1e-4 * sum);
     EXPECT_GT(std::stod(record["bandwidth_bytes_a_s"]), 0);
     EXPECT_GT(std::stod(record["peak_memory_bytes"]), 1e6);

@@ -26,7 +26,8 @@ class CameraRecorder : public FramePainter {
   std::vector<frame::Camera> cameras;
 };
 
-// The place is a fiftieth of the square. A close-up shows a tenth of scenes below 1 m, and 0.1 m of larger ones.
+// The place of the intersection has 1/50 of the square's width. A close-up shows a tenth of the scene's diagonal,
+// but at most 0.1 m.
 TEST(StartPicture, CloseUpsOfDollsAreAsNearAsThoseOfPeople) {
   for (const double size : {0.02, 0.5, 2.0}) {
     auto snapshot = std::make_shared<frame::FrameSnapshot>();

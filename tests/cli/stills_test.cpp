@@ -147,7 +147,7 @@ TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
 }
 
 // The sheet intersects the ball, which no run accepts: `check` and `run` print the same message, and the picture shows
-// where.
+// the place in red.
 TEST_F(Stills, OfAStartThatIsRefusedShowInRedWhatMeets) {
   const Arguments low{"--set", "cloth.cloth.position=[0,0,0.02]"};
   const auto with = [&](Arguments arguments) {

@@ -1,5 +1,5 @@
 // The program as unpacked from an archive: a loader starts it from its own folder. tests/packaging/ makes a whole
-// archive and runs it in an otherwise empty root; here, the libraries are those of the system.
+// archive and runs it in an otherwise empty root; in this test, the libraries are those of the system.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -301,8 +301,8 @@ TEST(Picture, ThinSheetDoesNotShadeItself) {
       highest = std::max<int>(highest, image.pixel(x, y)[1]);
     }
   }
-  // Across the sheet, the highlight changes by a level or two with the viewing angle. Shadow acne (a surface that
-  // shadows itself because of rounding) would change tens of levels.
+  // Tolerance [levels]: across the sheet, the highlight changes by one or two levels with the viewing angle. Shadow
+  // acne would change tens of levels.
   EXPECT_LE(highest - lowest, 6);
   EXPECT_GT(lowest, 60);
 }
@@ -317,8 +317,8 @@ TEST(Picture, LayerTwoMillimetresAboveShadesTheOneBelow) {
     snapshot.lights = {sun(Vec3(0.2, 0.95, -0.3))};
     Renderer renderer(settings());
     const int open = renderer.draw(snapshot).pixel(160, 100)[1];
-    // Sizes for scale 1: the upper layer ends at y = -3 mm, on the side of the light. Light descends by 0.3 per 0.95
-    // along y, so the shadow extends 6.3 mm further, past the middle.
+    // For scale 1: the upper layer ends at y = -3 mm, on the side of the light. Light descends by 0.3 per 0.95 along y,
+    // so the shadow extends 6.3 mm further, past the middle.
     add_square(snapshot, frame::ObjectKind::cloth, scale * Vec3(0, -0.103, 0.002), Vec3::UnitZ(), Vec3::UnitX(),
                0.1 * scale);
     const int shaded = renderer.draw(snapshot).pixel(160, 100)[1];
