@@ -312,7 +312,6 @@ TEST(Picture, LayerTwoMillimetresAboveShadesTheOneBelow) {
     frame::FrameSnapshot snapshot;
     snapshot.stage = stage_without_sky();
     add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), 0.3 * scale);
-    // For scale 1, a pixel is 0.8 mm, and the shadow below about five pixels wide.
     snapshot.cameras = {camera_at(scale * Vec3(0, -0.15, 0.15), Vec3::Zero(), 40)};
     snapshot.lights = {sun(Vec3(0.2, 0.95, -0.3))};
     Renderer renderer(settings());
