@@ -1,4 +1,4 @@
-// Poses for dressing: on skeletons made here, and on the mannequin.
+// Poses for dressing, of simple skeletons and of the mannequin.
 #include "film/character/dressing.hpp"
 
 #include <gtest/gtest.h>
@@ -139,8 +139,8 @@ TEST_F(LimbClearanceOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   std::vector<Vec3> after = before;
   clearance().move_skin(pose, after);
   EXPECT_GT(crossings(before), 100u);
-  // Measured: 546 before, 464 after. Bent fingers have many small triangles; and where only one of two limbs detects
-  // the other, only half of the clearance is made.
+  // Measured: 546 crossings before, 464 after. Many remain, because bent fingers have many small triangles, and because
+  // a limb that detects another one, but is not detected by it, moves by only half of the clearance.
   EXPECT_LT(crossings(after), 9 * crossings(before) / 10);
   // Least distance from the skin of the left forearm to that of the trunk, between vertices.
   double least = 1;
@@ -158,7 +158,7 @@ TEST_F(LimbClearanceOfAMannequin, IsMadeWhereArmsGoIntoHips) {
       if (limbs[w] == Limb::trunk) least = std::min(least, (after[v] - after[w]).norm());
   }
   EXPECT_GT(moved, 100);
-  EXPECT_GT(least, 0.6 * kClearance);  // 5.1 mm, between fingers and thighs
+  EXPECT_GT(least, 0.6 * kClearance);  // measured: 5.1 mm, between fingers and thighs
 }
 
 // A crease is a fold in the skin of one body. The clearance does not open it, and adds no crossings.
@@ -283,7 +283,7 @@ TEST_F(LimbClearanceOfAMannequin, LeavesHalfOfEachLimb) {
   EXPECT_GT(crossings(before), 100u);
   EXPECT_GT(moved.distance, 0.01);
   EXPECT_LT(moved.distance, 0.08) << "half of a trunk that is 0.3 m wide";
-  // Arms are 7 cm across and keep half of that: no vertex moves by 40 mm or more.
+  // Arms are 7 cm thick and keep half of that, so no vertex may move by 40 mm.
   const std::vector<Limb> limbs = limbs_of(body_, joints_);
   for (std::size_t v = 0; v < before.size(); ++v) {
     if (limbs[v] == Limb::left_arm) {

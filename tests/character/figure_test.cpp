@@ -32,7 +32,7 @@ TEST(Figure, HairIsOnTheHeadShoesAreOnTheFeetAndNothingIsBetween) {
       Vec3 middle = Vec3::Zero();
       for (const Index v : body.mesh.topology.triangles[t]) middle += body.mesh.positions[v] / (3 * height);
       const std::array<int, 4> ink = painted(body, t);
-      const Vec3 at = middle * 175;  // cm
+      const Vec3 at = middle * 175;  // [cm]
       if (at.z() > 172) {
         EXPECT_EQ(ink[3], 255) << at.transpose();
         ++hair;

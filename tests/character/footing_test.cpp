@@ -87,7 +87,7 @@ TEST(Footing, ReachBringsTheAnkleThereAndBendsTheKneeForward) {
     for (const Vec3& ankle : {Vec3(0.1, -0.2, -0.6), Vec3(0, 0.3, -0.5), Vec3(-0.1, 0, -0.4)}) {
       const LegTurns turns = solve_two_bone_ik(leg, ankle);
       const Vec3 thigh = turns.upper * (leg.knee - leg.hip), shin = turns.lower * (leg.ankle - leg.knee);
-      // Tolerance 1e-9, above rounding errors, because an arc cosine inverts the law of cosines.
+      // Tolerance 1e-9 m: the law of cosines is inverted by an arc cosine, which amplifies rounding errors.
       EXPECT_LT((leg.hip + thigh + shin - ankle).norm(), 1e-9);
       EXPECT_GT(thigh.cross(shin).x(), 0);
     }

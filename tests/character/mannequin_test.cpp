@@ -80,7 +80,7 @@ void expect_whole(const Character& body) {
   EXPECT_TRUE(intersections.degenerate.empty());
 }
 
-// Source of the numbers, fractions of the body height: Drillis & Contini (1966), in Winter, Fig. 4.1.
+// The expected lengths are fractions of the body height, from Drillis & Contini (1966), in Winter, Fig. 4.1.
 TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
   for (const double h : {1.5, 1.75, 1.95}) {
     MannequinBuild build;
@@ -98,7 +98,7 @@ TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
     EXPECT_NEAR(distance(Joint::left_upper_leg, Joint::left_lower_leg), 0.245, 0.001);
     EXPECT_NEAR(distance(Joint::left_lower_leg, Joint::left_foot), 0.246, 0.001);
 
-    // Tolerance: a hundredth of the height. Corners of the triangles lie on the surface, so the mesh is inside of it.
+    // Tolerances: up to a hundredth of the height. The mesh is inside of the surface, on which its vertices lie.
     const Box3 box = mesh::bounding_box(body.mesh.positions);
     EXPECT_NEAR(box.min().z() / h, 0, 0.001);
     EXPECT_NEAR(box.max().z() / h, 1, 0.003);
@@ -178,7 +178,7 @@ TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
   }
 }
 
-/// Foremost point of the middle of the face at the height `up`; both in centimetres, for a body of 1.75 m.
+/// How far the middle of the face reaches forward (-y) at the height `up`; both in centimetres, for a body of 1.75 m.
 double profile(const Character& body, double up) {
   double forward = -20;
   for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
@@ -215,7 +215,7 @@ TEST(Mannequin, HasAFaceInProfileAndEarsAndFingers) {
   const auto at = mannequin_joints({});
   const Vec3 along = (at[index_of(Joint::left_hand)] - at[index_of(Joint::left_lower_arm)]).normalized();
   const Vec3 out(-along.z(), 0, along.x());
-  const auto back = [&](double forward) {  // height of the back of the hand, 12 cm below the wrist; 1 beside the hand
+  const auto back = [&](double forward) {  // height [m] of the back of the hand, 12 cm beyond the wrist
     const Vec3 middle = at[index_of(Joint::left_hand)] + 0.12 * along - 0.01 * forward * Vec3::UnitY();
     for (double height = 0.03; height > -0.06; height -= 1e-4)
       if (surface(middle + height * out) < 0) return height;
@@ -243,7 +243,7 @@ TEST(Mannequin, VerticesLieOnTheSurface) {
     const double h = 1e-6;
     Vec3 slope;
     for (int k = 0; k < 3; ++k) slope[k] = (surface(p + h * Vec3::Unit(k)) - surface(p - h * Vec3::Unit(k))) / (2 * h);
-    // The mesher moves vertices by two Newton steps per round. 1e-5 m is ten times the measured error.
+    // Tolerance 1e-5 m: ten times the measured error. The mesher moves vertices by two Newton steps per round.
     EXPECT_LT(std::abs(surface(p)) / slope.norm(), 1e-5) << p.transpose();
   }
 }

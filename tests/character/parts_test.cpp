@@ -1,4 +1,4 @@
-// Parts of bodies: their skin is compared with the nearest bone of the mannequin, and with a skeleton made here.
+// Parts of bodies: the skin of the mannequin is compared with the nearest bone; other tests use small skeletons.
 #include "film/character/parts.hpp"
 
 #include <gtest/gtest.h>

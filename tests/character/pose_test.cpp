@@ -10,7 +10,7 @@
 namespace weft::character {
 namespace {
 
-// A few rounding errors of numbers of size 1.
+// Tolerance: a few rounding errors of numbers of size 1.
 constexpr double kRounding = 1e-14;
 
 Affine shift(double x, double y, double z) {
@@ -50,7 +50,7 @@ TEST(Skin, FollowsItsBonesAndBlendsThem) {
   const auto x = vertices(body, pose);
   EXPECT_LT((x[0] - Vec3(0.5, 0, 0)).norm(), kRounding);
   EXPECT_LT((x[2] - Vec3(1, 1, 0)).norm(), kRounding);
-  // The middle of (1, 0.1) and its image under the forearm, (0.9, 0).
+  // Expected: the middle between (1, 0.1) and (0.9, 0), to which the forearm moves it.
   EXPECT_LT((x[1] - Vec3(0.95, 0.05, 0)).norm(), kRounding);
 }
 
@@ -137,7 +137,8 @@ TEST(PoseAt, TurnsTheShortestWayWhateverTheSignOfTheKeys) {
       1e-7);
 }
 
-// glTF states translation, rotation and scale of a node; assimp adds a key for each that a clip lacks and the node has.
+// If a clip of a glTF file lacks the translation, rotation or scale of a node, assimp adds a key with the value of the
+// node. In this test, it is a negative scale, which must not mirror the node twice.
 TEST(PoseAt, MirrorsANodeOnceIfAClipHasItsNegativeScale) {
   Character body = arm();
   const Mat3 turned = Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized()).toRotationMatrix();

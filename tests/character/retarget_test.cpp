@@ -14,7 +14,7 @@
 namespace weft::character {
 namespace {
 
-// Error of about ten conversions between rotations and quaternions.
+// Tolerance: rounding errors of about ten conversions between rotations and quaternions.
 constexpr double kRoundingOfTurns = 1e-12;
 
 Quat about(const Vec3& axis, double degrees) {
@@ -144,7 +144,7 @@ TEST(Retarget, LaysAnArmInAPoseAlongTheMotionInTPose) {
 }
 
 TEST(Retarget, ScalesTheWayByTheLegsAndTurnsItToWhereTheBodyFaces) {
-  const Character motion = sticks(17, 0, 0, Quat::Identity());  // in another unit
+  const Character motion = sticks(17, 0, 0, Quat::Identity());  // in another unit of length
   const Character body = sticks(1.1, 20, 90, kOwnFrame, true);  // faces +x
   const Result result = retargeted(body, motion, waving(motion, {0, -17, 0}));
   EXPECT_LT((result.place("Hips", 0) - Vec3(0, 0, 1.1)).norm(), kRoundingOfTurns) << "starts where the body stands";
@@ -404,7 +404,7 @@ Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>&
   return clip;
 }
 
-// The body has shorter forearms. If each arm were retargeted alone, the hands would be 10 cm farther apart.
+// The forearms of the motion are longer. If each arm were retargeted alone, the hands would be 10 cm farther apart.
 TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
   const Character body = make_mannequin({.edge_length = 0.1});
   Character motion = body;

@@ -71,7 +71,7 @@ TEST(Touching, ComesAndGoesWithoutAJump) {
     const double gap = 1e-3 * k;
     const auto pull =
         displace_hands(standing({gap / 2, -0.4, 1.2}, {-gap / 2, -0.4, 1.2}), ours, all(), kLarger, {0, 0});
-    EXPECT_LT((pull[0] - last).norm(), 5e-3) << gap;  // grows by at most 2 mm for each millimetre
+    EXPECT_LT((pull[0] - last).norm(), 5e-3) << gap;  // no jump: it grows by at most 2 mm per millimetre of the gap
     last = pull[0];
   }
   EXPECT_LT((last - Vec3(-0.2, 0, 0)).norm(), kRoundingOfPlaces);

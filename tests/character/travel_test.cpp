@@ -50,10 +50,10 @@ TEST_F(Travel, OfNoneLeavesTheBodyWhereItIs) {
   const Clip clip = remove_travel(rig_, walk_, kUp);
   ASSERT_GT((hips(walk_, walk_.duration) - hips(walk_, 0)).norm(), 0.9 * kWay);
   EXPECT_LT((hips(clip, walk_.duration) - hips(clip, 0)).norm(),
-            1e-5);  // the last key is 2 µs before the end of the clip
+            1e-5);  // tolerance [m]: the last key is 2 µs before the end of the clip
   for (const double t : key_times(walk_)) {
     const Vec3 from_start = hips(clip, t) - hips(clip, 0);
-    EXPECT_LT(std::hypot(from_start.x(), from_start.y()), 0.1) << t;  // sways by 5 cm, reaches its speed within a step
+    EXPECT_LT(std::hypot(from_start.x(), from_start.y()), 0.1) << t;  // [m]: the body sways by 5 cm
     EXPECT_NEAR(hips(clip, t).z(), hips(walk_, t).z(), 1e-9) << "heights stay";
   }
 }
@@ -63,7 +63,7 @@ TEST_F(Travel, AtTheSpeedOfTheFeetMakesThemStand) {
   ASSERT_GT(slip(still), 0.5);
   const double mean = kWay / walk_.duration;
   const TravelResult traveled = set_travel_speed(rig_, still, mean, kUp);
-  // The ball of the foot rolls before and after it stands: measured 6 %.
+  // Tolerance 10 %: measured 6 %, because the ball of the foot rolls before and after it stands.
   EXPECT_NEAR(traveled.feet, mean, 0.1 * mean);
   EXPECT_NEAR((hips(traveled.clip, walk_.duration) - hips(traveled.clip, 0)).norm(), kWay, 0.02 * kWay);
   EXPECT_LT(slip(traveled.clip), 0.05);
@@ -128,7 +128,7 @@ TEST_F(Travel, GoesAheadWhereNoFeetTell) {
   EXPECT_EQ(traveled.feet, 0);
   const Vec3 displacement = hips(traveled.clip, standing_clip.duration) - hips(traveled.clip, 0);
   EXPECT_LT((displacement - 0.5 * standing_clip.duration * -Vec3::UnitY()).norm(),
-            1e-3);  // not exact, because hips and shoulders are level only within 0.01°
+            1e-3);  // tolerance [m]: hips and shoulders are level only within 0.01°
 }
 
 }  // namespace
