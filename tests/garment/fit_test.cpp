@@ -14,7 +14,8 @@
 namespace weft::garment {
 namespace {
 
-// Radii of a rotationally symmetric body of 1.7 m [m], at the heights of knees, hips, waist, chest, shoulders and neck.
+// Radius [m] at the height z [m] of a rotationally symmetric body of 1.7 m. The table begins at the feet, and has
+// knees, hips, waist, chest, shoulders, neck and the top of the head.
 double radius(double z) {
   const std::vector<std::pair<double, double>> places{{0, 0.08},    {0.5, 0.09}, {0.9, 0.16}, {1.1, 0.11}, {1.28, 0.15},
                                                       {1.34, 0.15}, {1.42, 0.2}, {1.5, 0.06}, {1.7, 0.06}};
@@ -46,9 +47,9 @@ Wearer round_wearer() {
   return wearer;
 }
 
-// The shoulders are wider than the chest, and must not count as chest. Tolerances: sections are 10 mm apart, so the
-// girth is off by up to 19 mm where the radius has a slope of 0.3; polygons of 96 corners are shorter than circles by
-// 0.02 %.
+// The shoulders are wider than the chest, and must not count as chest. Tolerances [m]: sections are 10 mm apart, so
+// where the radius has a slope of 0.3, the girth has an error of up to 19 mm; a polygon of 96 corners is shorter than
+// its circle by 0.02 %.
 TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   const Measures measures = measure(round_wearer());
   EXPECT_NEAR(*measures.hip, 2 * std::numbers::pi * 0.16, 0.02);
@@ -57,8 +58,8 @@ TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
   EXPECT_NEAR(*measures.height, 1.7, 0.011);
 }
 
-// Sections of a body a quarter or four times as tall are a quarter or four times as far apart: the results differ by
-// the factor alone, which is a power of two. The pattern is for a body of 1.75 m.
+// The distance of sections is a fraction of the body's height. If a body is scaled by a power of two, each measure is
+// thus scaled by exactly this factor. The pattern is for a body of 1.75 m.
 TEST(Fit, MeasuresDollsAndGiantsAsPreciselyAsPeople) {
   const Measures own = measure(round_wearer());
   for (const double factor : {0.25, 4.0}) {
@@ -110,7 +111,7 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
                         [&] { fit(pattern, wearer, "cloth.c"); });
 }
 
-// A wearer whose arms are tubes, 0.3 m around: as thick as the arms of a figure with a short trunk.
+// Girth [m] of the arms, which are tubes. A figure with a short trunk has such thick arms.
 constexpr double kThickArm = 0.3;
 Wearer wearer_with_thick_arms() {
   constexpr double kLength = 0.6;
@@ -144,7 +145,7 @@ TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   pattern.measures = {*measure(wearer).chest, {}, {}, *measure(wearer).arm / 1.5, 1.7};
   const Fit thick = fit(pattern, wearer, "cloth.c");
   EXPECT_LT((thick.factors - Vec2(1.5, 1.5)).norm(), 1e-12);
-  EXPECT_EQ(thick.below_armholes, 1);  // it has no armholes
+  EXPECT_EQ(thick.below_armholes, 1);  // the pattern has no armholes
   EXPECT_NEAR(kNeckHeightRatio * 1.7 * thick.factors.y() + thick.rise, wearer.neck, 1e-12);
   pattern.measures.arm = 1;
   EXPECT_NEAR(fit(pattern, wearer, "cloth.c").factors.x(), 1, 1e-12);
@@ -235,11 +236,11 @@ TEST(Fit, ShortensPanelsWithoutAnArmholeByTheHeightAtWhichTheyStart) {
   shorten_below_armholes(pattern, 0.5);
   EXPECT_NEAR(length_of_edge(pattern, "front.right"), 0.1, 1e-12);
   EXPECT_NEAR(length_of_edge(pattern, "front.armhole"), 0.3, 1e-12);
-  EXPECT_NEAR(length_of_edge(pattern, "front.left"), 0.4, 1e-12);  // of it, 0.2 m are below the armhole
+  EXPECT_NEAR(length_of_edge(pattern, "front.left"), 0.4, 1e-12);  // 0.2 m below the armhole become 0.1 m
   EXPECT_NEAR(length_of_edge(pattern, "sleeve.left"), 0.25, 1e-12);
   EXPECT_NEAR(length_of_edge(pattern, "yoke.left"), 0.5, 1e-12);
   EXPECT_NEAR(length_of_edge(pattern, "collar.left"), 0.5, 1e-12);
-  // It starts from 0.4 to 0.9 m, then from 0.8 to 1.05 m.
+  // The skirt starts at heights from 0.4 to 0.9 m as drawn, and from 0.8 to 1.05 m when shortened.
   EXPECT_NEAR(length_of_edge(pattern, "skirt.left"), 0.25, 1e-12);
   const auto [p, low] = pattern.find("skirt.low");
   EXPECT_NEAR(pattern.panels[p].edges[low].curves[0].start().y(), -0.15, 1e-12);
@@ -317,10 +318,10 @@ TEST(Fit, HangsWhatEndsAtTheWaistFromItWhateverMeasuresAreStated) {
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(1.2, 1.1 / (0.63 * 1.72))).norm(), 0.02);
   EXPECT_EQ(fit(pattern, wearer, "cloth.c").rise, 0);
   EXPECT_NE(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
-  panel.scale = Vec2(1, 1.6);  // now its top starts at the shoulders
+  panel.scale = Vec2(1, 1.6);  // the top of the panel starts at the shoulders
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
   panel.scale = Vec2(1, 1);
-  panel.position = Vec2(0, 0.84);  // now again
+  panel.position = Vec2(0, 0.84);  // its top starts at the shoulders again
   EXPECT_LT((fit(pattern, wearer, "cloth.c").factors - Vec2(2, 1.46 / (0.83 * 1.72))).norm(), 1e-12);
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(2, 1), wearer), "");
 }
@@ -371,7 +372,7 @@ TEST(Fit, TellsOfHipsThatHoldNothingUp) {
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1, 1), wearer), "");
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), wearer).substr(0, 50),
             "its waist is 0.96 m around and the hips of its wea");
-  // Nothing slides down a wearer that lies. It has its neck below its hip joints here.
+  // Nothing slides down a wearer that lies: one whose neck is below its hip joints.
   Wearer lying = wearer;
   lying.neck = 0.85;
   EXPECT_EQ(warn_if_hips_do_not_hold(pattern, Vec2(1.1, 2), lying), "");

@@ -44,7 +44,7 @@ TEST(PanelMeshes, FillTheirOutlineExactly) {
       for (double grain : {0.0, 0.4}) {
         const std::vector<Vec2> outline = cut_sides(corners, spacing);
         const FlatMesh mesh = mesh_panel(outline, {-std::sin(grain), std::cos(grain)}, spacing);
-        // Sums of some thousand areas, rounded to 1e-16 each.
+        // Tolerance: rounding of a sum of some thousand areas, 1e-16 m² each.
         EXPECT_NEAR(area_of(mesh), polygon_area(corners), 1e-12);
         const auto report = mesh::inspect(mesh.triangles, mesh.points.size());
         EXPECT_TRUE(report.manifold());
@@ -55,7 +55,7 @@ TEST(PanelMeshes, FillTheirOutlineExactly) {
         const auto edges = mesh::collect_edges(mesh.triangles).edges.size();
         EXPECT_EQ(
             static_cast<long>(mesh.points.size()) - static_cast<long>(edges) + static_cast<long>(mesh.triangles.size()),
-            1);  // a disc
+            1);  // Euler characteristic of a disc
       }
 }
 
@@ -69,7 +69,8 @@ TEST(PanelMeshes, AreDelaunay) {
     Eigen::Matrix2d sides;
     sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
     const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());
-    // The mesher shifts rows by less than 1e-4 spacings in total, to make the choice of diagonals unique.
+    // Tolerance of the radius: the mesher shifts rows by less than 1e-4 spacings, to make the choice of diagonals
+    // unique.
     const double radius = (a - centre).norm() - 1e-4 * 0.05;
     for (const Vec2& p : mesh.points) EXPECT_GT((p - centre).norm(), radius - 1e-9);
   }

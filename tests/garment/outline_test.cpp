@@ -42,10 +42,11 @@ TEST(Outlines, ArcsAreCircles) {
   EXPECT_NEAR(area_of("M -0.5 0 A 0.5 0.5 0 1 0 0.5 0 A 0.5 0.5 0 1 0 -0.5 0 Z"), -disc, 3e-4 * disc);
   // The larger arc, three quarters of the circle, then lines to the centre.
   EXPECT_NEAR(area_of("M 0.5 0 A 0.5 0.5 0 1 0 0 0.5 L 0 0 Z"), -0.75 * disc, 3e-4 * disc);
-  // An ellipse rotated by 30 degrees. If radii are too small for the distance of the end points, they are scaled up.
+  // An ellipse rotated by 30 degrees.
   EXPECT_NEAR(std::abs(area_of("M 0.433012701892 0.25 A 0.5 0.2 30 0 1 -0.433012701892 -0.25 A 0.5 0.2 30 0 1 "
                                "0.433012701892 0.25 Z")),
               std::numbers::pi * 0.1, 3e-4);
+  // Radii that are too small for the distance of the end points are scaled up.
   EXPECT_NEAR(std::abs(area_of("M -0.5 0 A 0.1 0.1 0 0 1 0.5 0 A 0.1 0.1 0 0 1 -0.5 0 Z")), disc, 3e-4 * disc);
 }
 
@@ -108,7 +109,7 @@ TEST(Outlines, EqualSharesOfTheLengthAreEquallyFarApart) {
   const ParsedPath quarter = parse_path("M1 0A1 1 0 0 1 0 1L0 0Z");
   ASSERT_EQ(quarter.mistake, "");
   const Arclength along({quarter.outline[0]});
-  // The cubic's radius error of 2.7e-4 affects the length in the same ratio.
+  // Tolerance: the relative error of the cubic's radius, 2.7e-4, is also that of its length.
   EXPECT_NEAR(along.length(), 0.5 * std::numbers::pi, 3e-4);
   for (int k = 0; k <= 10; ++k) {
     const double angle = 0.05 * std::numbers::pi * k;

@@ -65,9 +65,9 @@ TEST(Garments, KeepAreaAndMeasuresOfTheirPanels) {
     EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
     area += mesh::rest_area(garment.sheet, t);
   }
-  // Two quarter rings. The middle of a chord of c = 10 mm is up to c² / (8 R) inside its arc. The ring loses this width
-  // at the hem, and gains it at the waist: less than 1e-4 of its width of 0.45 m. The curves deviate from their arcs by
-  // at most 2.7e-4 of a radius.
+  // Expected: two quarter rings, 0.45 m wide. Tolerance: the middle of a chord of c = 10 mm is up to c² / (8 R) inside
+  // its arc, so the ring is narrower at the hem and wider at the waist, by less than 1e-4. The curves deviate from
+  // their arcs by at most 2.7e-4 of a radius.
   const double inner = 0.72 / std::numbers::pi, outer = inner + 0.45;
   EXPECT_NEAR(area, 0.5 * std::numbers::pi * (outer * outer - inner * inner), 3e-4 * area);
   ASSERT_EQ(garment.seams.size(), 2U);
@@ -167,7 +167,7 @@ TEST_F(SewingText, TheGrainTurnsTheWarp) {
 TEST_F(SewingText, BandsFollowTheirEdges) {
   const Garment garment =
       sew_text(kDart + kDartSeams + "[[elastic]]\nedge = 'front.top'\nratio = 0.8\n[[hem]]\nedge = 'back.low'\n");
-  ASSERT_EQ(garment.sheet.bands.size(), 5U);  // the allowances of three seams, and the bands above
+  ASSERT_EQ(garment.sheet.bands.size(), 5U);  // the allowances of three seams, the elastic and the hem
   EXPECT_NEAR(garment.sheet.bands[2].lengths[0], 0.34 / 17, 1e-12);
   EXPECT_EQ(garment.sheet.bands[2].allowance, 0.02);
   const mesh::Band& band = garment.sheet.bands[3];

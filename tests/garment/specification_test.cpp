@@ -188,8 +188,8 @@ std::string two_panels(double low, double high, double length, double from) {
            [ { "panel": "front", "edge": 3 }, { "panel": "back", "edge": 0 } ] ] } })";
 }
 
-// Templates of the predecessor are narrower than the body that they are for: 0.98 m around the chest, 0.81 around the
-// waist and 1.04 around the hips, the widest section of which is at 0.49 of 1.66 m.
+// Templates of the predecessor are narrower than the body that they are for: 0.98 m around the chest, 0.81 m around
+// the waist and 1.04 m around the hips, whose widest section is at a height of 0.49 * 1.66 m.
 TEST_F(Specification, OfTheForerunnerHasTheGirthsOfPanelsThatAreNarrowerThanItsBody) {
   const auto measures_of = [&](double low, double high, double length, double from) {
     const ReadPattern read = this->read(two_panels(low, high, length, from));
@@ -261,11 +261,11 @@ TEST_F(Specification, IsSewnAroundTheWearer) {
     for (const Vec3& x : made.model.cloths[0].start) box.extend(x);
     return box;
   };
-  // The hem is 40 cm above the floor, and curved by 3 cm; sewing moves it a little more.
+  // The hem is 40 cm above the floor. Tolerance: it is curved by 3 cm, and sewing moves it a little more.
   const Box3 box = spans();
   EXPECT_NEAR(box.min().z(), 0.40, 0.05);
   EXPECT_NEAR(box.max().z(), 0.90, 0.05);
-  EXPECT_LT(box.min().y(), -0.1);  // in front and behind
+  EXPECT_LT(box.min().y(), -0.1);  // the skirt is in front of the body and behind it
   EXPECT_GT(box.max().y(), 0.1);
   scene.cloths[0].scale = 1.2;
   EXPECT_NEAR(spans().max().z(), 1.2 * box.max().z(), 0.03);
