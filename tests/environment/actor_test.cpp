@@ -92,8 +92,8 @@ TEST_F(Acting, GrowsFromItsBonesWhileItIsDressedAndThenMoves) {
   const Vec3 low = at(whole, -1)[kLow], on_bone(0, 0, 0);
   EXPECT_LT((at(growing, -1)[kLow] - (on_bone + 0.1 * (low - on_bone))).norm(), kSingle);
   EXPECT_LT((at(growing, -0.75)[kLow] - (on_bone + 0.55 * (low - on_bone))).norm(), 1e-4) << "half, between keys";
-  // The two motions have keys at different times, so their splines differ near the start of the motion, which has 2
-  // m/s.
+  // Tolerance 0.02 m: the two motions have keys at different times, so their splines differ near the start of the
+  // motion, whose speed is 2 m/s.
   for (const double t : {-0.5, -0.2, 0.5, 1.7})
     EXPECT_LT((at(growing, t)[kLow] - at(whole, t)[kLow]).norm(), 0.02) << t;
   for (const double t : {-0.5, -0.3}) EXPECT_LT((at(growing, t)[kLow] - low).norm(), 1e-3) << t;
@@ -115,7 +115,7 @@ TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
   support::write_bytes(folder_ / "rod.x", [] {
     std::string text = support::rod_file();
     const std::string level = "10;3;1.0,1.0,0.0";
-    return text.replace(text.find(level), level.size(), "10;3;0.0,1.5,0.0");  // up
+    return text.replace(text.find(level), level.size(), "10;3;0.0,1.5,0.0");  // moves up by 0.5 m
   }());
   ASSERT_EQ(make().warnings.size(), 1u);
   EXPECT_NE(make().warnings[0].find("clip \"Wave\" does not close: its end and its beginning are 0.5 m apart"),
@@ -125,7 +125,7 @@ TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
 TEST_F(Acting, StoresAsManyKeysAsThePlanSays) {
   character_.source = file_;
   character_.keys_per_second = 30;
-  // There are keys at 0, 1/30, ..., 2 s, and one more.
+  // There are keys at 0, 1/30, ..., 2 s, and one after the end of the motion.
   const KeyFrameCount count = count_key_frames(scene_, (make(), character_));
   EXPECT_EQ(count.keys, 62u);
   EXPECT_EQ(count.vertices, 5u);
@@ -300,7 +300,7 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
   const Actor actor = make();
   EXPECT_TRUE(actor.warnings.empty());
   EXPECT_LT((at(actor, 0)[4] - Vec3(0.1, 0, 2)).norm(), kSingle);
-  // 3 m forward, which is -y with z up; the rod above its middle bends by 90° about the forward axis.
+  // Expected: 3 m forward, which is -y with z up; above its middle, the rod is bent by 90° about the forward axis.
   const auto x = at(actor, 1);
   EXPECT_LT((x[1] - Vec3(0.1, -3, 0)).norm(), kSingle);
   EXPECT_LT((x[4] - Vec3(-1, -3, 1.1)).norm(), kSingle);
@@ -452,7 +452,7 @@ TEST_F(Acting, DressingBeginsWithThePreroll) {
   const Actor shown = make();
   for (const double t : {0.2, 0.5, 0.9, 1.3})
     EXPECT_LT((at(shown, t)[kHigh] - at(late, t + 0.48)[kHigh]).norm(), 1e-3)
-        << t;  // their keys are at different times
+        << t;  // tolerance: the keys are at different times
   EXPECT_EQ(at(shown, -0.48), at(shown, 0.2));
   EXPECT_GT((at(shown, 1.3)[kHigh] - at(shown, 0)[kHigh]).norm(), 0.5);
 }

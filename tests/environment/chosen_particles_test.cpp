@@ -136,7 +136,7 @@ TEST_F(ChosenParticles, OfMeshesAreTakenByUvsColoursAndGroups) {
   EXPECT_EQ(shares_of(cloth.weights[0].particles), red);
 }
 
-// In the picture, front and back would overlap: one picture over both would also select particles of the back.
+// Front and back cover the same places, so a picture over both panels would also select particles of the back.
 TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
   std::string pattern;
   for (const char* side : {"front", "back"})

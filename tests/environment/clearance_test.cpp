@@ -1,4 +1,4 @@
-// Where skin must make clearance for cloth.
+// Nearness of skin to cloth, which decides where a body needs clearance.
 #include "film/environment/clearance.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ TEST(Clearance, NearnessIsThatToTheSurfaceNotToItsParticles) {
   const std::vector<float> near_cloth = nearness_of_cloth(skin, {cloth, triangles, 0});
   EXPECT_EQ(near_cloth[0], 1);
   EXPECT_EQ(near_cloth[1], 1) << "up to half of 5 cm";
-  // Samples are 2 cm apart: a distance of 40 mm may be found as up to 42 mm.
+  // Tolerance: samples of the cloth are 2 cm apart, so a distance of 40 mm may be found as up to 42 mm.
   EXPECT_NEAR(near_cloth[2], 0.4, 0.08);
   EXPECT_EQ(near_cloth[3], 0) << "6 cm";
   EXPECT_EQ(near_cloth[4], 0);

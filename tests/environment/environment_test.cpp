@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A few rounding errors of coordinates of some metres.
+// Tolerance [m]: a few rounding errors of coordinates of some metres.
 constexpr double kRounding = 1e-13;
 
 scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpAxis::z) {
@@ -226,8 +226,8 @@ TEST(Obstacle, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
       const Vec3 arm = now[i] - pose.position;
       const Vec3 velocity = (after[i] - before[i]) / (2 * h);
       const Vec3 acceleration = (after[i] - 2 * now[i] + before[i]) / (h * h);
-      // Errors of the differences: h²/6 and h²/12 times derivatives below 500. The second difference adds rounding of
-      // 4e-16 / h².
+      // Tolerance: errors of the differences are h²/6 and h²/12 times derivatives below 500. The second difference adds
+      // rounding of 4e-16 / h².
       EXPECT_LT((pose.velocity_at(arm) - velocity).norm(), 1e-6);
       EXPECT_LT((pose.acceleration_at(arm) - acceleration).norm(), 1e-6);
     }

@@ -13,7 +13,7 @@
 namespace weft::environment {
 namespace {
 
-constexpr double kPlaceRounding = 1e-13;  // a few rounding errors of coordinates of some metres
+constexpr double kPlaceRounding = 1e-13;  // tolerance [m]: a few rounding errors of some metres
 
 /// An arm rises and rotates about z by a quarter turn in a second. A hand slides along the arm, and holds a ring.
 const char* const kRobot = R"(

@@ -50,7 +50,7 @@ TEST_F(Stance, BodyAtRestChangesToAClipOfOnePose) {
 TEST_F(Stance, WithRaisedArmsHasThePoseOfTheRoundInWhichTheClipStarts) {
   std::string text = support::rod_file();
   const std::string along = "10;3;1.0,1.0,0.0";
-  text.replace(text.find(along), along.size(), "10;3;0.0,2.0,0.0");  // up
+  text.replace(text.find(along), along.size(), "10;3;0.0,2.0,0.0");  // moves up by 1 m
   support::write_bytes(folder_ / "rod.x", text);
   scene::Scene scene;
   scene.time.duration = 2;

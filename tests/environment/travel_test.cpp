@@ -24,7 +24,8 @@ std::string one_leg() {
          "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + zeros + zeros;
 }
 
-// The ratio of leg lengths is undefined here. It must not become 0, since the speed of the clip would be infinite.
+// Without legs, the ratio of leg lengths is undefined. It must not become 0, since the speed of the clip would be
+// infinite.
 TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
   support::write_bytes(folder_ / "rod.x", support::rod_file());
   support::write_bytes(folder_ / "stand.bvh", one_leg());

@@ -75,7 +75,7 @@ TEST(WearerMissing, IsSaidWithTheReasonForIt) {
 }
 
 // The patterns of scenes/patterns are drawn for a body like the mannequin: 1.75 m tall, 0.88 m around the chest and
-// 0.68 m around the waist. Sections are measured every 10 mm, and the measures of the mannequin are stated to 1 cm.
+// 0.68 m around the waist. Tolerances: sections are 10 mm apart, and the measures of the mannequin are stated to 1 cm.
 TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
   const scene::Scene scene = support::scene_of_text(
       "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.03\nheight = 1.75\nstance = 'rest'\nblend "
@@ -92,7 +92,7 @@ TEST(MannequinAsWearer, NeedsHardlyAnyChangeOfThePatternsThatAreDrawnForIt) {
 }
 
 // The top of the T-shirt starts 6 cm above the neck, that of the skirt 4 cm above the waist. A scale of 1.2 makes these
-// distances longer by a fifth; it lifted both tops by more than 20 cm.
+// distances longer by a fifth. If it were about the floor, it would lift both tops by more than 20 cm.
 TEST(MannequinAsWearer, HasAScaledGarmentAtItsNeckOrWaistIfItIsFitted) {
   const scene::Scene scene = support::scene_of_text(
       "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n");
