@@ -1,4 +1,4 @@
-// Scenes as assimp returns them. They are made by hand, and each test damages one part.
+// Scenes as assimp returns them, made by hand. Most tests change or damage one part.
 #include "film/assets/character_reader.hpp"
 
 #include <assimp/GltfMaterial.h>
@@ -419,7 +419,7 @@ TEST_F(Scenes, TextureCoordinatesAreTransformedAsGltfStates) {
     ASSERT_EQ(body.coloring.uv.size(), 4U);
     for (std::size_t t = 0; t < 4; ++t)
       for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3& x = body.mesh.positions[body.mesh.topology.triangles[t][k]];  // y of the file is z here
+        const Vec3& x = body.mesh.positions[body.mesh.topology.triangles[t][k]];  // y of the file becomes z
         const double u = 0.25 * x.x(), v = 0.5 * x.z();
         const Vec2 placed = turned ? Vec2(0.5 + v, 1 - (0.25 - u)) : Vec2(0.5 + u, 1 - (0.25 + v));
         EXPECT_LT((body.coloring.uv[t][k] - placed).norm(), 1e-6);

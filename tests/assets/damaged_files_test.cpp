@@ -72,7 +72,7 @@ TEST_P(DamagedFiles, WithBytesChangedAreLoadedOrRefused) {
     for (std::uint32_t k = 0; k < changes; ++k) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
     refused += try_to_load(bytes) ? 0 : 1;
   }
-  EXPECT_GT(refused, 0);  // if no file was refused, no damage was detected
+  EXPECT_GT(refused, 0);  // otherwise, no damage was detected
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,

@@ -1,4 +1,4 @@
-// Repair of surfaces that are not valid sheets, made here.
+// Repair of small surfaces that are not valid sheets.
 #include "film/assets/mending.hpp"
 
 #include <gtest/gtest.h>

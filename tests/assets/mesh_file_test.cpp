@@ -301,13 +301,13 @@ TEST_F(MeshFiles, OfGltfWithIntegersForFloatsAreConverted) {
   EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
   for (std::size_t t = 0; t < 4; ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& x = loaded.mesh.positions[loaded.mesh.topology.triangles[t][k]];  // y is up: y of the file is z here
+      const Vec3& x = loaded.mesh.positions[loaded.mesh.topology.triangles[t][k]];  // y of the file is up, so it is z
       EXPECT_EQ(loaded.uv[t][k], Vec2(x.x(), 1 - x.z()));
     }
   std::string cut = gltf_tetrahedron_of_integers();
   cut.replace(cut.find("\"byteOffset\":76"), 15, "\"byteOffset\":80");
   EXPECT_EQ(refusal("cut.gltf", cut), "expected 1 elements of 6 bytes in a buffer, which has 84 bytes");
-  // The sparse part has its index in a texture coordinate now: 255, 0, 0, 0 are the bytes of 255.
+  // The index of the sparse part is read from the bytes of texture coordinates: 255, 0, 0, 0 are the number 255.
   std::string astray = gltf_tetrahedron_of_integers();
   astray.replace(astray.find("\"byteOffset\":72"), 15, "\"byteOffset\":60");
   EXPECT_EQ(refusal("astray.gltf", astray),

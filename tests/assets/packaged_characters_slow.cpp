@@ -91,7 +91,7 @@ TEST_F(Packaged, FilesAreEachLoadedOrRefusedByName) {
   }
   RecordProperty("loaded", loaded);
   RecordProperty("refused", refused);
-  // Measured with version 5.2.5~ds0-1 of the package; other versions may have other files.
+  // Lower limits for version 5.2.5~ds0-1 of the package; other versions may have other files.
   EXPECT_GE(loaded, 300);
   EXPECT_GE(animated, 50);
   EXPECT_GE(skinned, 6) << "with vertices that several bones hold";
@@ -241,7 +241,7 @@ TEST_P(Skinned, FollowsAnEvaluationOfItsOwnOverTheWholeClip) {
   const Character unscaled = load_character(file, {1, scene::FileUp::y, scene::UpAxis::y}, "test").character;
   Box3 box;
   for (const Vec3& x : unscaled.mesh.positions) box.extend(x);
-  const double scale = 1.8 / box.sizes().maxCoeff();  // as tall as a man
+  const double scale = 1.8 / box.sizes().maxCoeff();  // the longest side of the body is 1.8 m
   const Character body = load_character(file, {scale, scene::FileUp::y, scene::UpAxis::y}, "test").character;
   for (unsigned a = 0; a < scene->mNumAnimations; ++a) {
     const aiAnimation& clip = *scene->mAnimations[a];

@@ -150,7 +150,7 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
     const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
     double max_distance = 0;
     for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
-    // assimp stores offsets and rotations in single precision: measured 2e-6 m.
+    // Tolerance: assimp stores offsets and rotations in single precision; measured: 2e-6 m.
     EXPECT_LT(max_distance, 1e-4) << seed;
   }
 }
@@ -199,7 +199,7 @@ TEST_F(RetargetedBvh, NeedsNoNames) {
   const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
   double max_distance = 0;
   for (std::size_t v = 0; v < got.size(); ++v) max_distance = std::max(max_distance, (got[v] - expected[v]).norm());
-  EXPECT_LT(max_distance, 1e-4);  // single precision, as in the first test
+  EXPECT_LT(max_distance, 1e-4);  // tolerance: single precision, as in the first test
 }
 
 TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) {

@@ -129,7 +129,7 @@ std::string gltf_of_two_skeletons() {
   for (std::size_t v = 0; v < 3; ++v) append(buffer, std::array<float, 4>{1, 0, 0, 0});  // weights
   for (std::size_t i = 0; i < 16; ++i) append(buffer, i % 5 == 0 ? 1.0F : 0.0F);         // from mesh to joint
   buffer.append(12, '\0');                                                               // joints
-  buffer.append(2, '\0');                                                                // to a multiple of three
+  buffer.append(2, '\0');                                                                // padding
   const std::string primitives = R"({"primitives":[{"attributes":{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":3}}]})";
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3]}],
 "nodes":[{"name":"Hips"},{"name":"Hips","translation":[5,0,0]},{"name":"a","mesh":0,"skin":0},
