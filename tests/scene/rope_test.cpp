@@ -46,7 +46,7 @@ TEST(RopeScenes, SlackRopesStartAsCatenariesOfTheirLength) {
   EXPECT_LT((shape.places.front() - Vec3(0, 0, 1)).norm(), 1e-12);
   EXPECT_LT((shape.places.back() - Vec3(1, 0.5, 1.4)).norm(), 1e-12);
   EXPECT_NEAR(length_of(shape), 1.9, 1e-12);
-  // A catenary satisfies z'' = √(1 + z'²) / a. Any three evenly spaced points of it must give the same a.
+  // A catenary satisfies z'' = √(1 + z'²) / a. Any two neighbouring pieces must give the same a.
   const auto ratio = [&](std::size_t i) {
     const Vec3 before = shape.places[i] - shape.places[i - 1], after = shape.places[i + 1] - shape.places[i];
     const auto slope = [](const Vec3& segment) { return segment.z() / segment.head<2>().norm(); };

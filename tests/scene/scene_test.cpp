@@ -363,8 +363,8 @@ TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
 TEST(Scene, RotatesAboutTheFixedAxesInTheOrderXyz) {
   const Scene scene = load_good("cloth = [{ name = 'a', rotation = [90, 0, 90] }]\n");
   const Quat& q = scene.cloths[0].pose.rotation;
-  // The rotation by 90° about x maps y to z, and that about z keeps z. The rotation about x keeps x, and that about z
-  // maps it to y. Tolerance: three products of unit quaternions, each rounded to a few 1e-16.
+  // First, the rotation by 90° about x maps y to z and keeps x. Then, the rotation by 90° about z keeps z and maps x to
+  // y. Tolerance: three products of unit quaternions, each rounded to a few 1e-16.
   EXPECT_LT((q * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm(), 1e-15);
   EXPECT_LT((q * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 1e-15);
 }
@@ -400,7 +400,7 @@ TEST(Scene, WhatHasNoColorHasATone) {
       "[[cloth]]\nname = 'a'\n[[obstacle]]\nname = 'b'\nshape = 'box'\n[[obstacle]]\nname = 'c'\nshape = 'plane'\n");
   const Vec3 cloth = scene.cloths[0].look.color, box = scene.obstacles[0].look.color,
              floor = scene.obstacles[1].look.color;
-  EXPECT_LT(floor.maxCoeff(), 0.79);  // it reflects 0.6 of the light
+  EXPECT_LT(floor.maxCoeff(), 0.79);  // sRGB; the floor reflects less than 0.6 of the light
   for (const Vec3& difference : {Vec3(cloth - box), Vec3(box - floor), Vec3(floor - cloth)})
     EXPECT_GT(difference.cwiseAbs().maxCoeff(), 0.08);
 }
@@ -428,7 +428,8 @@ TEST(Fabrics, AreMadeOfWhatWasMeasured) {
   const Fabric& poplin = *find_fabric("poplin");
   EXPECT_FALSE(poplin.measured.bend_weft.estimated);
   EXPECT_TRUE(poplin.measured.shear.estimated);
-  // Measured: 0.118 gf·cm²/cm, and 2HB of 0.124 gf·cm/cm. The material has two significant digits of them.
+  // Measured: bending rigidity 0.118 gf·cm²/cm and hysteresis (2HB) 0.124 gf·cm/cm. Tolerance: the material has two
+  // significant digits.
   EXPECT_NEAR(poplin.material.bend, 0.118 * 9.807e-5, 0.05 * 1.2e-5);
   EXPECT_NEAR(poplin.material.bend_friction, 0.5 * 0.124 * 9.807e-3, 0.05 * 6e-4);
   // A wool with a FAST extension E20 (at 19.6 N/m) of 1.87 % in both directions has a stiffness of 1048 N/m.
