@@ -120,7 +120,7 @@ image::Image with_flipped_samples(const image::Image& image, int count, int apar
   return flipped;
 }
 
-// Another CPU type was measured to change up to 27 of 129,600 pixels at edges, in groups of up to 3.
+// Measured difference between CPU types: up to 27 of 129,600 pixels, at edges, in groups of up to 3.
 TEST(Compare, DefaultsPassSingleSamplesOfAnEdge) {
   const image::Image edge = edge_at(150.3);
   const Figures figures = compare(edge, with_flipped_samples(edge, 27, 8), 4).figures;
@@ -169,7 +169,7 @@ TEST(Compare, OnlyTheDefaultMeanIsWiderInSmallPictures) {
   EXPECT_EQ(for_size({}, figures).flip, Limits{}.flip);
 }
 
-// Noise as large as the changes that another CPU type made in four pictures.
+// The noise is as large as the measured differences between CPU types in four pictures.
 TEST(Compare, DefaultsPassTheNoiseOfProcessors) {
   const image::Image picture = textured(320, 180, 1);
   EXPECT_EQ(verdict(compare(picture, with_noise(picture, 60, 1, 5), 4).figures, {}), Verdict::within);
@@ -221,7 +221,7 @@ TEST(Compare, SpillExceedsOnlyLimitsOfMeansAndByLessThanTwice) {
 TEST(Compare, SpillIsMeasuredByTheLimitsOfTheVerdict) {
   Figures frame = mild(1.5 * 4 * Limits{}.flip), changed = mild(1);  // in small pictures, the limit is 4 times as large
   for (Figures* figures : {&frame, &changed}) figures->width = 160, figures->height = 90, figures->pixels = 160 * 90;
-  frame.pixels_over = frame.pixels_at_edges = 20;  // half a pixel
+  frame.pixels_over = frame.pixels_at_edges = 20;  // at edges, they count as half a pixel
   EXPECT_EQ(verdict(frame, {}), Verdict::differs);
   EXPECT_TRUE(is_spill(std::array{frame, changed}, 0, {}));
   frame.flip *= 2;
@@ -236,7 +236,7 @@ TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {
   for (int x = 0; x < 3; ++x) {
     const Vec3 expected = 255 * image::srgb_from_linear(image::heat_color(positions[x]));
     for (int c = 0; c < 3; ++c)
-      EXPECT_NEAR(picture.pixel(x, 0)[c], expected[c], 1.5) << x;  // the colour map has 256 steps
+      EXPECT_NEAR(picture.pixel(x, 0)[c], expected[c], 1.5) << x;  // tolerance: the colour map has 256 steps
   }
 }
 

@@ -143,8 +143,8 @@ struct Picture {
   }
 };
 
-// As Table 1 and Section 4.1.1 state. The radius is three standard deviations of the widest Gaussian, exp(-pi^2 x^2 /
-// 0.04).
+// The contrast filter, as Table 1 and Section 4.1.1 state it. The radius is three standard deviations of the widest
+// Gaussian, exp(-pi^2 x^2 / 0.04).
 Map as_seen(const Picture& picture, const Map& map, int channel) {
   struct {
     double a1, b1, a2, b2;
@@ -159,8 +159,8 @@ Map as_seen(const Picture& picture, const Map& map, int channel) {
                           kernel);
 }
 
-// As Section 4.2 states: (|dF| / sqrt 2)^(1/2), where dF is the difference in edges or in points, whichever is larger.
-// The standard deviation is half of 0.082 degrees.
+// The feature difference, as Section 4.2 states it: (|dF| / sqrt 2)^(1/2), where dF is the difference in edges or in
+// points, whichever is larger. The standard deviation is half of 0.082 degrees.
 Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
   const double sigma = 0.5 * 0.082 * kPixelsPerDegree;
   const int radius = static_cast<int>(std::ceil(3 * sigma));

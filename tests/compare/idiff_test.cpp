@@ -73,7 +73,8 @@ TEST_F(Idiff, AgreesOnNoiseOfEveryAmount) {
 TEST_F(Idiff, AgreesAtTheToleranceAndAtTheBudget) {
   const image::Image picture = plain(80, 60, 100, 100, 100);
   image::Image changed = picture;
-  // 60 of 4800 pixels, just above the budget; half of them at the tolerance, the others one level beyond it.
+  // The budget is 60 of 4800 pixels. In this picture, 30 pixels are at the tolerance and 30 one level beyond it; in the
+  // next, 60 are beyond it, in the last 61.
   for (int x = 0; x < 60; ++x) changed.pixel(x, 7)[x % 3] = static_cast<std::uint8_t>(x < 30 ? 104 : 95);
   expect_same(picture, changed);
   for (int x = 0; x < 60; ++x) changed.pixel(x, 7)[x % 3] = 95;

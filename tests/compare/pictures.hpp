@@ -9,6 +9,7 @@
 
 namespace weft::compare {
 
+/// A picture of one colour.
 inline image::Image plain(int width, int height, std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
   image::Image image(width, height);
   for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
