@@ -91,13 +91,13 @@ TEST(ContactSheet, WrapsLongTextAndCutsNothing) {
   const int once = sum(ink_below(contact_sheet(all, 1, ""), all[0].image));
   ASSERT_GT(once, 10);
   const int short_sheet = contact_sheet(all, 1, "").height;
-  // Separate words, and one word that is longer than a line.
+  // Two texts: separate words, and one word that is longer than a line.
   for (const char* blank : {" ", ""}) {
     all[0].left = "";
     for (int i = 0; i < 30; ++i) all[0].left += (i > 0 ? blank : "") + std::string("a=1");
     const Image sheet = contact_sheet(all, 1, "");
     EXPECT_GT(sheet.height, short_sheet + 5 * 11);
-    // Letters begin at fractions of pixels, so their ink differs (measured: up to 4 %).
+    // Tolerance: letters begin at fractions of pixels, so their ink differs (measured: up to 4 %).
     EXPECT_NEAR(sum(ink_below(sheet, all[0].image)), 30 * once, 0.1 * 30 * once) << '"' << blank << '"';
   }
 }

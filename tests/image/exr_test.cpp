@@ -29,7 +29,7 @@ class ExrTest : public support::TestFolder {
   }
 };
 
-// Values that 16 bits represent exactly, all different.
+// Four layers of different values, which numbers of 16 bits represent exactly.
 Layers patterned_layers(int width, int height) {
   Layers layers{width, height, {}};
   for (const char* name : {"R", "A", "depth.Z", "normal.X"}) {

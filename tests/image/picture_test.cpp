@@ -84,7 +84,7 @@ TEST(PictureFile, GrayPngIsOpaque) {
   EXPECT_EQ(picture.rgba, (std::vector<std::uint8_t>{10, 10, 10, 255, 200, 200, 200, 255}));
 }
 
-// Many programs write files that do not state their gamma.
+// Many programs write files that do not state their gamma, so the test removes the chunk gAMA.
 TEST(PictureFile, PngOfSixteenBitsHasTheColorsOfOneOfEight) {
   std::string bytes = png_bytes(2, 1, PNG_FORMAT_LINEAR_Y, {0x80, 0x80, 0x20, 0x20});
   constexpr std::size_t kLength = 4, kChunk = 16;  // [bytes]: the length before the name, and the whole chunk
