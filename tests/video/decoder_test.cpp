@@ -13,7 +13,7 @@ namespace {
 
 class DecoderTest : public support::TestFolder {
  protected:
-  // The colours change slowly, so that the interpolation of the chroma planes has little effect.
+  // Writes a video whose colours change slowly, so that the interpolation of the chroma planes has little effect.
   void write(const char* name, int frames, int width = 96, int height = 64) const {
     Settings settings;
     settings.width = width;

@@ -235,13 +235,13 @@ TEST_F(EncoderTest, TheFinalNameAppearsOnlyWhenFinished) {
 }
 
 TEST_F(EncoderTest, WhatIsOnDiskBeforeTheEndCanBePlayed) {
-  // At this moment the temporary file is as a killed process would leave it.
+  // The test copies the temporary file as a killed process would leave it.
   Encoder encoder(folder_ / "a.mp4", small());
   for (int k = 0; k < 100; ++k) encoder.add(numbered(k));
   ASSERT_EQ(files().size(), 1u);
   std::filesystem::copy_file(folder_ / files()[0], folder_ / "killed.mp4");
   const DecodedVideo video = decode(folder_ / "killed.mp4");
-  // The preset of x264 holds back 10 frames to look ahead, and 3 to reorder them.
+  // Frames are missing at the end, because the preset of x264 holds back 10 to look ahead, and 3 to reorder them.
   ASSERT_GE(video.frames.size(), 85u);
   for (std::size_t k = 0; k < video.frames.size(); ++k) {
     EXPECT_EQ(number_of(video.frames[k].image), static_cast<int>(k));

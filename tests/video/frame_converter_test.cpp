@@ -37,7 +37,7 @@ TEST(FrameConverter, ColoursFollowTheStandardInLimitedRange) {
         fill(image, red, green, blue);
         converter.convert(image, *frame);
         const auto expected = bt709(red, green, blue);
-        // Measured: at most 0.506 of a level; 0.5 is rounding, the rest comes from swscale's 15-bit coefficients.
+        // Measured error: at most 0.506 levels; 0.5 is rounding, the rest comes from swscale's 15-bit coefficients.
         for (int plane = 0; plane < 3; ++plane) {
           EXPECT_NEAR(sample(*frame, plane, 3, 5), expected[plane], 0.52)
               << red << " " << green << " " << blue << " plane " << plane;
