@@ -256,8 +256,8 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-// Blender counts samples, so the cache has one sample for every frame from 1 on; those between exported frames are
-// interpolated. The axes are those of the OBJ files: y up, -z forward.
+// Blender counts samples, so the cache has one sample for every frame from the first exported one on. Samples between
+// exported frames are interpolated. The axes are those of the OBJ files: y up, -z forward.
 TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem) {
   write(Format::pc2, {1, 4, 7});
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
