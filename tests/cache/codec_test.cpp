@@ -145,7 +145,7 @@ TEST(Codec, FramesComeBackBitForBit) {
   }
 }
 
-// The codec does not store positions with the same bits as those of the surfaces.
+// The codec stores no positions of a surface if they have the same bits as in Surfaces.
 TEST(Codec, WhatHasNotMovedTakesTwoBytes) {
   const Sample sample;
   frame::FrameSnapshot resting = *sample.snapshot(0);

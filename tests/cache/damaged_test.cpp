@@ -100,7 +100,7 @@ TEST_F(DamagedCache, NoneOfAHundredThousandChangesOfBytesIsMissed) {
   }
 }
 
-// Invalid content with a valid checksum, from a faulty writer or an attacker.
+// A faulty writer or an attacker can make invalid content with a valid checksum.
 TEST_F(DamagedCache, ContentThatIsWrongUnderARightChecksumIsReadOrRefused) {
   const Surfaces surfaces = surfaces_of(*sample_.snapshot(0));
   const std::string frame = encode_frame(*sample_.snapshot(1), sample_.report(1), surfaces);

@@ -176,7 +176,7 @@ TEST_F(CacheFolder, ForeignFilesAreNeverTouched) {
                [&] { Lock lock(cache()); });
   EXPECT_EQ(support::read_bytes(cache() / "thesis.tex"), "precious");
   fs::remove(cache() / "thesis.tex");
-  // Files with names of a cache are kept too, unless their content marks them as parts of one.
+  // Files with names of a cache are kept too, unless their content marks them as parts of a cache.
   for (const char* name : {".notes.tmp", ".notes.weft-12.tmp", "outputs.txt", "lock", "manifest.json", "state.weft",
                            "frame_00007.weft", "scene.effective.toml"}) {
     support::write_bytes(cache() / name, "precious");
