@@ -51,7 +51,7 @@ frame::SnapshotPtr last_frame(const scene::Scene& scene) {
 
 TEST(CameraThatFollows, MovesWithTheBody) {
   const frame::SnapshotPtr end = last_frame(support::scene_of_text(kRide));
-  // Rounding of the rigid fit to some vertices.
+  // Tolerance [m]: rounding of the rigid fit to some vertices.
   constexpr double kRounding = 1e-12;
   EXPECT_LT((end->cameras[0].position - Vec3(7, 0, 2)).norm(), kRounding);
   EXPECT_LT((end->cameras[0].target - Vec3(3, 0, 1)).norm(), kRounding);
