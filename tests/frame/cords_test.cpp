@@ -65,10 +65,10 @@ TEST(Cords, AreClosedSurfacesOfTheDiameterAroundTheChain) {
         }
         farthest = std::max(farthest, nearest);
       }
-      // The spline is outside the chords by kPiece² / 8 R, 1 mm.
+      // Tolerance: the spline of the centre line is outside the chords by kPiece² / 8 R, 1 mm.
       EXPECT_NEAR(farthest, 0.5 * kDiameter, 1.1e-3);
-      // Faces point outward. Relative to a circle, furrows between strands remove a fifth of the area, ten sides a
-      // sixteenth, and twisted strands some more.
+      // Faces point outward, so the volume is positive. It is below that of a cylinder: furrows between strands remove
+      // a fifth of the cross-section, ten sides instead of a circle a sixteenth, and twisted strands some more.
       const double length = kPiece * (closed ? 24 : 23);
       EXPECT_GT(volume, 0.65 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
       EXPECT_LT(volume, 1.3 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
