@@ -187,7 +187,7 @@ TEST_F(Launcher, SaysHowFarTheBuildIsEvery15SecondsWhereNoTerminalShowsIt) {
   const Outcome outcome = launch();
   EXPECT_EQ(outcome.status, 7);
   EXPECT_EQ(read_bytes(folder_ / "fakes/status"), "[%f/%t] %e s: \n");
-  // 24 files take 30 s: 72 more take 90 s. 36 files take 45 s: 60 more take 75 s.
+  // After 24 files in 30 s, the other 72 take 90 s more. After 36 files in 45 s, the other 60 take 75 s more.
   EXPECT_EQ(outcome.err,
             "weft: building\n"
             "weft: 24 of 96 files, about 2 min left\n"
