@@ -285,7 +285,7 @@ TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {
                           "are assumed",
                           1 / rate));
   }
-  clip_->mTicksPerSecond = 0;  // not stated
+  clip_->mTicksPerSecond = 0;  // 0: the file does not state it
   EXPECT_TRUE(read().warnings.empty());
   channel_->mNodeName = "tail";
   EXPECT_EQ(warning(), "clip \"walk\": 1 channel left out, which name no part of the file: \"tail\"");
@@ -408,7 +408,7 @@ TEST_F(Scenes, ColorsAndPicturesComeWithTheirPlacesForEachTriangle) {
 TEST_F(Scenes, TextureCoordinatesAreTransformedAsGltfStates) {
   const std::filesystem::path file =
       std::filesystem::path(testing::TempDir()) / ("weft_placed_" + std::to_string(::getpid()) + ".gltf");
-  for (const bool turned : {false, true}) {  // by 90 degrees
+  for (const bool turned : {false, true}) {  // whether the picture is rotated by 90 degrees
     std::ofstream(file) << gltf_tetrahedron_of_integers(
         R"(,"material":0)", std::string(R"(,"materials":[{"pbrMetallicRoughness":{"baseColorTexture":
 {"index":0,"extensions":{"KHR_texture_transform":{"offset":[0.5,0.25],"scale":[0.25,0.5])") +

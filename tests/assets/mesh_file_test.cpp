@@ -96,7 +96,7 @@ TEST_F(MeshFiles, OfOurOwnAreReadWhateverByteTheirDataBeginWith) {
       ASSERT_EQ(loaded.mesh.positions.size(), 3u) << int{first} << " " << int{second};
       EXPECT_EQ(loaded.mesh.topology.triangles, (Triangles{{0, 1, 2}}));
       for (std::size_t v = 0; v < 3; ++v)
-        EXPECT_LT((loaded.mesh.positions[v] - positions[v]).norm(), 1e-7) << int{first};  // in single precision
+        EXPECT_LT((loaded.mesh.positions[v] - positions[v]).norm(), 1e-7) << int{first};  // tolerance: single precision
     }
 }
 

@@ -127,7 +127,7 @@ std::string gltf_of_two_skeletons() {
   std::string buffer;
   for (std::size_t v = 0; v < 3; ++v) append(buffer, kCorners[v]);
   for (std::size_t v = 0; v < 3; ++v) append(buffer, std::array<float, 4>{1, 0, 0, 0});  // weights
-  for (std::size_t i = 0; i < 16; ++i) append(buffer, i % 5 == 0 ? 1.0F : 0.0F);         // from mesh to joint
+  for (std::size_t i = 0; i < 16; ++i) append(buffer, i % 5 == 0 ? 1.0F : 0.0F);         // matrix from mesh to joint
   buffer.append(12, '\0');                                                               // joints
   buffer.append(2, '\0');                                                                // padding
   const std::string primitives = R"({"primitives":[{"attributes":{"POSITION":0,"WEIGHTS_0":1,"JOINTS_0":3}}]})";

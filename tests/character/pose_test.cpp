@@ -175,7 +175,7 @@ TEST(ShortestRotation, IsThatOfEigenToTheLastBit) {
   for (int round = 0; round < 1000; ++round) {
     const Vec3 from(normal(random), normal(random), normal(random));
     Vec3 to(normal(random), normal(random), normal(random));
-    if (round % 2 == 1) to = -from + 1e-3 * to;  // nearly opposite
+    if (round % 2 == 1) to = -from + 1e-3 * to;  // nearly opposite to `from`
     EXPECT_EQ(shortest_rotation(from, to).coeffs(), Quat::FromTwoVectors(from, to).coeffs());
   }
 }

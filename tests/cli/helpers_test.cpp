@@ -28,7 +28,7 @@ std::string output_of(const std::string& command) {
 
 TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
   for (const std::string& name : template_names()) {
-    if (name == "ci") continue;  // a repository: ci_template_slow.cpp
+    if (name == "ci") continue;  // ci_template_slow.cpp tests it
     const Outcome made = run_weft({"new", "my " + name, "--template", name}, folder_);
     EXPECT_EQ(made.exit_code, 0) << made.err;
     const Outcome checked = run_weft({"check", "my " + name + ".toml"}, folder_);
@@ -37,7 +37,7 @@ TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
     EXPECT_TRUE(support::read_bytes(folder_ / ("my " + name + ".toml")).starts_with("#:schema ./weft.schema.json\n"));
   }
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
-  support::write_bytes(folder_ / "weft.schema.json", "{}\n");  // of an older version
+  support::write_bytes(folder_ / "weft.schema.json", "{}\n");  // like the schema of an older version
   EXPECT_EQ(run_weft({"new", "my drape"}, folder_).exit_code, 6) << "it is there already";
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), "{}\n");
   EXPECT_EQ(run_weft({"new", "my drape", "--overwrite"}, folder_).exit_code, 0);
@@ -83,7 +83,7 @@ TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   EXPECT_EQ(scenes, 2);
 }
 
-// `./weft` builds two programs: that of `simulate` and `render`, and that of `diff`, each when a command needs it.
+// `./weft` builds each of its two programs when a command first needs it: one for `render`, the other for `diff`.
 TEST_F(Helpers, WorkflowOfARepositoryBuildsBothProgramsWithTheCacheOfTheCompiler) {
   EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);
   const std::string workflow = support::read_bytes(folder_ / "repo/.github/workflows/pictures.yml");
@@ -126,7 +126,7 @@ TEST_F(Helpers, WatchOfTheStartReplacesNoForeignPicture) {
   EXPECT_EQ(support::read_bytes(folder_ / "output/s.start.watch.png"), "precious");
 }
 
-// `weft thumbnail` leaves its picture under the usual name.
+// `weft thumbnail` writes its picture under the default name, which the picture of `weft watch` must not replace.
 TEST_F(Helpers, WatchOfAStillReplacesNoThumbnail) {
   const Arguments small{"--size", "64x36", "--quality", "draft", "--frame", "0"};
   Arguments thumbnail{"thumbnail", "s.toml"}, watch{"watch", "s.toml", "--times", "1"};

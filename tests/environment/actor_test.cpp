@@ -472,7 +472,7 @@ TEST_F(Acting, MannequinWalksAndStandsUprightWhicheverAxisIsUp) {
     const std::vector<Vec3> x = at(z_up, t);
     return *std::ranges::max_element(x, {}, [](const Vec3& p) { return p.z(); });
   };
-  EXPECT_NEAR(top(0).z(), 1.7, 0.06);  // standing, with slightly bent knees
+  EXPECT_NEAR(top(0).z(), 1.7, 0.06);  // [m]; it stands with slightly bent knees
   EXPECT_NEAR(top(3).y() - top(0).y(), -1.5, 0.05);
 }
 

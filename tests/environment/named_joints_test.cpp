@@ -45,7 +45,7 @@ TEST_F(NamedJoints, AreDifferentNodes) {
                         "character.rod.joint.LeftLowerLeg: expected a node of " + file.path.string() +
                             " that is no other joint, got \"Spine\", which is LeftUpperLeg too",
                         [&] { make_actor(scene, character); });
-  file.joints[1].body = "Hips";  // the pelvis may move a leg
+  file.joints[1].body = "Hips";  // one node may be the hips and a joint of a leg
   character.source = file;
   EXPECT_NO_THROW(make_actor(scene, character));
 }

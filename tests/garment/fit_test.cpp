@@ -140,7 +140,7 @@ Wearer wearer_with_thick_arms() {
 
 TEST(Fit, GivesWayToThickArmsAndKeepsTheNeckInItsPlace) {
   const Wearer wearer = wearer_with_thick_arms();
-  EXPECT_NEAR(*measure(wearer).arm, kThickArm, 1e-3 * kThickArm);  // a polygon of 64 corners is shorter by 0.04 %
+  EXPECT_NEAR(*measure(wearer).arm, kThickArm, 1e-3 * kThickArm);  // tolerance: 64 chords are shorter by 0.04 %
   Pattern pattern;
   pattern.measures = {*measure(wearer).chest, {}, {}, *measure(wearer).arm / 1.5, 1.7};
   const Fit thick = fit(pattern, wearer, "cloth.c");
@@ -300,7 +300,7 @@ TEST(Fit, TakesTheRatioOfTheWaistsForWhatHangsFromThem) {
   const Fit high = fit(pattern, wearer, "cloth.c");
   wearer.neck = 1.46;
   const Fit low = fit(pattern, wearer, "cloth.c");
-  EXPECT_NEAR(high.factors.y(), low.factors.y(), 0.011 / 1.1);  // sections are 10 mm apart
+  EXPECT_NEAR(high.factors.y(), low.factors.y(), 0.011 / 1.1);  // tolerance: sections are 10 mm apart
   EXPECT_NEAR(low.factors.y(), 1.1 / (0.63 * 1.75), 0.02);
   EXPECT_EQ(low.rise, 0);
 }

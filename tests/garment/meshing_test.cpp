@@ -134,7 +134,8 @@ TEST(PanelMeshes, OutlinesThatCrossThemselvesAreFound) {
   EXPECT_FALSE(self_crossing(kL));
   EXPECT_FALSE(self_crossing(cut_sides(kNotched, 0.01)));
   EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 1}, {1, 0}, {0, 1}}));
-  EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0.5, 0}, {0, 1}}));  // touches itself
+  // This outline touches itself.
+  EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0.5, 0}, {0, 1}}));
 }
 
 }  // namespace

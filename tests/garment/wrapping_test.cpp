@@ -49,7 +49,8 @@ TEST(Tubes, HaveTheGirthOfWhatTheyAreAround) {
   EXPECT_NEAR(torso.girth(1, 0.02), 2 * std::numbers::pi * (kTrunk + 0.02), kChords);
   EXPECT_NEAR(torso.girth(3, 0), torso.girth(1.7, 0), kChords);  // the tube continues above the head
   EXPECT_NEAR(arm.girth(-0.3, 0.01), 2 * std::numbers::pi * (kArm + 0.01), kChords);
-  EXPECT_GT(Tube(stick_figure(), Around::body).girth(1.4, 0), 2);  // around the arm; below, at heights under the arm
+  // The tube around the body includes the arm, also at heights below it. Girths [m].
+  EXPECT_GT(Tube(stick_figure(), Around::body).girth(1.4, 0), 2);
   EXPECT_GT(Tube(stick_figure(), Around::body).girth(0.5, 0), 2);
 }
 
@@ -237,13 +238,13 @@ TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
   buttoned.replace(buttoned.find(seam), seam.size(),
                    "[[seam]]\na = \"front.right\"\nb = \"back.right\"\nbuttons = 3\nopen = 2\n");
   const Garment sewn = sew_text(kVest), closed = sew_text(buttoned);
-  EXPECT_EQ(closed.sheet.rest.size(), sewn.sheet.rest.size() + 26);  // 0.5 m by 20 mm on the other side
+  EXPECT_EQ(closed.sheet.rest.size(), sewn.sheet.rest.size() + 26);  // one side is separate: 0.5 m in 20 mm
   ASSERT_EQ(closed.sheet.ties.size(), 3U);
   EXPECT_TRUE(sewn.sheet.ties.empty());
   for (const mesh::Tie& tie : closed.sheet.ties) {
     EXPECT_EQ(tie.open, 2);
     const Vec3 &a = closed.sheet.rest[tie.a], &b = closed.sheet.rest[tie.b];
-    EXPECT_NEAR(a.z(), b.z(), 0.02);  // the two ends that are sewn together
+    EXPECT_NEAR(a.z(), b.z(), 0.02);  // a tie joins places of the same height
     EXPECT_GT((a - b).norm(), 0.005);
   }
 }

@@ -80,7 +80,7 @@ TEST(Instants, NothingIsBlurredUnasked) {
 TEST(Instants, LensBlursWhatIsOutOfFocus) {
   frame::FrameSnapshot snapshot = square_at(0, 4);
   snapshot.cameras[0].aperture = 0.5;  // f-number: 12 mm / tan 10° / 0.5 = 136 mm wide
-  const double width = 0.136 / 2 / (2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight);  // 9.6 pixels
+  const double width = 0.136 / 2 / (2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight);  // [pixels]: 9.6
   Renderer renderer(small_settings());
   const auto middle_of_edge = [&] {
     renderer.draw(snapshot);

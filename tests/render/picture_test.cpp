@@ -487,7 +487,7 @@ std::unique_ptr<Renderer> renderer_by(Backend backend, const char* library) {
   }
 }
 
-// A machine needs only one of the two backends.
+// A machine may have only one of the backends; then, the test is skipped.
 TEST(Backend, EglDrawsTheSamePictureAsOSMesaWhereBothAreThere) {
   const auto osmesa = renderer_by(Backend::osmesa, "libOSMesa.so.8"), egl = renderer_by(Backend::egl, "libEGL.so.1");
   if (!osmesa || !egl) GTEST_SKIP() << "only one of OSMesa and EGL is there";

@@ -431,8 +431,8 @@ TEST(TracedLight, PenumbraOfAnEdgeIsThatOfTheSunsDisc) {
   }
 }
 
-// The lit half of a penumbra 300 pixels wide. Stripes: second differences, from column to column, of means over 16
-// rows.
+// The picture shows the lit half of a penumbra 300 pixels wide. Stripes are measured as second differences, from column
+// to column, of means over 16 rows.
 TEST(TracedLight, WidePenumbraHasNoStripes) {
   frame::FrameSnapshot snapshot = plate_above_floor();
   const Vec3 target(0.05, 0, 0);
