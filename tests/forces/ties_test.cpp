@@ -85,7 +85,7 @@ TEST(Ties, OfSeamsThatTearPartForGoodOnceTheyHaveHeld) {
   mesh::Sheet sheet;
   sheet.tearing_seams = {"side"};
   sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .tearing = 0});
-  Ties ties(sheet, 0);
+  Ties ties(sheet, 0, 1e-9);
   const auto accept = [&](double distance) {
     const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, distance * Ties::kRest, 0)};
     ties.accept(x);
@@ -110,7 +110,7 @@ TEST(Ties, OfSeamsThatTearMayOpenAndCloseAgain) {
   mesh::Sheet sheet;
   sheet.tearing_seams = {"side"};
   sheet.ties.push_back({.a = 0, .b = 1, .strength = kPull, .tearing = 0, .open = 1, .closed = 2});
-  Ties ties(sheet, 0);
+  Ties ties(sheet, 0, 1e-9);
   const auto accept = [&](double t, double distance) {
     const std::vector<Vec3> x{Vec3(0, 0, 0), Vec3(0, distance * Ties::kRest, 0)};
     ties.set_strengths(t, 1);

@@ -24,7 +24,7 @@ TEST(Plan, SaysThatAScenesObjectsCanCollideWhereTheyCan) {
         "[contact]\nself = false\nobstacles = false\n" + sheet + ball, ball, floor + ball, floor + ball + "mass = 1\n",
         floor + ball + "mass = 1\ncollide = false\n", std::string("[contact]\nobstacles = false\n") + ball}) {
     const scene::Scene scene = support::scene_of_text(text);
-    EXPECT_EQ(can_collide(scene), simulation::CollisionStage::needed(environment::Environment(scene).model)) << text;
+    EXPECT_EQ(can_collide(scene), simulation::CollisionStage::is_needed(environment::Environment(scene).model)) << text;
   }
 }
 
