@@ -100,7 +100,7 @@ TEST(Ties, OfSeamsThatTearPartForGoodOnceTheyHaveHeld) {
   EXPECT_EQ(accept(1.5).load, 0);
   ties.set_strengths(0, 1);
   EXPECT_EQ(pull(ties, 1.5 * Ties::kRest), 0);
-  Ties others(sheet, 0);
+  Ties others(sheet, 0, 1e-9);
   others.copy_state_from(ties);
   others.set_strengths(0, 1);
   EXPECT_EQ(pull(others, 1.5 * Ties::kRest), 0);
