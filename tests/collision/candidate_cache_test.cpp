@@ -1,5 +1,5 @@
-// Compares with brute force which candidate pairs the cache collects, and for which positions it reports them as
-// complete.
+// Tests of CandidateCache. Its pairs are compared with brute force. It covers a start or end of a step if its pairs are
+// complete for this start or end.
 #include "physics/collision/candidate_cache.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kReach = 0.01;
+constexpr double kReach = 0.01;  // detection distance [m]
 
 Vec3 random_in_ball(std::mt19937& generator, double radius) {
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -23,7 +23,7 @@ Vec3 random_in_ball(std::mt19937& generator, double radius) {
   }
 }
 
-/// Two sheets of n × n squares, one `gap` above the other, and an obstacle of one triangle `gap` below both.
+/// Two sheets of n × n squares at the heights 0 and `gap` [m], and an obstacle of one triangle at the height −`gap`.
 struct Layers {
   Bodies bodies;
   std::vector<Vec3> x;
@@ -58,7 +58,7 @@ std::set<std::pair<Index, Index>> set_of(const PairList& pairs) {
   return set;
 }
 
-/// Pairs of triangles without a common vertex, of which one has a vertex closer than `reach` to the face of the other.
+/// Pairs of triangles without a common vertex, if a vertex of one triangle is closer than `reach` [m] to the other one.
 std::set<std::pair<Index, Index>> near(std::span<const Triangle> triangles, std::span<const Vec3> x, double reach) {
   std::set<std::pair<Index, Index>> found;
   for (std::size_t a = 0; a < triangles.size(); ++a)
@@ -85,10 +85,10 @@ TEST(CandidateCache, EveryPairWithinReachAtACoveredEndWasCollected) {
     ++covered;
     for (const auto& pair : near(layers.bodies.triangles(), end, kReach)) EXPECT_TRUE(collected.contains(pair));
   }
-  EXPECT_GE(covered, 100);  // all short trials are covered
+  EXPECT_GE(covered, 100);  // all ends within 0.5 kReach are covered
 }
 
-// The sheet is folded, so that parts of it are near each other.
+// The lower sheet is folded: its columns 3 and 4 are 3 mm below its columns 1 and 0.
 TEST(CandidateCache, ASheetMeetsItself) {
   Layers layers(4, 0.5 * kReach);
   for (int j = 0; j <= 4; ++j)
@@ -113,8 +113,8 @@ TEST(CandidateCache, FeaturesWithinReachAtACoveredStartWereWithinTheRadius) {
   }
 }
 
-// If the cloth rests, the Verlet margin is half the detection distance. Without reuse of candidate pairs, or in a fast
-// step, the cache covers only exactly the same start positions.
+// If the cloth rests, the Verlet margin is half the detection distance. Without reuse of candidate pairs, and in a fast
+// step, there is no Verlet margin: the cache covers only the start of the search itself.
 TEST(CandidateCache, TheVerletMarginOfRestingClothIsHalfTheDetectionDistance) {
   const Layers layers(2, kReach);
   std::vector<Vec3> inside = layers.x, outside = layers.x, fast = layers.x;
@@ -123,7 +123,7 @@ TEST(CandidateCache, TheVerletMarginOfRestingClothIsHalfTheDetectionDistance) {
   fast[5].x() += 0.6 * kReach;
 
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
-  EXPECT_FALSE(cache.covers_start(layers.x));  // no pairs were collected yet
+  EXPECT_FALSE(cache.covers_start(layers.x));  // no pairs have been collected
   cache.collect(layers.x, layers.x);
   EXPECT_TRUE(cache.covers_start(inside));
   EXPECT_FALSE(cache.covers_start(outside));
@@ -141,7 +141,7 @@ TEST(CandidateCache, TheVerletMarginOfRestingClothIsHalfTheDetectionDistance) {
 TEST(CandidateCache, CoversEndsWithinTheMarginOfThePredictedEnd) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
-  to[4].x() += 3 * kReach;  // fast: the margin is half the detection distance
+  to[4].x() += 3 * kReach;  // a fast step: the margin is half the detection distance
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
   cache.collect(layers.x, to);
   std::vector<Vec3> end = to;
@@ -150,7 +150,7 @@ TEST(CandidateCache, CoversEndsWithinTheMarginOfThePredictedEnd) {
   end[4].x() += 0.02 * kReach;
   EXPECT_FALSE(cache.covers_end(end));
   end[4] = layers.x[4] + Vec3(1.5 * kReach, 0, 0);
-  EXPECT_FALSE(cache.covers_end(end));  // between start and end, without response
+  EXPECT_FALSE(cache.covers_end(end));  // between start and predicted end
   cache.invalidate();
   EXPECT_FALSE(cache.covers_end(to));
 }
@@ -172,8 +172,8 @@ TEST(CandidateCache, WithMoreDirectionsThanSixAnEndIsCoveredWithinABall) {
   }
 }
 
-// If the response moves particles away from their end positions, the cache covers any position between the two, and all
-// positions that it covered before.
+// The response pushes particle 4 away from its end. The cache then covers all positions of this particle between its
+// start and the pushed end, and its former end. With `all`, this holds for every particle.
 TEST(CandidateCache, CoversPositionsBetweenStartAndEndOfPushedParticles) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
@@ -192,13 +192,14 @@ TEST(CandidateCache, CoversPositionsBetweenStartAndEndOfPushedParticles) {
   EXPECT_TRUE(cache.covers_end(layers.x));
 }
 
-// Compares the pairs with brute force, for end positions between the two corners.
+// Compares the pairs with brute force. The ends lie between the start and `far`, with random displacements below the
+// margin, which is half the detection distance.
 TEST(CandidateCache, EveryPairWithinReachAtAnEndBetweenIsCollectedThen) {
   const Layers layers(4, 0.5 * kReach);
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
   std::mt19937 generator(3);
   std::vector<Vec3> far = layers.x;
-  for (std::size_t v = 0; v < 25; ++v) far[v] += Vec3(0.05, -0.03, 0.02);  // the lower sheet, through the other one
+  for (std::size_t v = 0; v < 25; ++v) far[v] += Vec3(0.05, -0.03, 0.02);  // the lower sheet crosses the upper one
   cache.collect(layers.x, far);
   const std::set<std::pair<Index, Index>> collected = set_of(cache.collect_more(layers.x, far, true).apart);
   std::uniform_real_distribution<double> fraction(0, 1);
@@ -226,7 +227,7 @@ TEST(CandidateCache, WhatIsNotWantedIsLeftOut) {
   EXPECT_TRUE(collected(false, false).empty());
 }
 
-// The cache fits bounds to a still obstacle; they are valid only while the obstacle stays there.
+// The added obstacle (body 3) is clear while it is at least two detection distances from the cloth along the x axis.
 TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
   Layers layers(4, 0.5 * kReach);
   CandidateCache alone(layers.bodies, {}, layers.x, kReach);
@@ -239,15 +240,14 @@ TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
     for (std::size_t corner = moved.size() - 3; corner < moved.size(); ++corner) moved[corner].x() = x;
     return moved;
   };
-  // The fast obstacle does not reduce the Verlet margin of the other surfaces.
+  // The obstacle moves by 2 m. As it is clear, the step counts as slow, and the Verlet margin stays.
   EXPECT_EQ(set_of(cache.collect(layers.x, with_obstacle_at(1)).apart), pairs);
   EXPECT_EQ(cache.radius(), alone.radius());
   EXPECT_TRUE(cache.is_clear(3));
   EXPECT_FALSE(cache.is_clear(2));
   EXPECT_TRUE(cache.covers_start(with_obstacle_at(0.2)));
   EXPECT_TRUE(cache.covers_end(with_obstacle_at(500)));
-  // The cloth ends at 0.12 m. The obstacle may come as near as two detection distances, but may not pass to the other
-  // side of the cloth.
+  // The cloth extends from x = 0 to x = 0.12 m. The obstacle must stay at x ≥ 0.12 m plus two detection distances.
   EXPECT_TRUE(cache.covers_end(with_obstacle_at(0.12 + 2.001 * kReach)));
   EXPECT_FALSE(cache.covers_end(with_obstacle_at(0.12 + 1.999 * kReach)));
   EXPECT_FALSE(cache.covers_start(with_obstacle_at(-1)));
@@ -255,6 +255,7 @@ TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
   EXPECT_FALSE(cache.is_clear(3));
 }
 
+// The cache does not refit the bounds of an obstacle that stands still. It must refit them after the obstacle moves.
 TEST(CandidateCache, AnObstacleThatHasMovedIsFoundWhereItIs) {
   Layers layers(2, 0.5 * kReach);
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);
@@ -276,8 +277,8 @@ TEST(Bodies, TrianglesAreNumberedThroughAllBodies) {
   EXPECT_EQ(layers.bodies.surfaces()[2].first_triangle, 4);
   EXPECT_EQ(layers.bodies.surfaces()[2].triangles[0], (Triangle{8, 9, 10}));
   EXPECT_EQ(layers.bodies.body_of(7), 1U);
-  EXPECT_EQ(layers.bodies.triangle_of({7, 6, 4}), 1);  // a triangle of the second sheet
-  EXPECT_EQ(layers.bodies.triangle_of({5, 7, 7}), 0);  // an edge
+  EXPECT_EQ(layers.bodies.triangle_of({7, 6, 4}), 1);  // the second triangle of the second sheet
+  EXPECT_EQ(layers.bodies.triangle_of({5, 7, 7}), 0);  // the first triangle with the edge from 5 to 7
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Compares each number of a contact with its formula.
+// Tests of ContactBuilder: compares stiffness, activation distance and friction of contacts with their formulas.
 #include "physics/collision/contact_builder.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kBuilderStep = 0.01;  // [s]
 
-/// Two cloths of one triangle each, 1 mm apart, and an obstacle of one triangle, 1 mm below.
+/// Two cloths of one triangle each, at the heights 0 and 1 mm, and an obstacle of one triangle at the height −1 mm.
 struct Scene {
   Bodies bodies;
   std::vector<double> masses{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};  // [kg]
@@ -25,7 +25,7 @@ struct Scene {
     for (double z : {0.0, 0.001, -0.001})
       for (const Vec3& corner : {Vec3(0, 0, z), Vec3(0.1, 0, z), Vec3(0, 0.1, z)}) x_t0.push_back(corner);
     x_t1 = x_t0;
-    for (std::size_t v = 6; v < 9; ++v) x_t1[v].z() += 0.0004;  // the obstacle rises
+    for (std::size_t v = 6; v < 9; ++v) x_t1[v].z() += 0.0004;  // the obstacle rises by 0.4 mm
     pinched = PinchedPairs(6, bodies.body_of_vertices(), bodies.limb_of_vertices());
   }
 
@@ -41,12 +41,14 @@ struct Scene {
   }
 };
 
-/// Near pair of vertex `v` and a face.
+/// Near pair of vertex `v` and `face`, 1 mm apart along z.
 Proximity vertex_face(Index v, const Triangle& face) {
   return {{{v, face[0], face[1], face[2]}, {1, -0.5, -0.3, -0.2}, Vec3::UnitZ(), 0.001, ProximityKind::vertex_face},
           {0, 0}};
 }
 
+/// Near pair of edge a (vertices 0, 1) and edge b (vertices 3, 4). `outside_a`, `outside_b`: Proximity::outside_wedge.
+/// `along_a`: position of the closest point on edge a, from 0 at vertex 0 to 1 at vertex 1.
 Proximity edges(double outside_a, double outside_b, double along_a) {
   return {{{0, 1, 3, 4}, {1 - along_a, along_a, -0.5, -0.5}, Vec3::UnitZ(), 0.001, ProximityKind::edge_edge},
           {outside_a, outside_b}};
@@ -109,8 +111,8 @@ TEST(ContactBuilder, FrictionReachesTheContact) {
   EXPECT_DOUBLE_EQ(contacts[1].static_friction, 0.3);
 }
 
-// A pair of edges has its full stiffness inside both wedges and away from the ends of the edges; a vertex, inside its
-// wedge. Toward these limits, the stiffness falls linearly.
+// The fraction is 1 if the contact direction is inside the wedges. For edge pairs, the surfaces must also be folded at
+// the edges, and the closest points be away from the ends. Otherwise, the fraction falls linearly to 0.
 TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_fraction(vertex_face(0, {3, 4, 5})), 1);
   Proximity beside_border = vertex_face(0, {3, 4, 5});
@@ -119,26 +121,27 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   beside_border.outside_wedge[0] = 0.1;
   EXPECT_EQ(stiffness_fraction(beside_border), 0);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.5)), 1);
-  // Flat wedges: the stiffness depends on the sum of the sines, from 0.05 to 0.2.
+  // Nearly flat surfaces: as the sum of both sines inside the wedges grows from 0.05 to 0.2, the fraction grows from 0
+  // to 1.
   EXPECT_EQ(stiffness_fraction(edges(-0.025, -0.025, 0.5)), 0);
   EXPECT_NEAR(stiffness_fraction(edges(0, -0.125, 0.5)), 0.5, 1e-12);
   EXPECT_NEAR(stiffness_fraction(edges(-0.1, -0.1, 0.5)), 1, 1e-12);
-  // Outside the wedge of either edge, the ratio falls from 1 to 0 as the sine grows from 0 to 0.1.
+  // Outside the wedge of either edge, the fraction falls from 1 to 0 as the sine grows from 0 to 0.1.
   EXPECT_EQ(stiffness_fraction(edges(0, -0.5, 0.5)), 1);
   EXPECT_NEAR(stiffness_fraction(edges(0.05, -0.5, 0.5)), 0.5, 1e-12);
   EXPECT_NEAR(stiffness_fraction(edges(-0.5, 0.05, 0.5)), 0.5, 1e-12);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, 0.1, 0.5)), 0);
-  // Both limits at once.
+  // Outside a wedge of a nearly flat surface, both factors apply.
   EXPECT_NEAR(stiffness_fraction(edges(0.05, -0.175, 0.5)), 0.5 * 0.5, 1e-12);
-  // The ratio falls within a tenth of an end of either edge.
+  // On the last tenth of an edge, the fraction falls to 0 at the end.
   EXPECT_NEAR(stiffness_fraction(edges(-0.5, -0.5, 0.05)), 0.5, 1e-12);
   EXPECT_NEAR(stiffness_fraction(edges(-0.5, -0.5, 0.975)), 0.25, 1e-12);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0.1)), 1);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0)), 0);
 }
 
-// Flat faces of two blocks touch where their borders cross, also at a corner. Only contacts along the normal of the
-// faces have stiffness.
+// Rims of stacked blocks may cross at flat faces and at the ends of edges. So without cloth, only a direction outside
+// of a wedge reduces the stiffness.
 TEST(StiffnessShare, OfBlocksFadesOutsideOfAWedgeOnly) {
   EXPECT_EQ(stiffness_fraction(edges(0, 0, 0.01), false), 1);
   EXPECT_EQ(stiffness_fraction(edges(-0.5, -0.5, 0), false), 1);
@@ -155,7 +158,7 @@ TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
   EXPECT_NEAR(contacts[1].stiffness, 0.5e9, 1);
 }
 
-// The stiffness is 100 m / h², with the weighted mean mass m of the pushed particles, and at least the scene's value.
+// The stiffness [N/m] is 100 M/h², with the weighted mean mass M of the particles, and at least the scene's value.
 TEST(ContactBuilder, StiffnessFollowsTheMassOfWhatIsPushed) {
   Scene scene;
   constexpr double kSceneStep = 3 * kBuilderStep;  // the stiffness depends on the scene's step, not on the actual step
@@ -178,7 +181,7 @@ TEST(ContactBuilder, TheRangeIsHalfOfBothThicknesses) {
 TEST(ContactBuilder, AnObstacleActsByWhereItIsAtBothEndsOfTheStep) {
   Scene scene;
   const auto contacts = scene.contacts_of({vertex_face(1, {6, 7, 8}), vertex_face(0, {3, 4, 5})}, {});
-  const Vec3 point_t0(0.03, 0.02, -0.001);  // the point with weights 0.5, 0.3, 0.2
+  const Vec3 point_t0(0.03, 0.02, -0.001);  // of the obstacle, with weights 0.5, 0.3, 0.2
   EXPECT_TRUE(contacts[0].against_obstacle);
   EXPECT_LT((contacts[0].obstacle_start + point_t0).norm(), 1e-15);
   EXPECT_LT((contacts[0].obstacle_end + point_t0 + Vec3(0, 0, 0.0004)).norm(), 1e-15);
@@ -197,7 +200,7 @@ TEST(ContactBuilder, PinchedClothAndItsObstacleAreLeftOut) {
   EXPECT_EQ(contacts[0].particles[0], 3);
 }
 
-// A pinched particle 2 mm deep is pushed out at 0.2 m/s. If it has no clearance, the stiffness is a twentieth.
+// A pinched particle at a depth of 2 mm is pushed out at 0.2 m/s. If the exit is blocked, the stiffness is a twentieth.
 TEST(ContactBuilder, PinchedClothIsPushedBackSlowlyAndWithoutRoomSoftly) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {.stiffness = 1e6}, scene.masses);
@@ -228,7 +231,7 @@ TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {
   EXPECT_FALSE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
   ASSERT_EQ(response.springs().size(), 1U);
   const Contact& contact = response.springs()[0];
-  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // at least the present distance, although the full range is larger
+  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // limited to the present distance [m]
   EXPECT_DOUBLE_EQ(contact.full_range, 0.0025);
   EXPECT_NEAR((contact.normal - Vec3::UnitZ()).norm(), 0, 1e-12);
 }
@@ -249,7 +252,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   EXPECT_EQ(response.springs().size(), 1U);
 }
 
-// In a continued step, each corner of a failing pair gets a contact. An edge is a triangle that repeats its second end.
+// In a continued step, each end of a failing edge gets a contact. An edge is a triangle that repeats its second end.
 TEST(ContactBuilder, EachEndOfAnEdgeGetsOneContact) {
   Scene scene;
   ContactBuilder builder(scene.bodies, {}, scene.masses);

@@ -1,4 +1,4 @@
-// All parts of collision handling together, for a square of cloth over a floor.
+// Tests of Engine, which joins all parts of collision handling, with a square of cloth above a floor.
 #include "physics/collision/engine.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@ namespace weft::collision {
 namespace {
 
 constexpr double kEngineStep = 0.01;  // [s]
-constexpr double kThickness = 0.002;  // of the cloth [m]: contact begins at half of this from the floor; the detection
-                                      // distance is 1.5 mm
+constexpr double kThickness = 0.002;  // of the cloth [m]; contacts with the floor act below 1 mm, and the detection
+                                      // distance is 3 mm
 struct Sheet {
   int n;
   std::vector<double> planes{0};  // heights of the floor and the ceiling [m]
@@ -53,7 +53,7 @@ struct Sheet {
   Engine engine(const EngineParameters& parameters = {}) const { return {bodies(), parameters, x, masses}; }
 };
 
-// Begins a step in which the engine must not move any vertex.
+// Begins a step without correcting its expected end `to`.
 void begin_step(Engine& engine, const std::vector<Vec3>& from, std::vector<Vec3> to) {
   engine.begin_step(from, to, {}, kEngineStep);
 }
@@ -70,8 +70,8 @@ TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
   EXPECT_TRUE(std::isinf(of_far.min_distance()));
 }
 
-// Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm. They contain every pair
-// of features that comes near by such motions.
+// Candidate pairs stay valid while no particle moves farther than the Verlet margin of 1.5 mm. The sheet sinks by
+// 1.45 mm, to 2.95 mm above the floor, which is below the detection distance.
 TEST(Engine, FindsNearPairsAfterMotionWithinTheVerletMargin) {
   Sheet sheet(3, 0.0044);
   Engine engine = sheet.engine();
@@ -82,8 +82,8 @@ TEST(Engine, FindsNearPairsAfterMotionWithinTheVerletMargin) {
   EXPECT_EQ(engine.proximities(), 16);
 }
 
-// With velocity cones, the engine reuses closest points. Nothing moves here, so it reuses all, and they must equal
-// those of a new search.
+// With `coherence`, the engine reuses closest points. Nothing moves, so it reuses all of them, and a new search must
+// find as many.
 TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
   Sheet sheet(3, 0.0029);
   EngineParameters parameters;
@@ -107,7 +107,7 @@ TEST(Engine, DetectsCollisionsUpToTheEndOfTheTrajectory) {
   begin_step(engine, sheet.x, sheet.x);
   EXPECT_TRUE(engine.is_separated(sheet.x, sheet.falling(0.0499)));
   EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.0501)));
-  // An end beyond the floor, at which the sheet has passed through, is refused too.
+  // At this end, the sheet does not intersect the floor, but it has passed through the floor.
   EXPECT_FALSE(engine.is_separated(sheet.x, sheet.falling(0.1)));
 }
 
@@ -138,8 +138,8 @@ TEST(Engine, APredictedEndBelowTheFloorIsPushedUp) {
   EXPECT_EQ(kept, above);
 }
 
-// The sheet falls by 1.4 mm to below the floor, and is pushed up. The ceiling sinks by 1.4 mm, so it is near the sheet
-// only after the push.
+// The sheet falls to 0.4 mm below the floor, and is pushed up. The ceiling sinks to 2.8 mm, so that its distance to the
+// sheet is below the detection distance (3 mm) only after the push.
 TEST(Engine, FindsPairsThatAreNearOnlyAfterThePredictedEndIsPushed) {
   Sheet sheet(3, 0.001, 0.0042);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
@@ -155,7 +155,6 @@ TEST(Engine, FindsPairsThatAreNearOnlyAfterThePredictedEndIsPushed) {
   }
 }
 
-// If the predicted end is below the floor, the contacts with it exist before the first solve.
 TEST(Engine, APredictedEndBelowTheFloorGivesContactsBeforeTheFirstSolve) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -178,7 +177,7 @@ TEST(Engine, PushingApartSeparatesTheTrajectories) {
   for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
 }
 
-// One corner of the sheet goes through the floor, then all of it.
+// Particle 0 passes through the floor (`corner`), then the whole sheet does (`all`).
 TEST(Engine, PairsFailAnewOnlyUntilTheyWerePushedApart) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -200,9 +199,9 @@ TEST(Engine, PairsFailAnewOnlyUntilTheyWerePushedApart) {
   EXPECT_TRUE(fails_anew(corner));
 }
 
-// A step that restarts from an intermediate state uses the contacts of that state: none of those at the start, and one
-// for each pair that was pushed apart. Slip is measured from the start of the step. Other contacts keep corners behind
-// the plane of their pair, without friction.
+// A step that continues from an intermediate state (`bend`) has new contacts, one of them for each pair that was pushed
+// apart. Slip is measured from the start of the step. Further contacts, without friction, keep corners on their side of
+// a plane.
 TEST(Engine, ARestartedStepUsesTheContactsOfItsIntermediateState) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
@@ -227,7 +226,7 @@ TEST(Engine, ARestartedStepUsesTheContactsOfItsIntermediateState) {
     EXPECT_NEAR(contact.depth, contact.range - contact.normal.dot(end), 1e-15);
     smooth += contact.friction == 0;
     if (contact.friction == 0) {
-      EXPECT_LT(contact.depth, 1e-15);  // no force on corners that have not moved
+      EXPECT_LT(contact.depth, 1e-15);  // no force at `bend`
     }
   }
   EXPECT_GT(smooth, 0);
@@ -257,10 +256,11 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   EXPECT_EQ(engine.pinched_pairs(), 0);
   EXPECT_TRUE(engine.push_apart(sheet.x, pinched, movable, true).separated);
   EXPECT_GT(engine.pinched_pairs(), 0);
-  EXPECT_TRUE(engine.is_separated(sheet.x, pinched));  // apart from the pinched pairs
+  EXPECT_TRUE(engine.is_separated(sheet.x, pinched));  // is_separated() skips pinched pairs
 }
 
-// The same ceiling passes through the cloth, which stays above it. Contacts of the exempted pairs would keep it there.
+// The ceiling passes through the cloth, which is then above the ceiling. Contacts between them would keep the cloth on
+// this wrong side.
 TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
   Sheet sheet(2, 0.005, 0.01);
   std::vector<Vec3> end = sheet.x;
@@ -276,8 +276,8 @@ TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
   EXPECT_TRUE(engine.response().springs().empty());
 }
 
-// A ceiling comes down tilted, and pinches the cloth on one side. A guess of the next end must not exempt further
-// pairs.
+// A tilted ceiling pinches the cloth on one side. When the predicted end of the next step is corrected, no further
+// pairs may be exempted.
 TEST(Engine, APredictedEndExemptsNoPairs) {
   Sheet sheet(6, 0.005, 0.01);
   std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
@@ -313,8 +313,8 @@ TEST(Engine, ASheetThroughTheFloorMeetsItAtTheStart) {
   }
 }
 
-// The state is saved after a step that began with valid candidate pairs, and is restored into a new engine. The sheet
-// is folded and crumpled, so that some planes of the start do not separate during the step.
+// The state is saved within a step and restored into a new engine. The sheet is folded and crumpled, so that some of
+// the planes found at the start do not separate during the step and are replaced.
 TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -340,7 +340,7 @@ TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   EXPECT_TRUE(reader.bytes.empty());
   ByteWriter of_fresh;
   fresh.serialize(of_fresh, lower);
-  EXPECT_GT(writer.bytes.size(), of_fresh.bytes.size());  // some planes have changed
+  EXPECT_GT(writer.bytes.size(), of_fresh.bytes.size());  // with the replaced planes
 
   for (Engine* engine : {&saved, &restored}) begin_step(*engine, lower, lower);
   ASSERT_EQ(saved.response().springs().size(), restored.response().springs().size());

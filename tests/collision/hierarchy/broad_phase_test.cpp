@@ -1,5 +1,4 @@
-// Compares the broad phase, with each of its options, with brute force over all pairs. Compares the pairs as sets,
-// while surfaces move.
+// Compares the pairs of the broad phase, for each of its options, with brute force in every step of a motion.
 #include "physics/collision/hierarchy/broad_phase.hpp"
 
 #include <gtest/gtest.h>
@@ -22,10 +21,10 @@ using Pairs = std::set<TrianglePair>;
 
 constexpr int kSteps = 40;
 
-/// Pairs without and with one common vertex.
+/// [0]: pairs without a common vertex; [1]: pairs with one.
 using BothLists = std::array<Pairs, 2>;
 
-/// All pairs of triangles, within one surface or between two, whose moving k-DOPs overlap; uses no hierarchy.
+/// All pairs of triangles, with at most one common vertex, whose moving k-DOPs overlap; uses no hierarchy.
 template <int K>
 BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                       double margin = kMargin) {
@@ -61,7 +60,7 @@ BothLists all_pairs(BroadPhase& broad_phase, std::size_t surfaces) {
   return found;
 }
 
-/// Combinations of options that must give exactly the same pairs.
+/// Combinations of options with which the pairs must equal those of brute force.
 std::vector<BroadPhaseOptions> exact_options(int directions) {
   std::vector<BroadPhaseOptions> all;
   for (const int children : {2, 4, 8})
@@ -109,8 +108,8 @@ TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTree
   EXPECT_GT(max_count, 2 * min_count);
 }
 
-/// Every pair within this margin must be listed. It is smaller than kMargin by much more than the rounding of float
-/// [m].
+/// Every pair whose bounds with this margin [m] overlap must be listed. It is below kMargin by more than the rounding
+/// errors of float.
 constexpr double kRequiredMargin = kMargin - 2e-6;
 
 TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
@@ -125,7 +124,7 @@ TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
     BroadPhase broad_phase(surfaces, motion.at(0), options);
     std::size_t kept = 0;
     for (int step = 0; step < kSteps; ++step) {
-      // The motion pauses in every second period.
+      // The surfaces stand still in the last four of every eight steps.
       const auto at = [&](int s) { return motion.at(s % 8 < 4 ? s : s - s % 4); };
       const std::vector<Vec3> x_t0 = at(step), x_t1 = at(step + 1);
       for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x_t0, x_t1, kMargin);
@@ -142,8 +141,7 @@ TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
   }
 }
 
-/// Pairs without a common vertex that come closer than `reach` during the motion, compared feature by feature at 17
-/// times.
+/// Pairs without a common vertex whose features are closer than `reach` [m] at one of 17 times of the motion.
 Pairs near_during_motion(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                          double reach) {
   Pairs near;
@@ -159,8 +157,8 @@ Pairs near_during_motion(const MovingScene& scene, std::span<const Vec3> x_t0, s
   return near;
 }
 
-// The pairs are complete for any trajectory that starts within the margin, and ends within the margin of any position
-// in the boxes between two corners.
+// The pairs must be complete for trajectories on which each vertex starts within the margin of x_t0, and ends within
+// the margin of the box from `low` to `high`.
 TYPED_TEST(BroadPhasePairs, HoldAllThatComeNearOnTheWayToAnywhereBetweenTwoCorners) {
   const FoldingSlidingFlying motion(5);
   const std::vector<Surface> surfaces = motion.scene().surfaces();
@@ -223,8 +221,8 @@ TEST(BroadPhase, WithASeparationListListsTheSamePairsAgainWhenAskedTwice) {
   EXPECT_EQ(all_pairs(broad_phase, surfaces.size()), first);
 }
 
-// Regions that normal cones skip are traversed again when they fold, once each. The separation list does not skip them
-// again when they become flat, so it may have more pairs.
+// Normal cones skip flat regions. When a region folds, its pairs are listed once each. When it becomes flat again, a
+// search with the separation list does not skip it, so this search may list more pairs.
 TEST(BroadPhase, WithASeparationListAndNormalConesListsEachPairOnce) {
   const FoldingSlidingFlying motion(9);
   const std::vector<Surface> surfaces = motion.scene().surfaces();
@@ -233,7 +231,7 @@ TEST(BroadPhase, WithASeparationListAndNormalConesListsEachPairOnce) {
   BroadPhase plain(surfaces, motion.at(0), options);
   options.separation_list = true;
   BroadPhase listed(surfaces, motion.at(0), options);
-  constexpr int kStill = 6;  // steps at the flat start
+  constexpr int kStill = 6;  // number of steps without motion at the start
   for (int step = 0; step < kStill + kSteps; ++step) {
     const std::vector<Vec3> x_t0 = motion.at(std::max(0, step - kStill)),
                             x_t1 = motion.at(std::max(0, step + 1 - kStill));

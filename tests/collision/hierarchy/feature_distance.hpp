@@ -1,4 +1,4 @@
-// Distance of two triangles, feature by feature.
+// Distance of two triangles, by brute force over their features.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,8 @@
 
 namespace weft::collision::testing {
 
-/// Minimum distance of features of the two triangles that have no common vertex; infinite if there are none.
+/// Minimum distance [m] of all vertex–face and edge–edge pairs of the triangles without a common vertex; 1e150 if there
+/// is no such pair.
 inline double feature_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x) {
   const auto at = [&](Index v) -> const Vec3& { return x[v]; };
   double least_sq = 1e300;

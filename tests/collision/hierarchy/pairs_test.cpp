@@ -18,7 +18,7 @@ using testing::TestMesh;
 using testing::triangle_soup;
 using Pairs = std::set<TrianglePair>;
 
-/// One kind of bound and one shape of the tree.
+/// Number of directions of the k-DOPs, and shape of the tree.
 template <int TestK, int children, int leaf>
 struct Setup {
   static constexpr int K = TestK;
@@ -33,14 +33,15 @@ using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, 
                                 Setup<18, 4, 8>, Setup<18, 8, 2>, Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
 TYPED_TEST_SUITE(HierarchyPairs, Setups);
 
-/// Brute force in double precision: the intervals of a triangle along each direction, at start and end of its path.
+/// Bounds of triangles in double precision: intervals along each direction, at the start and at the end of the step.
 template <int K>
 class BruteForce {
  public:
   BruteForce(const TestMesh& mesh, std::span<const Vec3> x_t1, double margin)
       : mesh_(mesh), x_t1_(x_t1), margin_(margin) {}
 
-  /// Maximum gap over all directions and both ends [m], less the margins; the bounds overlap if it is not positive.
+  /// Gap between the bounds of two triangles [m]: the maximum, over all directions, of the gap that exists both at the
+  /// start and at the end, with the margins subtracted. The bounds overlap if it is not positive.
   double gap(const Triangle& a, const BruteForce& other, const Triangle& b) const {
     double max_gap = -1e300;
     for (int d = 0; d < K; d += 2) {
@@ -82,8 +83,8 @@ Pairs as_set(const PairList& list) {
   return set;
 }
 
-/// Bounds are rounded outward to float. This may add pairs whose bounds are apart by a few 1e-7 of the coordinates, but
-/// no others.
+/// Checks that `found` has all `required` pairs and only `allowed` ones. Bounds are rounded outward to float, which may
+/// add pairs whose gap is at most a few 1e-7 of the coordinates.
 void expect_between(const Pairs& required, const Pairs& found, const Pairs& allowed) {
   EXPECT_TRUE(std::includes(found.begin(), found.end(), required.begin(), required.end()));
   EXPECT_TRUE(std::includes(allowed.begin(), allowed.end(), found.begin(), found.end()));
@@ -92,7 +93,7 @@ void expect_between(const Pairs& required, const Pairs& found, const Pairs& allo
 template <class S>
 void expect_self_pairs(const TestMesh& mesh, const typename S::TreeType& tree, std::span<const Vec3> x_t1,
                        double margin) {
-  constexpr double kRounding = 1e-6;  // 4 roundings of 2^-23 at coordinates up to 2
+  constexpr double kRounding = 1e-6;  // [m]; four rounding errors of 2^-23 of coordinates up to 2 m
   const BruteForce<S::K> brute(mesh, x_t1, margin);
   std::array<Pairs, 2> required, allowed;
   for (std::size_t a = 0; a < mesh.triangles.size(); ++a) {
@@ -237,7 +238,7 @@ TEST(Hierarchy, HoldsEveryTriangleOnceInNodesAndLeavesOfItsShapeAndParentsBefore
 }
 
 TEST(Hierarchy, ListsPairsInTheSameOrderOnAnyNumberOfThreads) {
-  // A sheet in layers, with enough leaves for several threads.
+  // Three layers, with enough leaves for several threads.
   const TestMesh sheet = folded_sheet(64, 3, 0.01);
   Tree<6> tree(sheet.surface(), sheet.x), other = tree;
   tree.refit(sheet.x, sheet.x, 0.004);
@@ -278,7 +279,7 @@ TEST(Hierarchy, RefusesIndicesOutsideTheSurfaceAndShapesWithoutLanes) {
 }
 
 TEST(SplitLongestSide, PutsCutTrianglesOnTheSideWithFewerUncutOnes) {
-  // Intervals along x from 0 to 10, plane at 5: three are below, one is cut, two are above.
+  // Intervals along x. The plane x = 5 has three of them below it and two above it, and cuts the one from 4 to 6.
   const std::array<std::pair<double, double>, 6> spans{{{0, 1}, {4, 6}, {1, 2}, {8, 10}, {2, 3}, {6, 7}}};
   std::vector<KDop<6>> bounds;
   for (const auto& [low, high] : spans) bounds.push_back(swept_point<6>({low, 0, 0}, {high, 1, 1}, 0));
@@ -288,7 +289,8 @@ TEST(SplitLongestSide, PutsCutTrianglesOnTheSideWithFewerUncutOnes) {
 }
 
 TEST(SplitLongestSide, UsesTheDirectionWhoseFacesAreFurthestApart) {
-  // Points along the diagonal of x and y: only the 18-DOP has that direction, in which the set is 14 long, not 10.
+  // The points lie along the diagonal of x and y, one of the directions of the 18-DOP. Along it, the set is 10.6 m
+  // long; along x, 7.5 m.
   std::vector<KDop<18>> bounds;
   for (int i = 0; i < 4; ++i) {
     const Vec3 p{2.5 * i, 2.5 * i, 3.0 * (i % 2)};

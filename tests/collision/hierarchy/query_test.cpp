@@ -16,13 +16,14 @@ using testing::FoldingSlidingFlying;
 using testing::kMargin;
 using testing::random_vec;
 
-constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kNone = std::numeric_limits<double>::infinity();  // distance of an excluded triangle
 
 double distance_sq(const Vec3& p, const Triangle& t, std::span<const Vec3> x) {
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]).distance_sq;
 }
 
-/// Maximum gap along an axis between the box of a triangle's corners at these times and the box from `low` to `high`.
+/// Maximum, over the axes, of the gap between two boxes [m]: that of a triangle's corners at all `times`, and that from
+/// `low` to `high`.
 double box_gap(std::initializer_list<std::span<const Vec3>> times, const Triangle& t, const Vec3& low,
                const Vec3& high) {
   Vec3 corner_min = Vec3::Constant(kNone), corner_max = Vec3::Constant(-kNone);
@@ -37,7 +38,7 @@ using AllK =
     ::testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
 TYPED_TEST_SUITE(HierarchyQuery, AllK);
 
-/// A tree, the motion to which it was fitted, and positions during the motion or within its margin.
+/// A tree, the motion from x_t0 to x_t1 to which it was fitted, and positions x within the margin of this motion.
 template <int K>
 struct Fit {
   const Tree<K>& tree;
@@ -72,7 +73,7 @@ TYPED_TEST(HierarchyQuery, ForTheNearestTrianglesFindsThemAndAllTiesOfThoseThatC
   for_all_fits<TypeParam::value>([&](const auto& fit) {
     const Surface& surface = fit.tree.surface();
     for (int i = 0; i < 40; ++i) {
-      // Half of the points are random. The others are vertices, to which all triangles around are equally near.
+      // Half of the points are random. The others are vertices, whose triangles are all at distance 0.
       const Index vertex = surface.first_vertex + static_cast<Index>(generator() % 1000) % surface.vertex_count;
       const Vec3 p = i % 2 == 0 ? random_vec(generator) : fit.x[vertex];
       // In every third query, every third triangle is excluded.
@@ -132,7 +133,7 @@ TYPED_TEST(HierarchyQuery, ForABoxFindsAllThatMeetItAndNoneBeyondItsBounds) {
         const bool listed = std::ranges::binary_search(found, surface.first_triangle + static_cast<Index>(n));
         const bool meets = box_gap({fit.x}, t, low, high) <= 0;
         EXPECT_TRUE(listed || !meets);
-        // A lazy refit may exceed the margin by an eighth.
+        // Bounds of a lazy refit may exceed the margin by an eighth; 0.001 is for rounding.
         EXPECT_TRUE(!listed || box_gap({fit.x_t0, fit.x_t1}, t, low, high) <= 1.126 * kMargin);
         met += meets;
       }

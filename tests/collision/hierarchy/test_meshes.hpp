@@ -30,12 +30,12 @@ inline Vec3 random_vec(std::mt19937& generator) {
 }
 
 /// Random triangles between few vertices: many share a vertex or an edge; some are equal, or name a vertex twice.
+/// `vertices`: number of clusters of five vertices. `size`: of a cluster [m].
 inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double size) {
   std::mt19937 generator(seed);
   TestMesh mesh;
   for (int v = 0; v < vertices; ++v) {
     const Vec3 centre = random_vec(generator);
-    // Vertices form clusters of five, so that triangles within a cluster are small.
     for (int i = 0; i < 5; ++i) mesh.x.push_back(centre + size * random_vec(generator));
   }
   const auto pick = [&](int count) { return static_cast<Index>(generator() % static_cast<unsigned>(count)); };
@@ -46,7 +46,7 @@ inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double
   return mesh;
 }
 
-/// A sheet of n × n vertices over the unit square, folded back and forth into `layers` layers that are `gap` apart.
+/// A sheet of n × n vertices, 1 m × 1 m, folded back and forth into `layers` layers that are `gap` [m] apart.
 inline TestMesh folded_sheet(int n, int layers, double gap) {
   TestMesh mesh;
   for (int j = 0; j < n; ++j) {

@@ -12,7 +12,7 @@ inline constexpr double kMargin = 0.01;  ///< enlargement of the bounds [m]
 /// Several meshes with a common numbering.
 struct MovingScene {
   std::vector<Triangle> triangles;
-  std::vector<Index> first_triangle{0}, first_vertex{0};  ///< of each surface, with the totals at the end
+  std::vector<Index> first_triangle{0}, first_vertex{0};  ///< of each surface; then the totals
 
   void add(const TestMesh& mesh) {
     for (Triangle t : mesh.triangles) {
@@ -35,8 +35,8 @@ struct MovingScene {
   }
 };
 
-/// A sheet rolls up and unrolls; a second sheet slides over it and flutters; a ball of triangles flies through both,
-/// returns and rests for a while. Motions in a step are as large as in a simulation: a few per cent of the size.
+/// A sheet of 1 m rolls up and unrolls. A second sheet slides over it and flutters. A ball of triangles flies through
+/// both by 0.1 m in each of ten steps, rests for ten steps, and jumps back.
 class FoldingSlidingFlying {
  public:
   explicit FoldingSlidingFlying(int n) : sheet_(folded_sheet(n, 1, 0)), ball_(triangle_soup(4, 20, 60, 0.1)) {

@@ -1,5 +1,5 @@
-// Compares the closed forms of closest points with an exact minimisation in quadruple precision, which tries every
-// support (the set of corners with positive weight).
+// Compares the closed forms of closest points with a minimisation in quadruple precision that tries every support (set
+// of vertices with a weight other than 0).
 #include "physics/collision/proximity/closest_points.hpp"
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ Quad dot(const QuadVec& a, const QuadVec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Foot of the perpendicular from point `w` to the plane through 0 spanned by u and v. `inside`: both weights are
-/// positive and, for a triangle, their sum is below 1; for a pair of edges, each is below 1.
+/// Foot of the perpendicular from a point w to a line or plane through the origin. `inside`: the foot is inside the
+/// edge u, the triangle (0, u, v) or, for a pair of edges, the parallelogram of u and v.
 struct Foot {
   bool inside;
   Quad distance_sq;
@@ -76,7 +76,8 @@ double exact_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec
   return std::sqrt(static_cast<double>(best));
 }
 
-/// Checks that the weights of each side sum to 1, and that they give `difference`.
+/// Checks that the weights of the first `on_a` vertices are positive and sum to 1, that those of the others are
+/// negative and sum to −1, and that all give `difference`. `size`: of the geometry [m].
 void expect_consistent(const ClosestPoints& c, const std::array<Vec3, 4>& x, int on_a, double size) {
   const auto split = c.weights.begin() + on_a;
   EXPECT_NEAR(std::accumulate(c.weights.begin(), split, 0.0), 1, 1e-15);
@@ -89,7 +90,7 @@ void expect_consistent(const ClosestPoints& c, const std::array<Vec3, 4>& x, int
   EXPECT_DOUBLE_EQ(c.distance_sq, c.difference.squaredNorm());
 }
 
-/// Random numbers. Each order of magnitude that a cloth scene has is equally likely.
+/// Random numbers. In length(), each order of magnitude from 1 µm to 1 km is equally likely.
 class Numbers {
  public:
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(generator_); }
@@ -104,10 +105,11 @@ TEST(ClosestVertexFace, IsThePerpendicularFootInsideAndTheEdgeOrCornerOutsideEac
   const std::array<Vec3, 3> t{Vec3{0, 0, 0}, Vec3{2, 0, 0}, Vec3{0, 1, 0}};
   struct Case {
     double x, y;
-    unsigned support;  // bit 0 is the vertex, bits 1 to 3 are the corners
+    unsigned support;  // bit 0: the point; bits 1 to 3: the corners of the triangle
   };
   constexpr double s = 1e-12, h = 0.5;
-  // Points 1e-12 on either side of the three edges, and of the lines through each corner perpendicular to its edges.
+  // Points 1e-12 or 1e-9 m on either side of the three edges, and of the lines through each corner that are
+  // perpendicular to its edges.
   const Case cases[] = {
       {h, h / 2, 0b1111},    {h, s, 0b1111},         {h, -s, 0b0111},         {s, h, 0b1111},
       {-s, h, 0b1011},       {1 - s, h - s, 0b1111}, {1 + s, h + s, 0b1101},  {s, -s, 0b0111},
@@ -133,7 +135,7 @@ TEST(ClosestVertexFace, AgreesWithTheExactDistanceForTrianglesOfEverySizeAndPlac
     const std::array<Vec3, 3> t{place + random.vec() * size, place + random.vec() * size, place + random.vec() * size};
     const Vec3 p = place + random.vec() * size;
     const ClosestPoints found = closest_vertex_face(p, t[0], t[1], t[2]);
-    // Differences of the inputs are exact to 1e-16 of their size; measured: at most 2e-15 of the size.
+    // Tolerance: ten times the largest measured error of the distance, 2e-15 of `size`.
     EXPECT_NEAR(std::sqrt(found.distance_sq), exact_vertex_face(p, t), 2e-14 * size);
     expect_consistent(found, {p, t[0], t[1], t[2]}, 1, size);
   }
@@ -175,7 +177,7 @@ TEST(ClosestEdgeEdge, IsInsideBothOrAtAnEndEitherSideOfEachBoundary) {
   constexpr double s = 1e-12;
   struct Case {
     Vec3 q0, q1;
-    unsigned support;  // bits 0, 1 are the ends of p, bits 2, 3 those of q
+    unsigned support;  // bits 0 and 1: the ends of p; bits 2 and 3: those of q
   };
   const Case cases[] = {{{0.5, -1, 0.1}, {0.5, 1, 0.1}, 0b1111},     {{s, -1, 0.1}, {s, 1, 0.1}, 0b1111},
                         {{-s, -1, 0.1}, {-s, 1, 0.1}, 0b1101},       {{1 - s, -1, 0.1}, {1 - s, 1, 0.1}, 0b1111},

@@ -14,7 +14,7 @@ namespace {
 using testing::random_vec;
 using Polygon = std::vector<Vec3>;
 
-/// Whether the segment pierces the triangle, in long double, from the signs of five volumes.
+/// Whether the segment from p to q pierces the triangle (a, b, c): signs of five volumes in long double.
 bool pierces(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   using Wide = Eigen::Matrix<long double, 3, 1>;
   const auto volume = [](const Vec3& o, const Vec3& u, const Vec3& v, const Vec3& w) {
@@ -55,8 +55,8 @@ double size_of(const Polygon& a, const Polygon& b) {
   return size;
 }
 
-/// A triangle or a planar convex quad. `kind` selects its shape: ordinary, needle, almost or exactly a segment, a
-/// point.
+/// A random planar convex polygon. `kind` 0 to 3: triangles with a height of about 1, 1e-4, 1e-9 and 0 times their
+/// length; 4 to 6: quads with the first three of these heights; 7: a point.
 Polygon random_polygon(std::mt19937& generator, int kind) {
   const Vec3 o = random_vec(generator), e = random_vec(generator);
   const double flatness[] = {1, 1e-4, 1e-9, 0};
@@ -66,14 +66,16 @@ Polygon random_polygon(std::mt19937& generator, int kind) {
   return {o, o + e, o + e + 0.7 * f, o + f};
 }
 
-/// Compares with brute force: the distance relative to the size, the lower bound, and the weighted points.
+/// Compares the distance and its lower bound with brute force, and checks that the weights give the difference.
+/// `tolerance`: relative to the size of the polygons.
 void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   const ConvexClosest found = closest_convex(a, b);
   const double expected = distance_of_triangulations(a, b), size = size_of(a, b);
   EXPECT_NEAR(found.distance, expected, tolerance * size);
   EXPECT_LE(found.lower_bound, expected + tolerance * size);
   EXPECT_LE(found.lower_bound, found.distance);
-  // The shorter the difference, the less accurate its direction: the plane may be tilted by 1e-16 size / distance.
+  // Rounding tilts the direction of a short difference by about 1e-16 size / distance [rad], which lowers the bound by
+  // up to size times this angle.
   EXPECT_GE(found.lower_bound, expected - tolerance * size - 1e-15 * size * size / std::max(expected, 1e-300));
   Vec3 difference = Vec3::Zero();
   double sum_a = 0, sum_b = 0;
@@ -92,7 +94,7 @@ void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   EXPECT_LE((difference - found.difference).norm(), tolerance * size);
 }
 
-/// Relative tolerances: 30 times the largest errors in 600,000 pairs of the first test, which were 7e-16 and 1.5e-15.
+/// Relative tolerances: 30 times the largest errors measured in 600,000 pairs of the first test, 7e-16 and 1.5e-15.
 constexpr double kOrdinary = 2e-14, kNeedle = 5e-14;
 
 TEST(Gjk, EqualsTheClosedFormsForTrianglesAndQuadsOfAllKindsAndScales) {
@@ -129,7 +131,8 @@ TEST(Gjk, OfTouchingPolygonsIsZero) {
   std::mt19937 generator(23);
   for (int i = 0; i < 2000; ++i) {
     Polygon a = random_polygon(generator, i % 2 == 0 ? 0 : 4), b = random_polygon(generator, 0);
-    // A corner of b touches a corner, an edge or the inside of a; the rest of b is beyond the plane of a.
+    // A corner of b touches a corner, an edge or the inside of a. The other corners of b are on one side of the plane
+    // of a.
     const Vec3 n = (a[1] - a[0]).cross(a[2] - a[0]);
     const Vec3 place = i % 3 == 0 ? a[1] : i % 3 == 1 ? Vec3(0.5 * (a[0] + a[1])) : Vec3((a[0] + a[1] + a[2]) / 3);
     const Vec3 shift = place - b[0];
@@ -147,8 +150,8 @@ TEST(Gjk, FarFromTheOriginLosesOnlyTheDigitsOfTheCoordinates) {
     const Vec3 away = 1e3 * random_vec(generator);
     for (Vec3& p : a) p = 1e-3 * p + away;
     for (Vec3& p : b) p = 1e-3 * p + away;
-    // Differences of nearby numbers are exact. But rounded corners make the quad non-planar by 1e-13 m, and the two
-    // results may differ by as much.
+    // Tolerance: rounding of coordinates up to 1 km makes the quad non-planar by 1e-13 m, so that the distance by GJK
+    // differs from that by brute force.
     EXPECT_NEAR(closest_convex(a, b).distance, distance_of_triangulations(a, b), 3e-13) << i;
   }
 }

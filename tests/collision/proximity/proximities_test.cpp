@@ -48,7 +48,7 @@ ClosestPoints to_face(const TestMesh& mesh, Index v, const Triangle& t) {
   return closest_vertex_face(at(mesh, v), at(mesh, t[0]), at(mesh, t[1]), at(mesh, t[2]));
 }
 
-/// All feature pairs without a common vertex, with their distances.
+/// All feature pairs without a common vertex, with their closest points.
 struct AllPairs {
   std::map<Key, ClosestPoints> vertex_face, edge_edge;
 
@@ -91,7 +91,8 @@ std::vector<Proximity> find(const TestMesh& mesh, double reach, std::mt19937* sh
   return out;
 }
 
-/// A layered sheet with every vertex moved slightly, so that no two features are equally close.
+/// A sheet in three layers. Each vertex is moved at random by up to `roughness` [m] along each axis, so that no
+/// distances are equal.
 TestMesh rough_layers(unsigned seed, int n = 12, double roughness = 0.02) {
   TestMesh mesh = folded_sheet(n, 3, 0.03);
   std::mt19937 generator(seed);
@@ -99,8 +100,8 @@ TestMesh rough_layers(unsigned seed, int n = 12, double roughness = 0.02) {
   return mesh;
 }
 
-/// Four kinds of scenes: distances that are equal up to rounding (aligned layers); no equal distances; crossing
-/// surfaces; border edges.
+/// Scenes, in this order: aligned layers with equal distances; aligned layers without a gap; two without equal
+/// distances; crossing surfaces; random triangles.
 std::vector<TestMesh> scenes() {
   // Keeps one of several equal triangles, since this test identifies features by their vertices.
   TestMesh soup = testing::triangle_soup(4, 12, 60, 0.3);
@@ -168,13 +169,13 @@ TEST(Proximities, InsideAFaceOrInsideBothEdgesAreThoseOfBruteForce) {
 }
 
 TEST(Proximities, OnAnEdgeOrCornerAreThoseWhereNoFaceAroundIsCloser) {
-  // If no distances are equal, the rule gives one result: the vertex lies in the region that is nearest to this edge or
-  // corner.
+  // Expected: a vertex with an edge or corner on which the closest points of all faces around this edge or corner lie.
+  // Pairs of two vertices are listed for the vertex with the lower number.
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const TestMesh mesh = rough_layers(seed);
     const double reach = 0.05;
     using Support = std::pair<Index, std::set<Index>>;  // vertex; edge or corner
-    std::map<Support, std::vector<bool>> nearest;       // for each face around: whether the closest point is there
+    std::map<Support, std::vector<bool>> nearest;       // per face around it: whether its closest point is on it
     for (Index v = 0; v < static_cast<Index>(mesh.x.size()); ++v) {
       std::set<std::set<Index>> supports;
       for (const Triangle& t : mesh.triangles) {
@@ -228,8 +229,8 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
     for (const Proximity& p : find(mesh, reach)) listed.insert(key(p));
     const AllPairs all(mesh);
 
-    // Minimum distance of a listed pair of features around the given vertex and face; searches rings of neighbours
-    // until a pair is as near as `distance`.
+    // Whether steps to faces around the closest point lead from this vertex and face to a listed pair. All faces on the
+    // way must be within `distance` [m] of the vertex.
     const auto represented = [&](Index v, const Triangle& face, double distance) {
       std::set<std::pair<Index, Triangle>> seen, open{{v, face}};
       while (!open.empty()) {
@@ -281,15 +282,17 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
   }
 }
 
-/// Whether the triangle has all of these vertices (has_all), or any vertex of the other triangle (has_one).
+/// Whether the triangle has all of these vertices.
 bool has_all(const Triangle& t, const std::vector<Index>& vertices) {
   return std::ranges::all_of(vertices, [&](Index v) { return has_vertex(t, v); });
 }
+/// Whether the triangles have a common vertex.
 bool has_one(const Triangle& t, const Triangle& s) {
   return std::ranges::any_of(s, [&](Index v) { return has_vertex(t, v); });
 }
 
-// gather() can skip the neighbours of these triangles, since the clearance of their vertex stars is known.
+// gather() skips the pairs of clear triangles (Separation::find_clear_triangles) with triangles that share a vertex, so
+// none of these pairs may be near.
 TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
   int open_of_all = 0, creased_of_all = 0;
   for (const double roughness : {0.005, 0.02, 0.04}) {
@@ -324,7 +327,8 @@ TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
 }
 
 TEST(Proximities, OfAVertexOverASharedEdgeAndOverACornerAreListedOnce) {
-  // A square of two triangles, and a small triangle with its first vertex over the diagonal or over a corner.
+  // A square of two triangles, and a small triangle. Its first vertex is 10 mm above the diagonal of the square, then
+  // 5 mm beside a corner.
   TestMesh mesh;
   mesh.x = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.3, 0.3, 0.01}, {0.3, 0.35, 0.5}, {0.35, 0.3, 0.5}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}};
@@ -344,7 +348,8 @@ TEST(Proximities, OfAVertexOverASharedEdgeAndOverACornerAreListedOnce) {
 }
 
 TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
-  // Two roofs, one upside down above the other, with crossed ridges: each ridge lies in the wedge of the other.
+  // Two roofs, the upper one upside down, with crossed ridges 0.1 m apart. The contact direction, z, is inside the
+  // wedges of both ridges.
   TestMesh mesh;
   mesh.x = {{-1, 0, 0}, {1, 0, 0}, {0, -1, -1}, {0, 1, -1}, {0, -1, 0.1}, {0, 1, 0.1}, {-1, 0, 1.1}, {1, 0, 1.1}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {4, 5, 6}, {4, 7, 5}};
@@ -367,7 +372,7 @@ TEST(Proximities, WedgeTellsWhetherAFaceNextToTheEdgeIsCloser) {
 }
 
 // A border passes over a flat surface, beside vertex 0 of that surface. A face around this vertex is closer to the
-// border than the vertex.
+// border than the vertex is.
 TEST(Proximities, WedgeOfAVertexTellsWhetherAFaceAroundItIsCloser) {
   TestMesh mesh;
   mesh.x = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0.03, -1, 0.04}, {0.03, 1, 0.04}, {1, 0, 1}};
@@ -383,7 +388,7 @@ TEST(Proximities, WedgeOfAVertexTellsWhetherAFaceAroundItIsCloser) {
   EXPECT_NEAR(at_centre().distance, 0.05, 1e-15);
   EXPECT_NEAR(at_centre().outside_wedge[0], 0.03 / 0.05, 1e-12);
 
-  // Vertex 0 becomes the tip of a cone, and is now the closest point of this surface.
+  // Vertex 0 becomes the tip of a pyramid, and is now the point of this surface closest to the border.
   for (std::size_t v = 1; v < 5; ++v) mesh.x[v].z() = -1;
   EXPECT_EQ(at_centre().outside_wedge[0], 0);
 }

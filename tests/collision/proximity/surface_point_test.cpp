@@ -15,8 +15,8 @@ namespace {
 
 using testing::random_vec;
 
-// The signed distance to a box is known: outside, the distance to its nearest point; inside, the smallest depth below a
-// face, negative.
+// Expected signed distance: outside the box, the distance to its nearest point; inside, minus the smallest depth below
+// a face.
 TEST(NearestPoint, TellsTheSignedDistanceToABox) {
   const Vec3 half(0.1, 0.2, 0.05);
   const mesh::Mesh box = mesh::make_box(2 * half, 0, 1);
@@ -25,7 +25,7 @@ TEST(NearestPoint, TellsTheSignedDistanceToABox) {
     const Vec3 beyond = p.cwiseAbs() - half;
     const double expected = beyond.maxCoeff() < 0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0).norm();
     const SurfacePoint found = nearest_point(p, box.topology.triangles, box.positions);
-    EXPECT_NEAR(found.height, expected, 1e-15) << p.transpose();  // a few roundings of coordinates of 0.3
+    EXPECT_NEAR(found.height, expected, 1e-15) << p.transpose();  // tolerance: rounding of coordinates up to 0.3 m
   }
 }
 
@@ -79,7 +79,8 @@ TEST(NearestPoint, ByHierarchyHasTheBitsOfThatOfAllTriangles) {
   for (const Fitted& scene : fitted())
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
       for (int i = 0; i < 500; ++i) {
-        // The point is random, a vertex, or in the middle of a box or sphere, where several faces are equally near.
+        // The point is random, a vertex, or on the z axis, which is an axis of symmetry of box and sphere, so that
+        // several faces are equally near.
         const Index vertex =
             scene.surfaces[s].first_vertex + static_cast<Index>(generator() % 1000) % scene.surfaces[s].vertex_count;
         const Vec3 p = i % 10 == 0 ? scene.x[vertex] : i % 10 == 1 ? Vec3(0, 0, 0.01 * i) : random_vec(generator);
@@ -107,8 +108,7 @@ TEST(NearestPoint, LooksAtFacesOfOneDirectionAloneWhereThereAreAny) {
   EXPECT_GT(none, 50);
 }
 
-// The point is deep inside, near a side. The query asks for the distance to the bottom, through which the cloth
-// entered.
+// The point is 1 cm from a side of the box, and 3 cm above its bottom. The query asks for the bottom.
 TEST(NearestPoint, OfOneDirectionIsNotThatOfTheNearestSide) {
   const Fitted scene({as_test_mesh(mesh::make_box(Vec3(0.2, 0.2, 0.1), 0, 1))}, 1, 0, 0);
   const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, -Vec3::UnitZ());
@@ -141,7 +141,7 @@ TEST(TrianglesNear, AreThoseWhoseBoxesAreWithinReachInTheirOrder) {
 
 // A point is inside if a ray from it leaves the surface more often than it enters. The surface may overlap itself.
 TEST(IsInside, CountsWhatLetsOutOverWhatLetsInSoThatPartsMayOverlap) {
-  // Two boxes that overlap for x in [-0.1, 0.1], as one surface, and another box below.
+  // One surface of two boxes that overlap for x from −0.1 to 0.1 m, and a second surface: a box below.
   testing::TestMesh both = as_test_mesh(mesh::make_box(Vec3(0.4, 0.2, 0.2), 0, 2));
   const testing::TestMesh box = both;
   const auto count = static_cast<Index>(box.x.size());
@@ -177,8 +177,8 @@ TEST(FindCrossing, TellsWhereOnTheFirstTriangleAndNothingForTrianglesApart) {
   for (int c = 0; c < 3; ++c) place += (*weights)[c] * x[c];
   EXPECT_NEAR(place[2], 0, 1e-15);
   EXPECT_NEAR(place[1], 0, 1e-15);
-  // The two triangles intersect along a segment in x; the result is its midpoint.
-  const double end = 5.0 / 10;  // where the edge from the first to the last corner pierces the other triangle
+  // The triangles intersect along a segment of the x axis, from 0 to `end`; the result is its midpoint.
+  const double end = 5.0 / 10;  // x where the edge from the first to the last corner pierces the other triangle
   EXPECT_NEAR(place[0], 0.5 * end, 1e-15);
   EXPECT_FALSE(
       find_crossing({0, 2, 2}, {3, 4, 5}, std::vector<Vec3>{{0, 0, 1}, {0, 0, 3}, {5, 0, 9}, x[3], x[4], x[5]}));

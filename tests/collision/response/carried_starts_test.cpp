@@ -1,4 +1,4 @@
-// The step is solved in the frame of a turning obstacle: a thin blade moves into cloth that is 0.1 mm in front of it.
+// Tests of CarriedStarts, which serve to find separating planes in the frame of a turning obstacle.
 #include "physics/collision/response/carried_starts.hpp"
 
 #include <gtest/gtest.h>
@@ -12,10 +12,10 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kGap = 1e-4;  // [m]
+constexpr double kGap = 1e-4;  // between cloth and obstacle [m]
 
-/// Vertices 0 to 5 are two triangles of cloth, one beside the face of the other. Vertices 6 to 8 are a blade of 0.6 m
-/// along x, which rotates about z and moves along x during the step.
+/// Vertices 0 to 5 are two parallel triangles of cloth, at y = kGap and y = 3 kGap. Vertices 6 to 8 are an obstacle at
+/// y = 0: a blade of 0.6 m along x, which rotates about z and moves along x during the step. Parameter: angle [rad].
 class BeforeATurningBlade : public ::testing::TestWithParam<double> {
  protected:
   BeforeATurningBlade() {
@@ -65,11 +65,11 @@ TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
 
 INSTANTIATE_TEST_SUITE_P(By, BeforeATurningBlade, ::testing::Values(0.05, 0.3, 1.0));
 
-// A press comes down on cloth that lies on a floor. At the start that is carried along with the press, the cloth would
+// A press comes down on cloth that is 0.25 mm above a floor. Carried along with the press, the start of the cloth would
 // be below the floor.
 TEST(CarriedStarts, ClothIsNotCarriedThroughAnObstacleThatStands) {
   std::vector<Vec3> x_t0;
-  for (const double z : {0.0, kGap, -2.5 * kGap})  // cloth, press, floor
+  for (const double z : {0.0, kGap, -2.5 * kGap})  // heights of cloth, press, floor
     for (const Vec3& x : {Vec3(0, 0, z), Vec3(0.1, 0, z), Vec3(0, 0.1, z)}) x_t0.push_back(x);
   std::vector<Vec3> x_t1 = x_t0;
   const RigidMotion down{.translation = Vec3(0, 0, -3 * kGap)};

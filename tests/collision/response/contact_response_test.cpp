@@ -8,7 +8,8 @@ namespace {
 
 constexpr double kResponseStep = 0.01;  // [s]
 
-/// Contact of particle 1, at `height` [m] over a still obstacle. `side`: −1 reverses the normal.
+/// Contact of particle 1, `height` [m] above a still obstacle. `side`: 1 if the particle is side a of the contact, −1
+/// if it is side b.
 Contact over_floor(double height, double side = 1) {
   Contact contact;
   contact.particles = {0, 1, 0, 0};
@@ -75,7 +76,7 @@ TEST(ContactResponse, AllOtherContactsAreSpringsInEitherForm) {
   Contact of_an_edge = over_floor(0.002);
   of_an_edge.weights = {0.4, 0.6, 0, 0};
   of.response.add(of_an_edge, of.x_t0);
-  // The particle is pinched: it is on the wrong side, where no wall may hold it.
+  // The particle is pinched: it is 1 mm inside the obstacle, where no wall may hold it.
   std::vector<Vec3> inside = of.x_t0;
   inside[1].z() = -0.001;
   of.response.add(over_floor(-0.001), inside);

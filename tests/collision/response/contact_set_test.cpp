@@ -1,4 +1,4 @@
-// Contact springs and friction in the linear system.
+// Tests of ContactSet: contact springs, friction, and their linearisation.
 #include "physics/collision/response/contact_set.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@ namespace weft::collision {
 namespace {
 
 constexpr double kSlidingStep = 0.02;  // [s]
-constexpr double kRange = 0.002;
+constexpr double kRange = 0.002;       // activation distance [m]
 
 std::mt19937& engine() {
   static std::mt19937 generator;
@@ -22,7 +22,8 @@ Vec3 random_vector(double size) {
   return {x, y, z};
 }
 
-/// Contact normal force at 500 N/m [N] and its slope [N/m]; `depth` is relative to kRange and at most 1.
+/// Normal force [N] of a contact with a stiffness of 500 N/m; slope_at() is its derivative [N/m]. `depth`: relative to
+/// kRange, at most 1.
 double normal_force_at(double depth) {
   return 500 * kRange * depth * (1 + numerics.contact.stiffening * std::pow(depth, 4));
 }
@@ -30,7 +31,7 @@ double slope_at(double depth) {
   return 500 * (1 + 5 * numerics.contact.stiffening * std::pow(depth, 4));
 }
 
-/// A vertex of cloth in a slanted frame, 0.4 kRange above the middle of a triangle of cloth.
+/// Vertex 0 is 0.4 kRange above the inside of the triangle of vertices 1 to 3, along a slanted normal.
 struct VertexOnFace {
   std::vector<Vec3> x;
   Contact contact;
@@ -62,7 +63,8 @@ struct VertexOnFace {
   double energy(const std::vector<Vec3>& at) const {
     return contact.stiffness * kRange * kRange * energy_at((kRange - gap(at)) / kRange);
   }
-  /// ∫ d (1 + c d⁴) for a depth d relative to kRange; beyond 1, the force continues along its tangent.
+  /// Energy divided by stiffness · kRange²: the integral of d (1 + c d⁴) up to `depth`, which is relative to kRange. At
+  /// depths beyond 1, the force is linear.
   static double energy_at(double depth) {
     const double c = numerics.contact.stiffening;
     if (depth <= 0) return 0;
@@ -76,7 +78,7 @@ struct VertexOnFace {
   }
 };
 
-/// States of the contacts, as before the first linearisation of a step.
+/// States of the contacts before the first linearisation of a step, at x [m].
 ContactStates states_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
   ContactStates states;
   contacts.update(x, states);
@@ -109,11 +111,11 @@ TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
         x[i][axis] = place - kEpsilon;
         const double below = pair.energy(x);
         x[i][axis] = place;
-        // The third derivative of the energy, 20 c k d³ / r⁴ with c = 100 and d ≤ r, times ε² / 6 is 8e-7 N.
+        // Tolerance: ε²/6 times the third derivative of the energy, 20 c k d³/r⁴ (c = 100, d ≤ r), is at most 8e-7 N.
         EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-6);
       }
   }
-  // Some trials are within the range, others are outside.
+  // Some trials are within the activation distance, others are outside.
   EXPECT_GT(pushing, 5);
   EXPECT_LT(pushing, 20);
 }
@@ -125,7 +127,7 @@ TEST(ContactSet, ForceIsContinuousAtTheRangeAndNoneBeyond) {
     std::vector<Vec3> x = pair.x;
     x[0] += (0.6 * kRange + offset) * pair.contact.normal;
     const double force = forces_of(contacts, x)[0].norm();
-    // Coordinates are rounded by 1e-17 m.
+    // Tolerance: rounding of coordinates by 1e-17 m, at 500 N/m, changes the force by about 5e-15 N.
     EXPECT_NEAR(force, 500 * std::max(0.0, -offset), 1e-13) << offset;
     EXPECT_EQ(contacts.count_active(x), offset < 0 ? 1 : 0);
   }
@@ -145,7 +147,7 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const VertexOnFace pair(mu), smooth(0);
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const Vec3 n = pair.contact.normal;
-  // Before the first solve, friction uses the normal force at the start.
+  // Before the first solve, friction uses the normal force at the initial depth, 0.6 kRange.
   const double normal_force = normal_force_at(0.6);
   const double stick = numerics.contact.stick_velocity * kSlidingStep;
   const Vec3 direction = n.unitOrthogonal();
@@ -156,7 +158,7 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
     const Vec3 friction = forces_of(contacts, x)[0] - forces_of(frictionless, x)[0];
     EXPECT_LT((friction + friction.norm() * direction).norm(), 1e-12 * mu * normal_force) << fraction;
     EXPECT_LE(friction.norm(), mu * normal_force * (1 + 1e-12));
-    EXPECT_GE(friction.norm(), last * (1 - 1e-12));  // grows monotonically
+    EXPECT_GE(friction.norm(), last * (1 - 1e-12));  // friction grows with the slip
     last = friction.norm();
     const double expected = fraction < 1 ? mu * normal_force * fraction * (2 - fraction) : mu * normal_force;
     EXPECT_NEAR(friction.norm(), expected, 1e-9 * mu * normal_force);
@@ -194,7 +196,7 @@ TEST(ContactSet, FrictionFollowsTheNormalForceOfTheLastUpdateAndFinallyKeepsIt) 
   const ContactSet contacts = pair.set();
   ContactStates states;
   std::vector<Vec3> x = pair.x;
-  x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // a third of the force
+  x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // depth 0.2 kRange
   const auto tangential = [&] {
     std::vector<Vec3> forces(x.size(), Vec3::Zero());
     contacts.add_linear_forces(x, states, forces);
@@ -203,20 +205,20 @@ TEST(ContactSet, FrictionFollowsTheNormalForceOfTheLastUpdateAndFinallyKeepsIt) 
   };
   contacts.update(x, states);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.6), 1e-12);
-  // The law itself uses the present normal force. Until updates stop, the residual therefore contains the effect of
-  // lagging.
+  // add_forces() uses the present normal force until updates stop, so that the residual contains the error of the
+  // constant normal force in the linear system.
   const Vec3 itself = forces_of(contacts, x, states)[0];
   EXPECT_NEAR(itself.dot(pair.contact.normal.unitOrthogonal()), -mu * normal_force_at(0.2), 1e-12);
   contacts.update(x, states);
-  // The normal force is linearised at the initial depth 0.6, and friction uses the linearised force.
+  // The normal force is linearised at the initial depth, 0.6 kRange, and friction uses the linearised force.
   const auto tangent = [](double at, double depth) {
     return std::max(0.0, normal_force_at(at) + slope_at(at) * kRange * (depth - at));
   };
   EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.2), 1e-12);
   for (int k = 2; k < numerics.newton.slow_after - 1; ++k) contacts.update(x, states);
   EXPECT_NEAR(tangential(), mu * normal_force_at(0.2),
-              1e-3 * mu * normal_force_at(0.2));  // accuracy of the depth search
-  // The number of updates in a step is limited, so that normal force and slip cannot alternate without end.
+              1e-3 * mu * normal_force_at(0.2));  // error that these updates leave
+  // After a limited number of updates in a step, the normal force stays constant, so that iterations end.
   contacts.update(x, states);
   const double last = tangential();
   x[0] -= 0.2 * kRange * pair.contact.normal;
@@ -241,7 +243,7 @@ TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) 
   EXPECT_NEAR(states.normal_forces[1], normal_force_at(0.6), 1e-12);
 }
 
-// −∂f/∂x of one contact, as linearise() adds it to the system.
+// −∂f/∂x of all contacts [N/m], from the terms that linearise() adds to the system.
 Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   const Index rows = system.matrix.rows();
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
@@ -256,14 +258,14 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   return k;
 }
 
-// Forces of the linear system, with the tangents of the start.
+// Contact forces in the linear system [N], linearised at the initial depths.
 std::vector<Vec3> linear_forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   contacts.add_linear_forces(x, states_at_start(contacts, x), f);
   return f;
 }
 
-// −∂f/∂x by central differences with the tangents and normal forces of the start, times `rate`.
+// −∂f/∂x [N/m] times `rate`, by central differences of linear_forces_of().
 Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, double rate) {
   constexpr double kEpsilon = 1e-10;
   const auto size = static_cast<Eigen::Index>(3 * x.size());
@@ -294,15 +296,15 @@ solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Ve
 
 TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
   for (double rate : {1.0, 2.0}) {
-    // Frictionless contacts may be anywhere within the range; contacts with friction must not have slipped yet.
+    // The frictionless contact is tested at a random depth; the contact with friction, at zero slip.
     const VertexOnFace smooth(0), rough(0.4);
     std::vector<Vec3> x = smooth.jittered(0.0003);
     ASSERT_EQ(smooth.set().count_active(x), 1);
     const Eigen::MatrixXd spring = assembled(linearised(smooth.set(), x, rate));
-    // Rounding: 1e-17 of a coordinate over 1e-10 m, times the stiffness.
+    // Tolerance: coordinates are rounded by 1e-17 m, and displaced by 1e-10 m; this gives a relative error of 1e-7.
     EXPECT_LT((spring - differences(smooth.set(), x, rate)).cwiseAbs().maxCoeff(), 1e-5 * spring.maxCoeff());
     const Eigen::MatrixXd sticking = assembled(linearised(rough.set(), rough.x, rate));
-    // The secant 2/ε − s/ε², for a slip s and the stick slip ε, changes by 3e-5 of itself over the difference of s.
+    // Tolerance: the secant of friction, 2/ε − s/ε² (slip s, stick slip ε), changes by 3e-5 of itself over 1e-10 m.
     EXPECT_LT((sticking - differences(rough.set(), rough.x, rate)).cwiseAbs().maxCoeff(), 1e-4 * sticking.maxCoeff());
     EXPECT_GT(sticking.maxCoeff(), 2 * spring.maxCoeff());
   }
@@ -324,12 +326,12 @@ struct Slipping : VertexOnFace {
     at[0] += numerics.contact.stick_velocity * kSlidingStep * (slip * along + sideways * across);
     return at;
   }
-  /// Updates the lagged values at the result of an iteration.
+  /// Calls ContactSet::update() with an iterate at this slip.
   Slipping& update(double slip, double sideways = 0) {
     contacts.update(slipped(slip, sideways), states);
     return *this;
   }
-  /// Friction in the linear system, relative to the normal force.
+  /// Friction in the linear system at this slip, relative to the normal force.
   Vec3 friction(double slip, double sideways = 0) const {
     std::vector<Vec3> f(x.size(), Vec3::Zero());
     contacts.add_linear_forces(slipped(slip, sideways), states, f);
@@ -362,7 +364,7 @@ TEST(ContactSet, FrictionThatSticksFollowsItsTangentToTheLaw) {
   pair.update(0.5).update(0.5);
   const auto law = [](double slip) { return 0.4 * slip * (2 - slip); };
   EXPECT_NEAR(pair.friction(0.5).dot(pair.along), -law(0.5), 1e-12);
-  // The slope of the law is 0.4 (2 − 2 s) along the slip and 0.4 (2 − s) across it.
+  // At a slip s, the slope of law() is 0.4 (2 − 2 s) along the slip and 0.4 (2 − s) across it.
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -(law(0.5) + 0.4 * 1.0 * 0.1), 1e-12);
   EXPECT_NEAR(pair.friction(0.5, 0.2).dot(pair.across), -0.4 * 1.5 * 0.2, 1e-12);
   for (int k = 0; k < 6; ++k) pair.update(0.6);
@@ -379,9 +381,10 @@ TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFrictio
   pair.update(0.5).update(0.5).update(1.5, 1);
   const FrictionState& friction = pair.states.frictions[0];
   EXPECT_FALSE(friction.sticks);
-  // 0.6 times (0.75 + 1.0 · 1.0, 1.5 · 1.0), limited to static friction.
+  // The tangent at the slip (0.5, 0) gives 0.6 (1.75, 1.5) at the slip (1.5, 1): 0.75 + 1.0 · 1.0 along, 1.5 · 1.0
+  // across. The length of this vector is limited to the coefficient of static friction, 0.6.
   EXPECT_LT((friction.relative_friction - 0.6 * (1.75 * pair.along + 1.5 * pair.across).normalized()).norm(), 1e-12);
-  EXPECT_NEAR(pair.friction(100).norm(), 0.4, 1e-12);  // the law itself
+  EXPECT_NEAR(pair.friction(100).norm(), 0.4, 1e-12);  // sliding friction
 }
 
 TEST(ContactSet, ReversedSlipSticksAtMostTwiceInAStep) {
@@ -394,12 +397,12 @@ TEST(ContactSet, ReversedSlipSticksAtMostTwiceInAStep) {
     pair.update(slip);
     const bool sticks = turn < numerics.contact.max_resticks;
     EXPECT_EQ(pair.states.frictions[0].sticks, sticks) << turn;
-    // Friction follows the tangent at zero slip while it sticks; otherwise it has its full size.
+    // While the contact sticks, friction follows the tangent at zero slip; otherwise it is sliding friction.
     EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
     pair.update(slip);
     EXPECT_FALSE(pair.states.frictions[0].sticks) << turn;
   }
-  // In the next step, friction can stick again.
+  // In the next step, the contact can stick again.
   pair.states = {};
   pair.update(4).update(-4);
   EXPECT_TRUE(pair.states.frictions[0].sticks);
@@ -414,7 +417,7 @@ TEST(ContactSet, FrictionThatIsNotFoundInManyUpdatesSlidesOn) {
   pair.update(0.2).update(0.3);
   EXPECT_FALSE(pair.states.frictions[0].sticks);
   EXPECT_EQ(pair.states.frictions[0].relative_friction, relative_friction);
-  EXPECT_NEAR(pair.friction(0.3).dot(pair.along), -0.4 * 0.3 * (2 - 0.3), 1e-12);  // the law itself
+  EXPECT_NEAR(pair.friction(0.3).dot(pair.along), -0.4 * 0.3 * (2 - 0.3), 1e-12);  // exact friction, no tangent
 }
 
 TEST(ContactSet, ClothOnClothKeepsTheFrictionOfUnchangedVelocity) {
@@ -424,7 +427,7 @@ TEST(ContactSet, ClothOnClothKeepsTheFrictionOfUnchangedVelocity) {
   pair.update(0.6).update(-0.6);
   EXPECT_FALSE(pair.states.frictions[0].sticks);
   EXPECT_EQ(pair.states.frictions[0].relative_friction, relative_friction);
-  EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -0.4 * 0.6 * (2 - 0.6), 1e-12);  // the law itself
+  EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -0.4 * 0.6 * (2 - 0.6), 1e-12);  // exact friction, no tangent
 }
 
 TEST(ContactSet, WhatIsFoundLaterSlidesUntilItIsSeenToHold) {
@@ -443,7 +446,7 @@ TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
   Contact contact;
   contact.particles = {2, 0, 0, 0};
   contact.weights = {1, 0, 0, 0};
-  contact.obstacle_end = Vec3(0, 0, -1);  // the obstacle is at height 1 at the end
+  contact.obstacle_end = Vec3(0, 0, -1);  // at the end, the obstacle is at a height of 1 m
   contact.relative_start = Vec3(0, 0, 0.001);
   contact.depth = 0.001;
   contact.normal = Vec3::UnitZ();
@@ -456,7 +459,7 @@ TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
   const solver::LinearSystem system = linearised(contacts, x, 1);
   EXPECT_TRUE(system.terms.empty());
   const Eigen::MatrixXd k = assembled(system);
-  // The tangent is taken at the initial depth, 1 mm.
+  // The normal force is linearised at the initial depth, 1 mm.
   EXPECT_NEAR(k(8, 8), slope_at(0.001 / kRange), 1e-8);
   EXPECT_NEAR(linear_forces_of(contacts, x)[2].z(), normal_force_at(0.5) + 0.0005 * slope_at(0.5), 1e-9);
   EXPECT_EQ(k.topLeftCorner(6, 6).norm(), 0);
@@ -468,26 +471,25 @@ TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   const ContactSet contacts = pair.set();
   ContactStates states = states_at_start(contacts, pair.x);
   EXPECT_NEAR(states.depths[0], 0.6 * kRange, 1e-15);
-  // The vertex is pressed: the force follows the tangent, below the law, until the depth of linearisation is the actual
-  // depth.
+  // The vertex is pressed to a depth of 0.9 kRange. The force follows the tangent at 0.6 kRange, below the exact force.
   std::vector<Vec3> x = pair.x;
   x[0] -= 0.3 * kRange * pair.contact.normal;
   std::vector<Vec3> f(4, Vec3::Zero());
   contacts.add_linear_forces(x, states, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
   EXPECT_LT(f[0].norm(), normal_force_at(0.9));
-  // The next tangent is taken at the depth at which the law gives that force, not at the iterate.
+  // The next tangent is taken at the depth whose exact force equals this force, not at the depth of the iterate.
   contacts.update(x, states);
   EXPECT_LT(states.depths[0], 0.89 * kRange);
   EXPECT_NEAR(normal_force_at(states.depths[0] / kRange), f[0].norm(),
-              1e-8 * f[0].norm());  // accuracy of the depth search
-  // Finally, both depths agree to rounding; otherwise a step would satisfy the tangents, but not the laws.
+              1e-8 * f[0].norm());  // accuracy of the search for this depth
+  // After further updates, the depth of linearisation equals the actual depth, so that the linear force is exact.
   for (int k = 0; k < 8; ++k) contacts.update(x, states);
   EXPECT_NEAR(states.depths[0], 0.9 * kRange, 1e-8 * kRange);
   std::fill(f.begin(), f.end(), Vec3::Zero());
   contacts.add_linear_forces(x, states, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.9), 1e-14 * normal_force_at(0.9));
-  // The vertex is lifted off: no contact pulls, and the next contact starts with the minimum slope.
+  // The vertex is lifted off: the normal force is zero, not negative, and the next tangent is taken at depth zero.
   x[0] += kRange * pair.contact.normal;
   contacts.update(x, states);
   EXPECT_EQ(states.depths[0], 0);

@@ -1,4 +1,4 @@
-// The tangent of friction that the linear system contains.
+// Tests of friction_tangent() and of its use in the linear system.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,4 @@
-// Pinched cloth, pair by pair: which pairs are exempt, in which direction the cloth is pushed back, and what is
-// reported.
+// Tests of PinchedPairs: which pairs are exempt, in which direction pinched cloth is pushed, and what is reported.
 #include "physics/collision/response/pinch.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +13,8 @@
 namespace weft::collision {
 namespace {
 
-/// One triangle of cloth and three boxes of 0.2 m: below it, above it, and far beside it.
+/// One triangle of cloth at z = 0.11 m, and three boxes of 0.2 m: body 1 below it (top at 0.1 m), body 2 above it
+/// (bottom at 0.14 m), and body 3 far beside it.
 class PinchedTriangle : public ::testing::Test {
  protected:
   PinchedTriangle() {
@@ -99,7 +99,8 @@ TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
   for (const auto& [push, has_room] : pushes) EXPECT_FALSE(has_room);
 }
 
-// The cloth was in the lower box and is now above it. Only the upper box can block the way back into the lower one.
+// The cloth comes from inside the lower box and is now above it, so it is pushed down. Only the upper box can block
+// this way.
 TEST_F(PinchedTriangle, HasRoomInTheContainerFromWhichItCame) {
   move_cloth_to(0.09);
   pinched_.add(with(1));
@@ -122,12 +123,12 @@ TEST_F(PinchedTriangle, HasRoomInTheContainerFromWhichItCame) {
 TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
-  for (const double z : {0.0, 0.1}) {  // inside it, on its face
+  for (const double z : {0.0, 0.1}) {  // inside the box, on its top
     move_cloth_to(z);
     pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), 1U) << z;
   }
-  // The tested corner is outside again; the other corners are not.
+  // Corner 0 is outside again; corners 1 and 2 are inside.
   move_cloth_to(0.11);
   x_[1][2] = x_[2][2] = 0.05;
   pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
@@ -137,8 +138,8 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
   EXPECT_TRUE(pinched_.empty());
 }
 
-// A second cloth triangle has the same corners. Where cloth passes through a limb, triangles beside it have no
-// separating plane either, so their pairs with this limb are exempt too.
+// The second cloth triangle is a neighbour, here with the same corners. If a triangle passes through a limb, its
+// neighbours have no separating plane from this limb either, so they are exempt, too.
 TEST_F(PinchedTriangle, ExemptsItsNeighboursFromTheSameLimb) {
   pinched_.add(with(1));
   const std::vector<Triangle> cloth{{0, 1, 2}, {0, 2, 1}};
@@ -155,8 +156,8 @@ TEST_F(PinchedTriangle, ExemptsItsNeighboursFromTheSameLimb) {
   }
 }
 
-// Two corners of the cloth are in the lower box, one is outside. Triangles that have only the outer corner keep their
-// planes; otherwise cloth under tension would be pulled into the box, one ring of triangles after another.
+// Two corners of the cloth are in the lower box, one is outside. Triangles that share only the outer corner are not
+// exempt; otherwise cloth under tension would be pulled into the box, one ring of triangles after another.
 TEST_F(PinchedTriangle, ExemptsNoNeighboursAtACornerOutsideTheLimb) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
@@ -172,12 +173,12 @@ TEST_F(PinchedTriangle, ExemptsNoNeighboursAtACornerOutsideTheLimb) {
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
   pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
   EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
-  pinched_.add(with(1));  // the pair had no clearance in this step either
+  pinched_.add(with(1));  // the pair is exempted again
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
 }
 
-// A ball of 0.1 m touched one triangle of cloth at its top. The next triangle crosses the ball at an inclination of 40
-// degrees, and must leave it there.
+// A ball with a radius of 0.1 m has pinched the first cloth triangle at its top. The second triangle crosses the
+// surface of the ball 40 degrees from the top, and must be pushed out there.
 TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
   const auto at = [](double degrees, double radius, double y) {
     const double angle = degrees * std::numbers::pi / 180;
@@ -202,18 +203,18 @@ TEST(PinchedOnABall, ReturnsWhereEachTriangleWasReached) {
   ASSERT_EQ(pinched.size(), 2U);
   EXPECT_EQ(pinched.origins().at({cloth[0], 1, 0}).faces, std::vector<Triangle>{top});
   for (const Triangle& face : pinched.origins().at({cloth[1], 1, 0}).faces)
-    EXPECT_GT(face_normal(face, x).dot(at(40, 1, 0)), std::cos(0.3));  // less than 15 degrees away from the crossing
+    EXPECT_GT(face_normal(face, x).dot(at(40, 1, 0)), std::cos(0.3));  // at most 0.3 rad from the crossing
 }
 
-// The top of a box is a limb of its own, and thus an open surface. The cloth is lower than the top, beside the box or
-// in it.
+// The top of a box, at z = 0.1 m, is a limb of its own, and thus an open surface. The cloth is 5 mm lower than the top,
+// beside the box or inside it.
 TEST(PinchedByAnOpenLimb, IsOnItsSideBeyondTheBorderButNotInTheBody) {
   testing::MovingScene scene;
   const std::vector<Triangle> cloth{{0, 1, 2}};
   std::vector<Vec3> x{{0.11, 0, 0.095}, {0.13, 0, 0.095}, {0.11, 0.02, 0.095}};
   scene.add({x, cloth});
   testing::TestMesh box;
-  for (const double z : {-0.1, 0.1, 0.1})  // bottom, upper rim of the sides, top
+  for (const double z : {-0.1, 0.1, 0.1})  // heights of bottom, upper rim of the sides, top
     for (const Vec3& corner : {Vec3(-0.1, -0.1, z), Vec3(0.1, -0.1, z), Vec3(0.1, 0.1, z), Vec3(-0.1, 0.1, z)})
       box.x.push_back(corner);
   box.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {1, 2, 6},  {1, 6, 5},
@@ -247,7 +248,7 @@ TEST(PinchedByAnOpenLimb, IsOnItsSideBeyondTheBorderButNotInTheBody) {
   }
 }
 
-// All corners of the cloth are outside the lower box; a corner of the box pierces the cloth.
+// All corners of the cloth are outside the lower box; a vertical edge of the box pierces the cloth.
 TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);

@@ -1,4 +1,4 @@
-// Tests that separating planes are remembered, and that saving and restoring them loses nothing.
+// Tests of Planes: which separating planes are kept, and that saving and restoring loses none.
 #include "physics/collision/response/planes.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace weft::collision {
 namespace {
 
-/// Pairs of random triangles; pairs are 1 m apart.
+/// Pairs of random triangles of about 0.1 m that have a separating plane; different pairs are 1 m apart.
 struct RandomPairs {
   std::vector<Triangle> triangles;
   std::vector<TrianglePair> pairs;
@@ -59,7 +59,7 @@ TEST(Planes, AStoredPlaneIsTriedBeforeASearch) {
   RandomPairs pairs(3000);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
-  PairList near;  // pairs near each other, for some of which the first check finds no plane
+  PairList near;  // pairs that may be closer than 1e-4 m; watch() finds no plane for some of them
   planes.set_moved(std::vector<float>(pairs.x.size(), 0.0F));
   planes.append_closer(1e-4, 0, planes.size(), near);
   std::erase_if(pairs.pairs, [&](const TrianglePair& pair) { return std::ranges::find(near, pair) != near.end(); });
@@ -97,11 +97,11 @@ TEST(Planes, SavingKeepsEveryPlaneThatDiffersFromThoseOfWatching) {
   Planes original(pairs.triangles), restored(pairs.triangles), fresh(pairs.triangles);
   for (Planes* planes : {&original, &restored, &fresh}) planes->watch(pairs.pairs, pairs.x);
   const std::string of_fresh = saved(original, pairs);
-  EXPECT_EQ(of_fresh.size(), sizeof(std::size_t));  // no planes to save
+  EXPECT_EQ(of_fresh.size(), sizeof(std::size_t));  // only the number of planes, 0
   const std::vector<Vec3> first = pairs.moved(0.03), second = pairs.moved(0.03);
   failing(original, pairs, pairs.x, first);
   const std::string bytes = saved(original, pairs);
-  const std::size_t each = sizeof(std::uint32_t) + 4 * sizeof(float);  // number, n, gap
+  const std::size_t each = sizeof(std::uint32_t) + 4 * sizeof(float);  // number of the pair, normal, gap
   EXPECT_GT(bytes.size(), of_fresh.size());
   EXPECT_EQ((bytes.size() - of_fresh.size()) % each, 0U);
 
@@ -124,8 +124,8 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
   EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);
 }
 
-// A first guess checks pairs of cloth only with turning planes; pairs with obstacles also with planes for parts of the
-// step.
+// For the expected end of a step (PlaneKinds::turning), pairs of cloth are tested with planes for the whole step only;
+// pairs with obstacles, also with planes for parts of the step.
 TEST(Planes, AFirstGuessTestsPairsOfClothWithTurningPlanesOnly) {
   RandomPairs pairs(3000);
   const auto vertices = static_cast<Index>(pairs.x.size());
@@ -138,7 +138,7 @@ TEST(Planes, AFirstGuessTestsPairsOfClothWithTurningPlanesOnly) {
   EXPECT_EQ(failing(of_obstacles, pairs, pairs.x, end, PlaneKinds::turning).size(), without_any);
 }
 
-// A pair whose triangles have moved by less than its gap is separated without a check.
+// The gap must be a lower bound of the distance, because pairs that move by less than their gap are not tested.
 TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
   RandomPairs pairs(500);
   Planes planes(pairs.triangles);

@@ -1,5 +1,5 @@
-// Planes that separate two triangles for a whole step, and turn with them. separation_exact_test.cpp compares
-// separating planes with exact predicates, for random motions.
+// Tests of separating planes that turn with two triangles during a step. separation_exact_test.cpp compares separating
+// planes with exact predicates, for random motions.
 #include "physics/collision/response/separating_plane.hpp"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ std::vector<Vec3> turned(std::vector<Vec3> x, double angle) {
   return x;
 }
 
-/// Whether any of 10,000 fixed directions over the sphere separates the triangles for the whole step.
+/// Whether one of 10,000 constant directions, spread over the sphere, separates the triangles for the whole step.
 bool any_direction_separates(const std::vector<Vec3>& x_t0, const std::vector<Vec3>& x_t1) {
   constexpr int kDirections = 10'000;
   for (int k = 0; k < kDirections; ++k) {

@@ -18,12 +18,12 @@ namespace weft::collision {
 /// Results of the queries of one family. A pair is certified if it has a separating plane, else refused.
 struct SeparationTally {
   int queries = 0, meeting = 0, certified = 0, in_integers = 0;
-  int missed = 0;    ///< certified, but they meet
-  int touching = 0;  ///< certified, but touching within rounding errors at the start, although starts are made without
-                     ///< contact
-  int needless_refusals = 0;  ///< refused, although 1e-5 m apart and moving by less than 0.8 of the distance
-  int benign = 0;             ///< queries with such a distance and motion
-  // Counts of pairs that stay apart, by distance at the start [m]: below 1e-8, 1e-7, …, 1e-2, above.
+  int missed = 0;             ///< certified pairs that meet
+  int touching = 0;           ///< certified pairs that meet only at the start, where they touch within rounding errors
+  int needless_refusals = 0;  ///< refused ones of the benign pairs
+  int benign = 0;  ///< pairs that start at least 1e-5 m apart, move by at most 0.8 of this distance, and do not meet
+  // Pairs that do not meet (`apart`), and the refused ones among them, by distance at the start [m]: below 1e-8, 1e-7,
+  // …, 1e-2, above.
   std::array<int, 8> apart{}, refused{};
 };
 
@@ -50,7 +50,7 @@ struct SeparationBatch {
       x_t1.insert(x_t1.end(), s->t1.begin(), s->t1.end());
     }
   }
-  /// 1 for pairs without a separating plane.
+  /// One flag per pair; 1: no separating plane was found.
   std::vector<char> refused(Watched watched) const {
     const auto mixed = [&](double t) {
       std::vector<Vec3> x;
@@ -66,7 +66,7 @@ struct SeparationBatch {
   }
 };
 
-/// Maximum motion of a corner of one side relative to a corner of the other.
+/// Maximum motion of a corner of one triangle relative to a corner of the other [m].
 inline double relative_motion(const support::MotionQuery& q) {
   double max_motion = 0;
   for (int i = 0; i < 3; ++i)
@@ -84,7 +84,7 @@ inline void tally_query(const support::MotionQuery& query, bool refused, Separat
   if (contact.found) {
     ++tally.meeting;
     if (refused) return;
-    // Rounding of a dot product: a few times 1e-16 of the coordinates.
+    // Below the rounding error of a dot product, 1e-15 of the coordinates, triangles count as touching.
     const double largest = std::max(query.a.t0[0].norm(), relative_motion(query));
     if (contact.time < 1e-9 && support::distance_at(query.a, query.b, 0) <= 1e-15 * largest) {
       ++tally.touching;
@@ -111,8 +111,8 @@ inline SeparationTally test_family(support::QueryFamily family, int count, unsig
   SeparationTally tally;
   int batches = 0;
   while (tally.queries < count) {
-    // Batch sizes differ, because the coarse first check of eight pairs at once is only as accurate as their largest
-    // coordinate allows.
+    // Batch sizes differ, because watch() tests eight pairs at once, with rounding errors that depend on the largest
+    // coordinate of the eight.
     const int size = std::array{1, 8, 3, 12}[batches / 3 % 4];
     const auto watched = static_cast<Watched>(batches++ % 3);
     std::vector<support::MotionQuery> queries;

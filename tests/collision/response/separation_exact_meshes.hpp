@@ -18,7 +18,7 @@ struct MovingMesh {
 
   struct Pair {
     TrianglePair triangles;
-    int corner_a = -1, corner_b = -1;  ///< corners of the common vertex, or -1
+    int corner_a = -1, corner_b = -1;  ///< number of the common vertex among the corners of each; −1: none
   };
 
   const Triangle& at(Index triangle) const { return triangles[triangle]; }
@@ -76,13 +76,13 @@ struct MovingMesh {
 // --- Vertex stars ----------------------------------------------------------------------------------------------------
 
 enum class StarKind {
-  calm,         ///< closed and nearly flat, motions up to a thousandth: certified without exception
+  calm,         ///< closed and nearly flat, motions up to 1e-3 of its size: all pairs must be certified
   closed,       ///< the triangles go once around the centre; flat, conical or wavy; every vertex moves on its own
   inverted,     ///< a cone or saddle that is turned inside out
-  turned,       ///< rotated by up to half a turn about any axis, along straight lines
-  open,         ///< at a border; up to 1.8 turns, as a spiral staircase
+  turned,       ///< rotated by up to half a turn about any axis; the vertices move on straight lines
+  open,         ///< at a border; the triangles go up to 1.8 times around, as a spiral staircase
   collapsing,   ///< a spiral staircase whose ends pass through each other
-  around_twice  ///< closed after two turns: intersects at the start, with all orientations positive
+  around_twice  ///< the triangles go twice around, with the same orientation: they intersect at the start
 };
 inline constexpr std::array kStarKinds = {StarKind::calm, StarKind::closed,     StarKind::inverted,    StarKind::turned,
                                           StarKind::open, StarKind::collapsing, StarKind::around_twice};
@@ -137,7 +137,7 @@ inline MovingMesh make_star_of_size_one(StarKind kind, std::mt19937& engine) {
   return mesh;
 }
 
-/// Makes a vertex star of random size, orientation and place.
+/// Makes a vertex star of random size (1 µm to 1 km), orientation and place.
 inline MovingMesh make_fan(StarKind kind, std::mt19937& engine) {
   MovingMesh mesh = make_star_of_size_one(kind, engine);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -213,7 +213,8 @@ inline void expect_nothing_missed_in_fans(int fans_per_kind, unsigned seed) {
 
 // --- Corrections -----------------------------------------------------------------------------------------------------
 
-/// Adds a component if all its pairs are at least 1e-5 m apart: below 1e-6 m, no pair can be certified.
+/// Adds triangles at rest, unless one of them is closer than 1e-5 m to another triangle, because pairs closer than
+/// 1e-6 m cannot be certified. Returns whether they were added.
 inline bool add_component(MovingMesh& mesh, const std::vector<Vec3>& x, const std::vector<Triangle>& triangles) {
   MovingMesh larger = mesh;
   const auto first = static_cast<Index>(mesh.x_t0.size());
@@ -268,7 +269,7 @@ inline void expect_nothing_meets_after_enforcement(int count, unsigned seed) {
   int would_meet = 0, queries = 0, with_vertex = 0, given_up = 0;
   for (int k = 0; k < count; ++k) {
     MovingMesh cluster = make_cluster(engine, std::pow(10.0, -4 + 4.0 * k / count));
-    // One cluster in three is free; one has a moving obstacle as its first component; one has held vertices.
+    // Of three clusters, one is free, one has a moving obstacle (its first triangle), and one has held vertices.
     const bool obstacle = k % 3 == 1, held = k % 3 == 2;
     for (Index v : cluster.triangles[0])
       if (obstacle) cluster.movable[v] = 0;

@@ -1,4 +1,5 @@
-// More than a million queries. separation_exact_test.cpp runs fewer queries of the same kind.
+// Compares separating planes with exact decisions in more than a million queries. separation_exact_test.cpp runs fewer
+// queries of the same kinds.
 #include "collision/response/separation_exact_meshes.hpp"
 
 namespace weft::collision {

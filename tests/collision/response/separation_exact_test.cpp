@@ -1,3 +1,4 @@
+// Compares separating planes with exact decisions. separation_exact_slow.cpp runs more queries of the same kinds.
 #include "collision/response/separation_exact_meshes.hpp"
 
 namespace weft::collision {

@@ -1,4 +1,4 @@
-// Checks with exact predicates, at samples of the step, that no two triangles meet.
+// Tests of Separation. Exact predicates, at 65 times of a step, check that no pair with a separating plane meets.
 #include "physics/collision/response/separation.hpp"
 
 #include <gtest/gtest.h>
@@ -30,8 +30,8 @@ struct IsolatedPairs {
   }
 };
 
-/// Pairs of random triangles of up to 0.1 m. They are between 1e-4 m and their size apart, and move by up to `motion`
-/// [m].
+/// Pairs of random triangles of about 0.1 m. The triangles of a pair start at least 1e-4 m apart. Each vertex moves by
+/// up to `motion` [m] along each axis.
 IsolatedPairs random_pairs(int count, double motion, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-1, 1);
@@ -48,7 +48,7 @@ IsolatedPairs random_pairs(int count, double motion, unsigned seed) {
     for (int k = 0; k < 6; ++k) corners.push_back(vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
     const Triangle a{0, 1, 2}, b{3, 4, 5};
     if (closest_features({a, b}, corners).points.distance_sq < 1e-8) continue;
-    // Features can be apart although an edge pierces a face.
+    // The closest features can be apart although an edge pierces a face.
     const std::array<Triangle, 1> face_a{a}, face_b{b};
     const support::TestedObject objects[] = {{"a", true, corners, face_a}, {"b", true, corners, face_b}};
     if (!support::find_intersections(objects).pairs.empty()) continue;
@@ -100,7 +100,8 @@ TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
 }
 
 TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
-  // With motions of a tenth of their size, a few per cent of the pairs meet; not many more may be refused.
+  // With motions of a tenth of the size of the triangles, a few per cent of the pairs meet. Not many more may lack a
+  // plane.
   const IsolatedPairs pairs = random_pairs(200, 0.005, 2);
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
@@ -154,7 +155,7 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
     EXPECT_TRUE(failing(pairs).empty());
     EXPECT_TRUE(meeting(pairs).empty());
 
-    // Only vertices of failing pairs have moved.
+    // Only vertices of failing pairs were moved.
     double largest = 0;
     for (std::size_t i = 0; i < wanted.size(); ++i) {
       if (wanted[i] == pairs.x_t1[i]) continue;
@@ -166,8 +167,8 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
   }
 }
 
-// A triangle slides by 25 mm onto a facet, and ends 0.01 mm too low. (A push along the line between the closest points
-// of the start would move it back by 17 mm.)
+// A triangle slides by 25 mm across the border of a facet, and ends 0.01 mm below it. (A push along the line between
+// the closest points of the start would move it back by 17 mm.)
 TEST(Separation, PushesAlongTheShortestOfTheDirectionsThatSeparateAtTheStart) {
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
   const std::vector<TrianglePair> pairs{{0, 1}};
@@ -280,7 +281,7 @@ TEST(ClosestFeatures, AreThoseOfADenseSearch) {
         for (int k = 0; k <= kCuts; ++k)
           for (int l = 0; k + l <= kCuts; ++l) minimum = std::min(minimum, (point(a, i, j) - point(b, k, l)).norm());
     EXPECT_LE(distance, minimum + 1e-14);
-    // On each triangle, a sample is at most half a cut of an edge of 0.17 m away from the closest point.
+    // Tolerance: on each triangle, a sample is at most 1/kCuts of an edge of 0.17 m away from the closest point.
     EXPECT_GT(distance, minimum - 2 * 0.17 / kCuts);
   }
 }

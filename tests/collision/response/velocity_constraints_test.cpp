@@ -13,10 +13,10 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kGravity = 9.81;
-constexpr double kStep = 0.01, kDMin = 0.001, kMass = 2e-4;
+constexpr double kGravity = 9.81;                            // [m/s²]
+constexpr double kStep = 0.01, kDMin = 0.001, kMass = 2e-4;  // [s], [m], [kg]
 
-/// One particle in front of walls; each test sets the forces on it.
+/// One particle in front of walls. Each test passes the constraint force on it to revise().
 struct OneParticle {
   VelocityConstraints constraints{{kMass}};
   std::vector<Vec3> x_t0{Vec3::Zero()}, x_t1{Vec3::Zero()};
@@ -81,7 +81,7 @@ TEST(VelocityConstraints, MoveWithTheObstacle) {
   EXPECT_NEAR(particle.prescribed().v_end.z(), motion.z() / kStep, 1e-13);
 }
 
-// A plate rises through a floor. The particle meets the plate before or after the floor.
+// A plate rises through a floor. The wall of the plate is added before or after that of the floor.
 TEST(VelocityConstraints, MoveWithTheStricterOfTwoParallelWalls) {
   const Vec3 motion(0.001, 0, 0.002);
   for (const bool plate_first : {false, true}) {
@@ -129,7 +129,7 @@ TEST(VelocityConstraints, AreReleasedByTheSignOfTheResidual) {
 TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCone) {
   constexpr double kMu = 0.5;
   const double weight = kMass * kGravity;
-  for (double tangential : {0.9, 1.6}) {  // relative to μ · weight
+  for (double tangential : {0.9, 1.6}) {  // tangential force, relative to μ · weight
     OneParticle particle;
     const auto begin = [&] {
       particle.constraints.begin_step(kStep);
@@ -151,7 +151,7 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
     begin();
     EXPECT_EQ(particle.prescribed().constraint.free.isZero(), tangential < 1);
 
-    // Sliding friction: μ times the normal force, against the slip.
+    // If the particle slides, friction is μ times the normal force, against the slip.
     std::vector<Vec3> force{Vec3::Zero()};
     const std::vector<Vec3> slid{Vec3(-0.001, 0, 0)};
     particle.constraints.add_forces(slid, force);
@@ -169,10 +169,11 @@ TEST(VelocityConstraints, AParticleBetweenTwoWallsSticksHoweverManyOtherWallsItH
     particle.wall(Vec3(-1, 0, 1).normalized(), kDMin, Vec3::Zero(), kMu);
     for (int k = 0; k < numerics.walls.max_walls; ++k)
       particle.wall(Vec3(std::cos(k), std::sin(k), 2).normalized(), 100 * kDMin, Vec3::Zero(), kMu);
-    particle.x_t1[0] = Vec3(0.001, 0, -0.01);  // the particle passes the second wall by a larger distance
+    particle.x_t1[0] = Vec3(0.001, 0, -0.01);  // passes the second wall by more than the first
     particle.prepare();
   };
-  // The force presses more against the first wall, so the order of the two walls changes between the projections.
+  // The force presses more against the first wall, so the order of both walls differs between the projections of the
+  // displacement and of the force.
   for (int step = 0; step < 3; ++step) {
     begin();
     particle.revise(Vec3::Zero(), kMass * kGravity * Vec3(0.3, 0, 1));
@@ -255,7 +256,8 @@ TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWh
       for (int k = 0; k < 3; ++k)
         exact.col(k) = (force_at(slip - kDelta * Vec3::Unit(k)) - force_at(slip + kDelta * Vec3::Unit(k))) / kDelta;
       const Mat3 got = system.diagonal_terms[0].stiffness;
-      // Rounding of differences, 1e-16 of the force over 1e-10 m, and the third derivative.
+      // Tolerance, relative to `size` [N/m]: rounding errors of the force, about 1e-16 of it, over 1e-10 m, and the
+      // error of central differences.
       const double size = 2 * weight * kMu / slip.norm();
       if (goes_on)
         EXPECT_LT((got - exact).norm(), 1e-4 * size);

@@ -17,7 +17,7 @@ using testing::MovingScene;
 using testing::TestMesh;
 using Pairs = std::set<TrianglePair>;
 
-constexpr double kWidestReach = 0.02, kBudget = 0.01;
+constexpr double kWidestReach = 0.02, kBudget = 0.01;  // see CoherenceParameters [m]
 constexpr int kSheet = 15;
 
 /// A folded sheet, and a second sheet above it, fall fast together and flutter slightly. A third sheet rises from
@@ -53,7 +53,7 @@ ClosestPoints of_features(const Proximity& p, std::span<const Vec3> x) {
                                               : closest_edge_edge(at(0), at(1), at(2), at(3));
 }
 
-/// The closest point on side a.
+/// The closest point on side a, by its weights.
 Vec3 place(const Proximity& p, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < 4; ++i)
@@ -65,7 +65,7 @@ const std::vector<SurfacePair> kAllPairs{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2},
 
 class CoherentDetectionTest : public ::testing::Test {
  protected:
-  /// A separate search, independent of the search inside the detection.
+  /// Broad and narrow phase of a search. The detection uses `kept_`; the comparison uses `fresh_`.
   struct Search {
     BroadPhase broad_phase;
     ProximityFinder finder;
@@ -81,7 +81,7 @@ class CoherentDetectionTest : public ::testing::Test {
     return detection.update(kept_.broad_phase, kept_.finder, x_t0, x_t1);
   }
 
-  /// Finds near pairs of these pairs of surfaces by a fresh search.
+  /// Finds the candidate pairs and near pairs of the `wanted` pairs of surfaces by a new search.
   void find(const std::vector<SurfacePair>& wanted, const std::vector<Vec3>& x_t0, const std::vector<Vec3>& x_t1,
             CandidatePairs& candidates, std::vector<Proximity>& out) {
     candidates.clear();
@@ -159,8 +159,8 @@ TEST_F(CoherentDetectionTest, HoldsForAnySteadyCommonMotionAndNotForARelativeOne
   EXPECT_EQ(update(passing, moved({3, 0, 0}), moved({6, 0, 0})), 1);
 }
 
-// Near pairs that are reused for the predicted end are valid for the solved end only if it is within the velocity
-// cones.
+// The near pairs found for the predicted end stay valid for the solved end if this end is within the velocity cones.
+// Otherwise, they are searched again.
 TEST_F(CoherentDetectionTest, UpdatedWithinAStepHoldsAllCandidatesOfTheMotionThatCameOut) {
   CoherentDetection detection = make_detection(kAllPairs);
   const std::vector<Vec3> x_t0 = motion_.at(30);
@@ -187,7 +187,7 @@ TEST_F(CoherentDetectionTest, LooksAtWantedPairsOfSurfacesOnly) {
     find(wanted, x_t0, x_t1, needed, fresh);
     expect_all(detection.candidates(), needed);
     ASSERT_FALSE(fresh.empty());
-    // After a fresh search, the pairs equal those of a search with the same detection distance.
+    // After its first update, the detection has the same near pairs as a new search.
     const auto vertices = [](std::span<const Proximity> list) {
       std::multiset<std::array<Index, 4>> all;
       for (const Proximity& p : list) all.insert(p.vertices);

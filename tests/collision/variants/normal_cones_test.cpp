@@ -19,7 +19,7 @@ using testing::random_vec;
 using testing::TestMesh;
 using Pairs = std::set<TrianglePair>;
 
-/// Minimum feature distance during the linear motion, sampled at nine times.
+/// Minimum feature distance during the linear motion, sampled at nine times [m].
 double least_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<Vec3> x(x_t0.size(), Vec3::Zero());
   double minimum = 1e300;
@@ -115,7 +115,7 @@ TEST(NormalCones, LeaveOutNothingWithinReachOfFoldingSheetsAtAnyStepTreeAndReach
   std::size_t pairs = 0;
   for (int step = 0; step < 30; step += 3) {
     const std::vector<Vec3> x_t0 = motion.at(step), x_t1 = motion.at(step + 1);
-    for (const double reach : {0.005, 0.02, 0.04}) {  // altitudes of the triangles are 0.031
+    for (const double reach : {0.005, 0.02, 0.04}) {  // the altitudes of the triangles are 0.031 m
       const std::array<SkippedPairs, 3> all{
           find_skipped_pairs<6>(surfaces[0], x_t0, x_t1, reach, {8, 8}),
           find_skipped_pairs<18>(surfaces[1], x_t0, x_t1, reach, {2, 3}),
@@ -180,19 +180,20 @@ TEST(NormalCones, LeaveNothingOutOnceTheReachExceedsTheAltitudes) {
 }
 
 TEST(NormalCones, MissNothingAcrossANotchInAStarShapedBorder) {
-  // A notch from the lower border towards the centre: seen from the centre, the whole border turns in one direction.
+  // A notch from the lower border towards the centre. Seen from the centre, the border, with the notch, runs around in
+  // one direction.
   TestMesh sheet = slit_sheet(9, 3, 0.002);
   for (Vec3& p : sheet.x)
     if (p[1] < 0.375 && std::abs(p[0] - 0.5) < 0.01) p[0] += (p[0] < 0.5 ? -0.1 : 0.1) * (0.375 - p[1]);
   for (int leaf : {1, 8}) {
-    // The notch is 0.027 wide at its beginning; the triangles beside it have altitudes of at least 0.07.
+    // At y = 0.25 m, the notch is 0.027 m wide; the triangles beside it have altitudes of at least 0.07 m.
     const SkippedPairs result = find_skipped_pairs<6>(sheet.surface(), sheet.x, sheet.x, 0.04, {2, leaf});
     EXPECT_EQ(result.within_reach, 0U);
   }
 }
 
-// Half a ball, and the ring around it: the normals of all triangles together point in all directions; those of small
-// patches do not.
+// The normals of half a ball with the triangles around it fit into no cone with a half-angle below 90 degrees; those of
+// small patches do.
 TEST(NormalCones, EndAtARightAngle) {
   const mesh::Mesh ball = mesh::make_sphere(0.5, 24);
   const TestMesh mesh{ball.positions, {ball.topology.triangles.begin(), ball.topology.triangles.end()}};
@@ -228,7 +229,7 @@ TEST(StarShaped, HoldsForAChainThatRunsAroundItsCentreOnceAndAlwaysForward) {
   std::swap(hooked[4], hooked[5]);
   const std::vector<Vec3> hook = chain(hooked, radii);
   EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), hook, hook));
-  // Halfway through half a turn about the centre, all points coincide with it.
+  // During half a turn about the axis, on straight lines, all points are on the axis at half of the step.
   std::vector<double> turned;
   for (const double angle : once) turned.push_back(angle + M_PI);
   EXPECT_FALSE(is_star_shaped(edges, Vec3::UnitZ(), star, chain(turned, radii)));
