@@ -1,5 +1,4 @@
-// Estimates of the local truncation error, the step lengths that follow from them, and the allowed growth of BDF2
-// steps.
+// Tests of the estimate of the local error, of the step lengths that follow from it, and of the growth of BDF2 steps.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -13,10 +12,11 @@ namespace {
 
 using testing::kMethods;
 
-// Newton tolerance: larger than the rounding error of x / h², and much smaller than the measured errors.
+// Newton tolerance: above the rounding error of x / h², and far below the errors of the methods.
 constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
-// State of the hardening spring after a time t, which may be negative. Classical Runge-Kutta; its error is below 1e-14.
+// State of the hardening spring after a time t [s], which may be negative, by the classical Runge-Kutta method. The
+// error of x is below 1e-14 m.
 State moved(State now, double t) {
   constexpr int kSteps = 200;
   const auto a = [](const Vec3& x) { return testing::HardeningSpring::force_at(x); };
@@ -37,7 +37,8 @@ struct Errors {
   double estimated, made;
 };
 
-// Errors of one step from a point of the exact motion. The history is exact; r = 0: there is none.
+// Estimated and actual error [m] of one step over h from a state of the exact motion. `r`: ratio of h to the length of
+// the step before it, which is exact; 0: no step before it.
 Errors errors_of_one_step(Method method, double h, double r) {
   testing::HardeningSpring spring;
   const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
@@ -50,7 +51,7 @@ Errors errors_of_one_step(Method method, double h, double r) {
 }
 
 TEST(LocalError, OfOneStepIsEstimatedUpToTermsOfTheNextOrder) {
-  // Tolerance: the next term of the error is h times the first term, times a small factor.
+  // Tolerance, 10 h: the estimate lacks the next term of the error, which is of the order of h times the first one.
   for (Method method : kMethods) {
     for (double r : {0.5, 1.0, 1.9}) {
       // The error of one BDF2 step grows by half in the following steps; the estimate includes this growth.
@@ -72,12 +73,12 @@ TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
   EXPECT_NEAR(euler.estimated, euler.made, 0.05 * euler.made);
   EXPECT_NEAR(bdf2.estimated, 1.5 * bdf2.made, 0.05 * bdf2.made);
   EXPECT_EQ(bdf2.made, euler.made);
-  // For the midpoint rule the estimate is only a bound, because the rule has no error of this order.
+  // For the midpoint rule, the estimate is only an upper bound, because the rule has no error of this order.
   EXPECT_GT(midpoint.estimated, 100 * midpoint.made);
 }
 
 TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
-  // In free fall, Euler's method moves every free particle too far, by ½ g h².
+  // In free fall, Euler's method moves every free particle too far by `ahead` = ½ g h².
   testing::Spring nothing(0, {1, 3, 2});
   nothing.linear_system().blocks = {{0, 2}, {2, 3}};
   const Vec3 g(0, 0, -10);
@@ -97,7 +98,7 @@ TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   EXPECT_EQ(error_with({0, 1, 2}), 0);
 }
 
-// Returns the lengths of the accepted steps if a step of length h from time t has the error error(t, h).
+// Lengths of the accepted steps [s], up to the time `end`, if a step of length h from time t has the error error(t, h).
 std::vector<double> lengths(Method method, double tolerance, const std::function<double(double t, double h)>& error,
                             double end) {
   StepControl control(method, tolerance, 1e-3);
@@ -130,7 +131,7 @@ TEST(StepControl, BringsTheErrorOfSmoothMotionJustBelowTheTolerance) {
 }
 
 TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
-  // The factor of the error jumps between 50 and 0.05.
+  // The error of a step over h jumps between 50 h³ and 0.05 h³.
   const auto error = [](double t, double h) { return (std::fmod(t, 0.4) < 0.2 ? 50 : 0.05) * h * h * h; };
   const std::vector<double> steps = lengths(Method::bdf2, 1e-5, error, 5);
   double largest = 0;
@@ -140,7 +141,7 @@ TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
 }
 
 TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
-  // The step that contains t = 0.5 has the error of a velocity jump of 10 m/s. Only steps below 5e-5 s meet the
+  // The step that contains t = 0.5 has the error of a velocity jump of 10 m/s. Only steps up to 5e-5 s meet the
   // tolerance there. A try is at least a fifth as long as the rejected try before it; a step is at most 1.5 times as
   // long as the accepted step before it. This takes 5 tries down and 17 steps up.
   int tries = 0;
@@ -189,8 +190,8 @@ TEST(Bdf2Ratio, SavedHistoryBoundsTheNextStepOfAnotherMethod) {
   EXPECT_TRUE(reader.bytes.empty());
 }
 
-// Starts BDF2 with a history that is wrong by kOff, while steps grow by the factor r, from y = ω h = 1e-4 to 1e-2.
-// Returns the difference of the last two states relative to kOff: that of the BDF2 formula, and that of the Stepper.
+// Difference of the last two positions of a run of BDF2, relative to the error kOff [m] of its first history: by the
+// formula of BDF2, and by the Stepper. Each step is r times as long as the one before, from y = ω h = 1e-4 to 1e-2.
 struct Growth {
   double formula, stepper;
   int steps;
@@ -198,7 +199,7 @@ struct Growth {
 Growth change_while_growing(double r) {
   constexpr double kOmega = 1e4, kOff = 0.1;
   testing::Spring spring(kOmega * kOmega);
-  // The step solves for x − x̂ = −β² ω² x, about 1e-8 x. Its first six digits are above the rounding error of x.
+  // Newton tolerance, 1e-6: the unknown x − x̂ = −β² ω² x is about 1e-8 x, so rounding of x leaves six digits of it.
   Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
   double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
   stepper.return_to({{{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h});
@@ -222,7 +223,7 @@ Growth change_while_growing(double r) {
 TEST(Bdf2Ratio, UpToTheBoundErrorsOfTheHistoryFadeAndBeyondTheyGrow) {
   for (double r : {1.5, Stepper::kMaxStepRatio, 1 + std::sqrt(2.0), 3.0}) {
     const Growth growth = change_while_growing(r);
-    // Each step multiplies the difference by r² / (1 + 2r). The motion itself changes it by at most y² / 2.
+    // Each step multiplies the difference by r² / (1 + 2r). The oscillation changes it by at most y² / 2.
     const double expected = std::pow(r * r / (1 + 2 * r), growth.steps);
     EXPECT_NEAR(growth.formula, expected, 0.01) << "r = " << r;
     if (r <= Stepper::kMaxStepRatio) {
@@ -249,7 +250,7 @@ TEST(Bdf2Ratio, AStepTooLongForTheLastOneIsOneOfEuler) {
 }
 
 TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
-  // Steps double seven times, and then return to the first length: y = ω h from 1 to 128.
+  // y = ω h doubles in seven steps from 1 to 128, then starts again from 1.
   constexpr double kOmega = 1e3;
   testing::Spring spring(kOmega * kOmega);
   Stepper stepper(Method::bdf2, kAboveRounding);

@@ -1,4 +1,4 @@
-// Orders of convergence on a smooth nonlinear motion.
+// Tests of the order of convergence of each method, on a smooth nonlinear motion.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -9,15 +9,14 @@
 namespace weft::integrator {
 namespace {
 
-// Newton tolerance: larger than the rounding error of x / h², 2e-11, and much smaller than the error of the methods,
-// 1e-6.
+// Newton tolerance [m/s²]: above the rounding error of x / h², 2e-11, and far below the errors of the methods, 1e-6.
 constexpr NewtonParameters kSolved{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
 const Vec3 kStartX(1, 0.2, -0.3), kStartV(0.1, 0.8, 0.4);
 constexpr double kEnd = 1.5;  // [s]
 using Law = std::function<Vec3(const Vec3& x, const Vec3& v)>;
 
-// Classical Runge-Kutta with small steps: its error, of order h⁴ = 3e-14, is negligible.
+// Position at kEnd by the classical Runge-Kutta method. Its error, of the order of h⁴ = 2e-14, is negligible.
 Vec3 reference(const Law& acceleration) {
   constexpr int kSteps = 4000;
   const double h = kEnd / kSteps;
@@ -64,7 +63,7 @@ void expect_order(testing::Particles&& system, const Law& law, Method method, do
   double coarse = (run(system, method, steps(80)) - exact).norm();
   for (int count : {160, 320}) {
     const double fine = (run(system, method, steps(count)) - exact).norm();
-    // The next term of the error is h times the first term: a few per cent with these steps.
+    // Tolerance: the next term of the error is of the order of h times the first one, here a few per cent.
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.1) << count << " steps";
     coarse = fine;
   }

@@ -17,10 +17,10 @@ using namespace std::complex_literals;
 using Complex = std::complex<double>;
 using testing::kTight;
 
-// The measured error is below 1e-12; the tolerance is what the test requires.
+// Relative tolerance of damping and phase. (Measured errors are below 1e-12.)
 constexpr double kTolerance = 1e-6;
-constexpr double kStep = 0.01;  // [s]
-constexpr double kProducts[] = {0.1, 1, 10, 100};
+constexpr double kStep = 0.01;                     // [s]
+constexpr double kProducts[] = {0.1, 1, 10, 100};  // values of y
 
 // State with the given w, along an oblique direction, so that all three axes contribute.
 const Vec3 kDirection = Vec3(1, -2, 2) / 3;
@@ -31,7 +31,8 @@ Complex number_of(const State& state, double omega) {
   return {omega * kDirection.dot(state.x[0]), kDirection.dot(state.v[0])};
 }
 
-// w after a step over h from `now`; a BDF2 step has `before` as history.
+// w after a step over h from w = `now`. `before`: w at the start of the previous step, over before_h [s], which is the
+// history of BDF2.
 Complex stepped(Method method, double omega, double h, Complex now, const Complex* before = nullptr,
                 double before_h = 0) {
   testing::Spring spring(omega * omega);
@@ -48,7 +49,7 @@ void expect_damping_and_phase(Complex z, double damping, double phase, double y)
   EXPECT_NEAR(-std::arg(z) / y, phase, kTolerance * phase) << "y = " << y;
 }
 
-// Root of (3 + 2iy) z² − 4z + 1 = 0 that approaches 1 as y approaches 0.
+// z of BDF2 with equal steps: the root of (3 + 2iy) z² − 4z + 1 = 0 that approaches 1 as y approaches 0.
 Complex principal_root(double y) {
   return (2.0 + std::sqrt(1.0 - 2i * y)) / (3.0 + 2i * y);
 }
@@ -114,7 +115,7 @@ TEST(Oscillator, Bdf2WithVariableStepsDifferentiatesTheParabolaThroughThreeState
   }
 }
 
-// Detects exchanged methods: at y = 1, all three differ clearly.
+// Detects exchanged methods: at y = 1, the damping of all three differs by more than 0.05.
 TEST(Oscillator, NoMethodIsAnotherInDisguise) {
   const Complex root = principal_root(1), before = kStart, now = root * kStart;
   const Complex euler = stepped(Method::implicit_euler, 100, kStep, now) / now;

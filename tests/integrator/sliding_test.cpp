@@ -1,4 +1,4 @@
-// Error of friction for a whole diagonal block, compared with the theory of a block on a floor.
+// Tests of Sliding, which measures the error of friction on a diagonal block of the system, here a solid on a floor.
 #include "physics/integrator/sliding.hpp"
 
 #include <gtest/gtest.h>
@@ -6,12 +6,13 @@
 namespace weft::integrator {
 namespace {
 
+/// Contact forces on the whole block [N]. `limit`: maximum friction.
 struct Contacts {
   Vec3 push, friction;
   double limit;
 };
 
-/// A block of two particles on a floor. Each particle has half of the forces `whole`.
+/// A solid of two particles, which form one diagonal block. Half of the forces `whole` acts on each.
 class Block final : public System {
  public:
   explicit Block(const Contacts& whole) : whole_(whole) {}
@@ -48,9 +49,9 @@ double friction_error(const Contacts& contacts, const Vec3& missing) {
 // The normal force is 10 N, the friction limit 3 N (coefficient 0.3).
 TEST(Sliding, FrictionOfABlockAtRestIsRight) {
   EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, Vec3::Zero()), 0);
-  // A residual hardly moves a block that sticks. Without friction, there is no error of friction.
+  // The residual hardly moves a block that sticks.
   EXPECT_EQ(friction_error({{0, 0, 10}, {-2, 0, 0}, 3}, {-0.5, 0, 0}), 0);
-  EXPECT_EQ(friction_error({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);
+  EXPECT_EQ(friction_error({{0, 0, 10}, Vec3::Zero(), 0}, {1, 0, 0}), 0);  // the contact has no friction
 }
 
 TEST(Sliding, CountsTheResidualAlongFrictionAtItsLimit) {
@@ -60,7 +61,8 @@ TEST(Sliding, CountsTheResidualAlongFrictionAtItsLimit) {
 }
 
 TEST(Sliding, CountsFrictionDueToANormalForceInTheResidual) {
-  // The floor pushes with 20 N, but the motion needs 10 N, so the friction limit is 3 N.
+  // The floor pushes with 20 N, but the motion needs only 10 N. So the friction limit should be 3 N, which is 1.4 N
+  // less than the friction.
   EXPECT_NEAR(friction_error({{0, 0, 20}, {-4.4, 0, 0}, 6}, {0, 0, 10}), 1.4, 1e-12);
 }
 

@@ -1,4 +1,4 @@
-// Tests held particles, free fall, and the reports of the stepper.
+// Tests of Stepper: free fall, held particles, impacts, and reports.
 #include "physics/integrator/stepper.hpp"
 
 #include <gtest/gtest.h>
@@ -26,13 +26,13 @@ TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
       stepper.accept(now, next, h);
       std::swap(now, next);
       const double t = n * h;
-      // Differences from ½ g t²: Euler falls too far by ½ g h t; BDF2 keeps the error of its first step, which is an
-      // Euler step.
+      // Errors: Euler's method falls too far by ½ g h t. BDF2 keeps an error from its first step, which is an Euler
+      // step.
       Vec3 expected = x0 + t * v0 + 0.5 * t * t * g;
       if (method == Method::implicit_euler) expected += 0.5 * h * t * g;
       if (method == Method::bdf2) expected += 0.75 * h * h * (1 - std::pow(3, -n)) * g;
       for (std::size_t i : {0u, 1u}) {
-        // A few roundings of coordinates of metres per step.
+        // Tolerances [m], [m/s]: a few rounding errors in each step.
         EXPECT_LT((now.x[i] - expected).norm(), 1e-13 * n);
         EXPECT_LT((now.v[i] - (v0 + t * g)).norm(), 1e-12 * n);
       }
@@ -92,7 +92,7 @@ TEST(Stepper, StepIsRememberedOnlyWhenAccepted) {
 }
 
 TEST(Stepper, LeavesAFractionOfTheLocalErrorAndReportsIt) {
-  // One free particle; a solve to rounding gives the exact end of the step.
+  // `exact` is the end of the step of Euler's method, solved to rounding accuracy.
   testing::HardeningSpring spring;
   const double h = 0.5;
   const State now{{Vec3(3, 0, 0)}, {Vec3(0, 2, 0)}};
@@ -105,14 +105,14 @@ TEST(Stepper, LeavesAFractionOfTheLocalErrorAndReportsIt) {
     const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
     ASSERT_EQ(report.verdict, Verdict::solved);
     EXPECT_LE(report.remaining_error, report.allowed);
-    // Reported errors are true within a factor of 3.
+    // The actual velocity error is at most three times the allowed one.
     EXPECT_LT((next.v[0] - exact.v[0]).norm(), 3 * report.allowed) << tolerance;
     EXPECT_LE(report.solver_error, tolerance * report.local_error);
   }
 }
 
 TEST(Stepper, AllowsInvisibleResidualsUnlessAToleranceIsGiven) {
-  // The particle is 1e-6 m from rest: this motion is below the visibility threshold.
+  // The particle starts 1e-6 m from its rest position. This motion is below the visibility threshold.
   testing::HardeningSpring spring;
   const State now{{Vec3(1e-6, 0, 0)}, {Vec3::Zero()}};
   State next;
@@ -122,7 +122,7 @@ TEST(Stepper, AllowsInvisibleResidualsUnlessAToleranceIsGiven) {
   EXPECT_LT(strict.step(spring, now, 0.01, Vec3::Zero(), {}, next).allowed, 1e-8);
 }
 
-/// A weak spring with a matrix that is a hundred times too stiff: each Newton iteration reduces the error by 4 %.
+/// A spring whose matrix is about a hundred times too stiff: each Newton iteration reduces the error by 4 %.
 class Sluggish final : public Spring {
  public:
   Sluggish() : Spring(1) {}
@@ -131,8 +131,8 @@ class Sluggish final : public Spring {
   Mat3 stiffness_of(const Vec3&) const override { return 1e6 * Mat3::Identity(); }
 };
 
-// After twenty iterations, a velocity is allowed that is not visible. Beside a tolerance of positions, the bound
-// follows from that tolerance, and like the other bounds it is multiplied by that of Newton's method.
+// From Numerics::Newton::slow_after iterations on, larger velocity errors are allowed, up to the visibility threshold.
+// NewtonParameters::position_tolerance lowers this threshold, and NewtonParameters::tolerance multiplies it.
 TEST(Stepper, BoundsTheErrorOfASlowSolveByTheGivenTolerance) {
   Sluggish system;
   const State now{{Vec3::Zero()}, {Vec3::Zero()}};
@@ -142,11 +142,11 @@ TEST(Stepper, BoundsTheErrorOfASlowSolveByTheGivenTolerance) {
   const StepReport report = stepper.step(system, now, 0.01, Vec3(0, 0, -0.02), {}, next);
   ASSERT_EQ(report.verdict, Verdict::solved);
   EXPECT_GT(report.newton_iterations, 20);
-  // Computed by hand: 1.0e-8 m after 84 iterations; without the factor, 1.3e-7 m after 20.
+  // Computed by hand: the error is 1.0e-8 m after 84 iterations; without the factor `tolerance`, 1.3e-7 m after 20.
   EXPECT_LE(report.solver_error, 1.001 * tolerance * std::max(of_positions, report.local_error));
 }
 
-// Two uncoupled springs; records where Newton's method evaluated them.
+// Two uncoupled springs, each a diagonal block. Records the positions at which Newton's method linearises them.
 class TwoParts : public testing::Particles {
  public:
   TwoParts() : Particles({1, 1}) { linear_system().blocks = {{0, 1}, {1, 2}}; }
@@ -176,7 +176,7 @@ TEST(Stepper, PartThatIsSolvedStandsStillWhileAnotherGoesOn) {
   EXPECT_NE(next.x[1], before_last[1]);
 }
 
-// A force that is not a number.
+// A system whose force is not a number.
 class Broken : public testing::HardeningSpring {
  protected:
   Vec3 force_on(const Vec3&) const override { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
@@ -222,7 +222,7 @@ TEST(Stepper, ReturnsUnfinishedAfterTheGivenIterationsAndContinuesFromThere) {
   }
 }
 
-/// Records the number of earlier iterations of each linearisation.
+/// Records the argument `iteration` of each linearisation.
 class CountedSpring final : public testing::HardeningSpring {
  public:
   void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) override {
@@ -268,7 +268,8 @@ TEST(Stepper, CountsTheTimeOfImpacts) {
 }
 
 TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {
-  // For h = 0.5 s the rate is 2 1/s and the diagonal 4 (see Saddle): s = 3 is definite, s = 400 is not.
+  // For h = 0.5 s, the rate is 2/s and the diagonal 4 (see Saddle). The matrix is definite for s = 3, but not for
+  // s = 400.
   Stepper stepper(Method::implicit_euler, kTight);
   for (const auto& [s, verdict] : {std::pair{3.0, Verdict::solved}, std::pair{400.0, Verdict::indefinite}}) {
     State next;
@@ -278,7 +279,7 @@ TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {
   }
 }
 
-/// A Saddle of which an impact hits one particle in each step. The system of impacts adds `coupling` to s.
+/// A Saddle with an impact on particle 0 in each step. In the linear system of impacts, `coupling` is added to s.
 class StruckSaddle final : public testing::Saddle {
  public:
   explicit StruckSaddle(double coupling) : Saddle(3), coupling_(coupling) {}
@@ -309,8 +310,8 @@ TEST(Stepper, LinearSolveOfImpactsIsCountedAndJudged) {
   EXPECT_EQ(struck.newton_iterations, calm.newton_iterations);
   EXPECT_GT(struck.linear_iterations, calm.linear_iterations);
   EXPECT_LT(struck.solver_error, 1e-9 * numerics.newton.error_duration);
-  // One iteration solves the systems of Newton's method, which are antisymmetric, but not that of the impact. Computed
-  // by hand: an error of 0.04 m/s.
+  // One linear iteration solves the systems of Newton's method, whose solutions are antisymmetric, but leaves an error
+  // of 0.04 m/s (computed by hand) in that of the impact.
   const StepReport rough = report_of(StruckSaddle(0), 1);
   EXPECT_EQ(rough.verdict, Verdict::solved);
   EXPECT_GT(rough.solver_error, 0.01 * numerics.newton.error_duration);
