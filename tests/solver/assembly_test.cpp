@@ -1,4 +1,4 @@
-// Matrices assembled from one block per pair of particles.
+// Tests of Assembly, which builds matrices from one block for each pair of particles.
 #include "physics/solver/assembly.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
     expected.block<3, 3>(3 * i, 3 * i) += (0.5 + i) * Mat3::Identity();
   }
   assembly.keep_constant();
-  // Rows are assembled twice: start() clears the blocks of the first time, except for the constant part.
+  // Rows are assembled twice. start() clears the blocks of the first time, but keeps the constant part.
   for (int time = 0; time < 2; ++time) {
     assembly.start(0, 4, matrix);
     assembly.start(4, kRows, matrix);
@@ -64,7 +64,7 @@ TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
   Eigen::MatrixXd written = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
   matrix.for_each_block(0, kRows,
                         [&](Index i, Index j, const auto& block) { written.block<3, 3>(3 * i, 3 * j) = block; });
-  // Tolerance: the summands of a row are added in another order (measured: 1e-15).
+  // Tolerance: rounding, because the summands of a row are added in another order. (Measured: 1e-15.)
   EXPECT_LT((written - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 

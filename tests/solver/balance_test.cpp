@@ -1,4 +1,5 @@
-// Residuals of truncated solves: no work along the motion, no resultant on free blocks (Recurrence::balance).
+// Tests of Recurrence::balance(): residuals of truncated solves do no work along the motion, and have no resultant on
+// blocks without held particles.
 #include <gtest/gtest.h>
 
 #include "solver/block_systems.hpp"
@@ -26,8 +27,8 @@ Vec3 sum_of(const Eigen::VectorXd& forces, Index begin, Index end) {
 
 struct Left {
   Eigen::VectorXd forces;  // residual in the free directions
-  double work = 0;         // of the residual along `motion` plus the solution
-  double error = 0;        // in the energy norm
+  double work = 0;         // of the residual, along `motion` plus the solution
+  double error = 0;        // of the solution, in the energy norm
 };
 
 Left left_by(const LinearSystem& system, std::span<const Vec3> b, std::span<const Vec3> motion,
@@ -57,7 +58,7 @@ TEST(Balance, LeavesNoResultantOnFreePartsAndDoesNoWork) {
       cg.solve(b, {}, 4, without);
       cg.solve(b, {}, 4, x, {.motion = motion, .drift = drift});
       const Left balanced = left_by(system, b, motion, x), early = left_by(system, b, motion, without);
-      // Rounding in single precision: 6e-8 of forces of size 1 on twenty rows with stiffnesses up to 100.
+      // Tolerance: single precision rounds forces of size 1, on twenty rows with stiffnesses up to 100, by 6e-8.
       const double roundings = single ? 1e-4 : 1e-11;
       EXPECT_LT(sum_of(balanced.forces, 0, 20).norm(), roundings);
       EXPECT_LT(sum_of(balanced.forces, 40, 60).norm(), roundings);
@@ -89,7 +90,7 @@ TEST(Balance, LeavesConstrainedDirectionsAndOtherPartsAsTheyAre) {
   }
 }
 
-// If the motion is a translation, no work along it means no resultant along it: two of the conditions coincide.
+// If the motion is a translation, no work along the motion follows from no resultant: two of the conditions coincide.
 TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
   for (const bool single : {false, true}) {
     Random random(8);
@@ -104,7 +105,7 @@ TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
     cg.prepare(system);
     cg.solve(b, {}, 4, x, {.motion = motion});
     const Left left = left_by(system, b, std::vector<Vec3>(b.size(), Vec3::Zero()), x);
-    // Rounding as in the first test, for a motion that is a thousand times as large.
+    // Tolerance: that of the first test, times a hundred, because the motion is a thousand times as large.
     for (Index begin : {0, 20, 40}) EXPECT_LT(sum_of(left.forces, begin, begin + 20).norm(), single ? 0.01 : 1e-9);
     for (const Vec3& v : x) EXPECT_LT(v.norm(), 10);
   }

@@ -45,7 +45,7 @@ TEST(BlockMatrix, ProductIsThatOfTheDenseMatrix) {
   const auto x = random.vectors(kRows);
   std::vector<Vec3> y(kRows, Vec3::Constant(99));
   matrix.multiply<Vec3>(x, y, 0, kRows);
-  // Sums of up to 40 products of numbers below 1: 40 roundings of 40 · 1.1e-16 at most, 2e-13.
+  // Tolerance: in a sum of up to 40 products of numbers below 1, each of 40 rounding errors is at most 40 · 1.1e-16.
   EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
 
   // Multiplying in pieces gives the same bits and writes nothing outside the piece.

@@ -16,7 +16,7 @@ class Random {
   double number(double low = -1, double high = 1) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   Index below(Index count) { return std::uniform_int_distribution<Index>(0, count - 1)(engine_); }
   Vec3 vector() { return {number(), number(), number()}; }
-  /// Symmetric, eigenvalues between `low` and about `low` + 3.
+  /// Symmetric, with eigenvalues between `low` and `low` + 9.
   Mat3 definite(double low) {
     Mat3 a;
     a << vector(), vector(), vector();
@@ -128,8 +128,8 @@ inline Eigen::MatrixXd projection(const LinearSystem& system) {
   return s;
 }
 
-/// Groups consecutive particles into aggregates, and these again, one level for each count. With one particle per
-/// aggregate, constraints leave some aggregates immovable.
+/// Groups consecutive particles into aggregates, and aggregates into larger ones: one level for each count. If each
+/// aggregate has one particle, constraints hold some aggregates.
 inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
   system.aggregate_levels.clear();
   Index members = system.matrix.rows();
@@ -174,7 +174,7 @@ inline LinearSystem system_of_parts(Random& random) {
   return system;
 }
 
-/// √(bᵀ P⁻¹ b) of the part of b that the constraints permit.
+/// √(bᵀ P⁻¹ b) with the preconditioner P, for the components of b in the free directions.
 inline double norm(ConjugateGradient& cg, std::vector<Vec3> b) {
   cg.filter(b);
   const std::span<const Vec3> z = cg.precondition(b);

@@ -1,4 +1,4 @@
-// Compares constrained conjugate gradients with a dense direct solution.
+// Tests of ConjugateGradient: compares constrained solves with dense direct solutions.
 #include "physics/solver/conjugate_gradient.hpp"
 
 #include <gtest/gtest.h>
@@ -58,7 +58,7 @@ TEST(ConjugateGradient, WithAggregatesAgreesWithTheDirectSolutionUnderContactsAn
     cg.prepare(system);
     EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
     const Eigen::VectorXd expected = direct_solution(system, b);
-    // Tolerance of the previous test, times ten for rounding: a held aggregate has a small substitute value.
+    // Tolerance: that of the previous test, times ten for the rounding errors of more levels.
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
     for (const ParticleConstraint& c : system.constraints) {
       if (c.free.isZero(0)) {
@@ -128,8 +128,9 @@ TEST(ConjugateGradient, AggregatesReduceTheIterationsOnAStiffChain) {
     EXPECT_TRUE(report.converged);
     return report.iterations;
   };
-  // One level: the push needs an iteration for each particle that it has to reach. Two levels: the condition number of
-  // an aggregate of ten decides. More levels: aggregates of intermediate size help further.
+  // Without aggregates, the force on particle 0 reaches one more particle in each iteration. With aggregates of ten
+  // particles, the number of iterations follows from the condition number of one aggregate. Levels of smaller
+  // aggregates reduce it further.
   EXPECT_GE(iterations({}), 190);
   EXPECT_LE(iterations({20}), 39);
   EXPECT_LE(iterations({100, 50, 20}), 30);
@@ -180,7 +181,7 @@ TEST(ConjugateGradient, ObliqueConstraintsAreKeptToRounding) {
   cg.solve(b, {1e-12}, 1000, x);
   for (const ParticleConstraint& c : system.constraints) {
     const Vec3& entry = x[c.particle];
-    // Each of about 100 iterations adds a direction with a rounding error.
+    // Tolerance: each of about 100 iterations adds a rounding error.
     EXPECT_LE((entry - c.free * entry).norm(), 1e-14 * std::max(1.0, entry.norm()));
   }
 }
@@ -220,8 +221,8 @@ TEST(ConjugateGradient, KnowsTheErrorThatItLeavesFromItsOwnSteps) {
       const LinearReport report = cg.solve(b, {}, iterations, x);
       EXPECT_EQ(report.iterations, iterations);
       EXPECT_FALSE(report.converged);
-      // The estimate is that of an earlier iterate, so it is at least the remaining error. Four iterations gain a digit
-      // here.
+      // The reported error is that of an earlier iterate, so it exceeds the remaining error. In these systems, four
+      // iterations divide the error by ten.
       const double error = energy_norm(system, testing::flat(x) - expected);
       EXPECT_GT(report.errors[0], error);
       EXPECT_LT(report.errors[0], 100 * error);
@@ -247,8 +248,8 @@ TEST(ConjugateGradient, EndsWhenTheErrorOfEachBlockIsSmallEnough) {
 }
 
 TEST(ConjugateGradient, ErrorsAreMeasuredInTheMassWeightedNorm) {
-  // Particles of weight 1, half of them on springs of 1e8, half on springs of 1. In the mass-weighted norm only the
-  // latter count, because the former hardly move.
+  // All weights are 1. The stiffness is about 1e8 for particles 0 to 19, and about 1 for the others. In the
+  // mass-weighted norm, only the others count, because stiff particles hardly move.
   LinearSystem system;
   constexpr Index kRows = 40;
   system.matrix = BlockMatrix(kRows, {});
@@ -262,13 +263,13 @@ TEST(ConjugateGradient, ErrorsAreMeasuredInTheMassWeightedNorm) {
   std::vector<Vec3> x(kRows);
   ConjugateGradient cg;
   cg.prepare(system);
-  const LinearReport report = cg.solve(b, {}, 1, x);  // the block diagonal is the exact inverse here: one iteration
+  const LinearReport report = cg.solve(b, {}, 1, x);  // the matrix is block-diagonal: one iteration
   EXPECT_LE(report.errors[0], testing::flat(x).norm() * (1 + 1e-12));
   EXPECT_GT(report.errors[0], 0.99 * testing::flat(x).norm());
 }
 
-// A sheet of kSheetSide × kSheetSide particles with springs of this stiffness to its neighbours and bending, and
-// weights of 1: the sum of each row equals the weight.
+// A sheet of kSheetSide × kSheetSide particles, with springs of this stiffness between neighbours, bending, and weights
+// of 1. The blocks of each row of the matrix sum to the weight.
 constexpr Index kSheetSide = 12;
 LinearSystem sheet(double stiffness, Random& random) {
   BlockMatrix::Couplings links, bends;
@@ -321,7 +322,7 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
       EXPECT_EQ(in_double.solve(b, {relative_error}, 1000, y, {}, std::array{std::size_t{0}}, progress),
                 End::converged);
       EXPECT_TRUE(report.converged);
-      // Rounding makes search directions lose their conjugacy, in single precision after some hundred iterations.
+      // Tolerance: in single precision, search directions lose their conjugacy after some hundred iterations.
       EXPECT_NEAR(report.iterations, progress.iterations, 1 + progress.iterations / (stiffness > 1e3 ? 2.0 : 6.0));
       // The error that single precision adds is below the allowed error.
       EXPECT_LT(energy(testing::flat(x) - expected),
@@ -335,7 +336,7 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
 }
 
 TEST(ConjugateGradient, ContinuesInDoubleWhereSinglePrecisionIsNotEnough) {
-  // Tolerances that single precision cannot meet, absolute and relative.
+  // The goals, a relative error of 1e-10 or an absolute one of 1e-8, are too small for single precision.
   for (const double stiffness : {1e3, 1e6}) {
     Random random(52);
     const LinearSystem system = sheet(stiffness, random);
@@ -348,7 +349,7 @@ TEST(ConjugateGradient, ContinuesInDoubleWhereSinglePrecisionIsNotEnough) {
       const double allowed[] = {absolute};
       const LinearGoal goal = absolute > 0 ? LinearGoal{0, allowed} : LinearGoal{1e-10};
       EXPECT_TRUE(cg.solve(b, goal, 5000, x).converged) << stiffness;
-      // Tolerance for a solution of norm 10.
+      // Tolerance: 1e-8 of the solution, whose norm is about 10.
       EXPECT_LT((testing::flat(x) - expected).norm(), 1e-7) << stiffness;
     }
   }
@@ -383,14 +384,15 @@ TEST(ConjugateGradient, TranslationIsExactInSinglePrecisionHoweverStiffTheThread
   system.constraints.clear();
   system.terms.clear();
   system.diagonal_terms.clear();
-  // All blocks of a row sum up to the weight, so this force moves all particles by (1, 2, 3).
+  // The blocks of each row sum to the weight, so this force moves all particles by (1, 2, 3).
   const std::vector<Vec3> b(system.norm_weights.size(), Vec3(1, 2, 3));
   std::vector<Vec3> x(b.size());
   ConjugateGradient cg;
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {0.1}, 100, x, {.start = b});
   EXPECT_LE(report.iterations, 1);
-  // Sums of eight blocks of size 1e6 have a rounding error of 1e-10 in double. Single precision rounds results by 6e-8.
+  // Tolerance: single precision rounds results by 6e-8 of their size. Sums of blocks of size 1e6, in double precision,
+  // have a rounding error of 1e-10.
   for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
 }
 
@@ -408,7 +410,7 @@ TEST(ConjugateGradient, BeginsWithTheBestMultipleOfADirection) {
   const LinearReport report = cg.solve(b, {0, allowed}, 1000, x, {.start = half});
   EXPECT_LE(report.iterations, 1);
   EXPECT_LT((testing::flat(x) - testing::flat(exact)).norm(), 1e-10 * testing::flat(exact).norm());
-  // The solver removes from the start what constraints forbid, and a useless direction does no harm.
+  // A random direction is also possible: the solver removes its components that constraints forbid, and scales it.
   const std::vector<Vec3> elsewhere = random.vectors(40);
   EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {.start = elsewhere}).converged);
   EXPECT_LT((testing::flat(x) - testing::flat(exact)).norm(), 1e-10 * testing::flat(exact).norm());
@@ -434,7 +436,7 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsThanThereAreEigenvalues) {
   cg.prepare(system);
   const LinearReport report = cg.solve(b, {1e-8}, 1000, x);
   EXPECT_TRUE(report.converged);
-  // The error estimate of an iterate becomes known about a fifth of all iterations later.
+  // The error of an iterate is known only after further iterations, here about a fifth of all.
   EXPECT_LE(report.iterations, kRows + kRows / 4);
 }
 
@@ -455,7 +457,7 @@ TEST(ConjugateGradient, NegativeCurvatureIsReported) {
   LinearSystem system;
   system.matrix = BlockMatrix(2, {{0, 1}});
   for (Index i : {0, 1}) system.matrix.add_scalar(system.matrix.diagonal(i), 1);
-  // Eigenvalues 1 ± 2.
+  // The eigenvalues are 1 ± 2.
   system.matrix.add_scalar(system.matrix.slot(0, 1), 2);
   system.matrix.add_scalar(system.matrix.slot(1, 0), 2);
   const std::vector<Vec3> b{Vec3(1, 0, 0), Vec3(-1, 0, 0)};
@@ -468,7 +470,7 @@ TEST(ConjugateGradient, NegativeCurvatureIsReported) {
 }
 
 TEST(ConjugateGradient, GivesTheSameBitsOnAnyNumberOfThreads) {
-  // Several chunks of rows; the last is not full.
+  // So many rows that they form several chunks for the threads; the last chunk is not full.
   constexpr Index kRows = 3500;
   Random random(8);
   const LinearSystem system = testing::random_system(kRows, 400, random);

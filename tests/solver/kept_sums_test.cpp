@@ -1,4 +1,4 @@
-// Sums over aggregates that conjugate gradients reuse in later iterations of Newton's method.
+// Tests of sums over aggregates, which conjugate gradients may reuse in later iterations of Newton's method.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -29,7 +29,7 @@ TEST(ConjugateGradient, AggregateSumsAreReusedOnRequestInBothPrecisions) {
     cg.solve(b, {relative_error}, 3, x);
     return x;
   };
-  for (const double norm_weights : {1e-9, 1.0}) {  // 1e-9: in double precision only; 1: in both precisions
+  for (const double norm_weights : {1e-9, 1.0}) {  // 1e-9: solves use double precision only; 1: both
     system.norm_weights.assign(b.size(), norm_weights);
     ConjugateGradient used;
     used.prepare(system);
@@ -39,14 +39,14 @@ TEST(ConjugateGradient, AggregateSumsAreReusedOnRequestInBothPrecisions) {
     ConjugateGradient fresh;
     fresh.prepare(system, AggregateSums::reuse);  // no sums exist yet
     EXPECT_NE(norm(used, b), norm(fresh, b));
-    // If single precision was used, the double-precision sums do not exist yet.
+    // If both precisions are used, double-precision sums do not exist yet, so both solvers compute the same ones.
     EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), norm_weights == 1);
     stiffen(1000);
     used.prepare(system);
     ConjugateGradient last;
     last.prepare(system);
     EXPECT_EQ(norm(used, b), norm(last, b));
-    // If single precision was used, its sums are new already; double must recompute its own.
+    // After prepare() without `reuse`, sums in both precisions must be computed again.
     EXPECT_EQ(solution(used, 1e-9), solution(last, 1e-9));
     EXPECT_EQ(solution(used, 0.01), solution(last, 0.01));
   }

@@ -28,7 +28,8 @@ Eigen::MatrixXd diagonal_blocks(const Eigen::MatrixXd& a) {
   return blocks;
 }
 
-// One damped Jacobi step, factor 1/2, on piecewise constants: each member gets the mean of its neighbours' aggregates.
+// Interpolation from aggregates to members: piecewise constants after one Jacobi step with damping 1/2. A member gets
+// half of the value of its own aggregate, and half of the mean over the aggregates of its neighbours.
 Eigen::MatrixXd interpolation(const Aggregates& aggregates, const Eigen::MatrixXd& neighbours) {
   const auto members = static_cast<Eigen::Index>(aggregates.of.size());
   Eigen::MatrixXd constants = Eigen::MatrixXd::Zero(members, aggregates.count), means = constants;
@@ -96,7 +97,7 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
     }
     sum += p * block.inverse() * p.transpose();
 
-    // Aggregates are neighbours if members of them are.
+    // Two aggregates are neighbours if a member of one is a neighbour of a member of the other.
     Eigen::MatrixXd next = Eigen::MatrixXd::Zero(aggregates.count, aggregates.count);
     for (Eigen::Index i = 0; i < neighbours.rows(); ++i)
       for (Eigen::Index j = 0; j < neighbours.cols(); ++j)
@@ -174,7 +175,7 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   std::vector<Vec3> r = random.vectors(kSystemRows);
   for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
   const Eigen::VectorXd wanted = dense_preconditioner(system, false) * testing::flat(r);
-  // The same tolerance as in the previous test.
+  // The same tolerance as in the first test.
   EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm());
 }
 

@@ -1,4 +1,4 @@
-// Stiff bodies of four particles beside other blocks; wide terms hold them together.
+// Tests of wide terms, which connect a soft block with stiff bodies of four particles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,10 +12,10 @@ namespace {
 
 using testing::Random;
 
-constexpr Index kRows = 60;  // of the first block; two bodies follow
+constexpr Index kRows = 60;  // of the soft block; the rows of two bodies follow
 
-// A soft block and two bodies of four particles, with springs of 1e4 N/m between the particles of each body. Wide terms
-// connect a particle of the soft block to a body.
+// A soft block and two bodies of four particles, with springs of 1e4 N/m between the particles of each body. Each wide
+// term connects a particle of the soft block with a body.
 LinearSystem system_with_bodies(Random& random) {
   const BlockMatrix soft = testing::random_matrix(kRows, random);
   std::vector<std::pair<Index, Index>> pairs;
