@@ -1,4 +1,4 @@
-// Starts with intersections: which are untangled, to which side, and which are refused.
+// Tests of starts with intersections: which are untangled, to which side, and which are refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,8 +67,8 @@ double max_displacement(const frame::FrameSnapshot& a, const frame::FrameSnapsho
   return max_distance;
 }
 
-/// Expects that the given start intersects, and that neither the first frame nor the next three do, by exact
-/// predicates. Expects that the scene is refused without `start`.
+/// Expects, by exact predicates, at least `least_before` intersections in the given start, and none in the first frame
+/// and the next three. Expects that the scene is refused if no cloth may be untangled. Returns the first frame.
 frame::SnapshotPtr expect_untangled(const scene::Scene& scene, std::size_t least_before = 1) {
   const frame::SnapshotPtr given = production::view_start(scene).snapshot;
   EXPECT_GE(count_intersections(*given), least_before);
@@ -95,15 +95,15 @@ TEST(UntangledStart, ASheetThroughABallGoesOverToTheSmallerSide) {
     scene.cloths.push_back(sheet("sheet", {0, 0, height}));
     add_obstacle(scene, "ball", scene::Sphere{0.2});
     const frame::SnapshotPtr first = expect_untangled(scene, 50);
-    // The middle particle is at the pole of that side, no farther from it than the thickness of the cloth.
+    // The middle particle is at the top or at the bottom of the ball, up to the thickness of the cloth.
     const Vec3& middle = first->states[0].positions[12 + 25 * 12];
     EXPECT_NEAR(middle.z(), std::copysign(0.2, height), 0.004);
     EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), 0.2);
   }
 }
 
-// A region inside a body may consist of one particle. Its size includes half of the cells around it: as a point, the
-// region would be so small that the body would count as passing through the cloth.
+// The region of cloth inside a body may consist of one particle. The size of the region includes half of the cells
+// around it. Otherwise, the region would be a point, and the body would count as passing through the cloth.
 TEST(UntangledStart, OneParticleOfACoarseMeshGetsOutOfABall) {
   scene::Scene scene = empty_scene();
   scene.cloths.push_back(sheet("sheet", {0, 0, 0.02}, 0.6, 7));
@@ -132,7 +132,7 @@ TEST(UntangledStart, ASheetThatLiesOnAnotherGoesInFrontOfItAlsoWhereItIsPinned) 
   scene::Scene scene = empty_scene();
   scene.cloths = {sheet("a", {0, 0, 1}, 0.4, 9), sheet("b", {0, 0, 1}, 0.4, 9)};
   scene::Pin pin;
-  pin.high = {0.13, 1};  // two rows
+  pin.high = {0.13, 1};  // pins two rows of particles
   scene.cloths[1].pins = {pin};
   const frame::SnapshotPtr first = production::SceneSimulation(scene).snapshot();
   const std::vector<Vec3>&a = first->states[0].positions, &b = first->states[1].positions;

@@ -1,4 +1,4 @@
-// Regions of cloth behind a flat layer, whose bounding box has no depth.
+// Tests of regions of cloth behind a flat layer, whose bounding box has no depth.
 #include "physics/untangle/ways_out.hpp"
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 namespace weft::untangle {
 namespace {
 
-/// A square cloth over the middle of a larger square layer at z = 0 whose front is up. The cloth rises along x by
-/// `slope`; `height` is that of its middle.
+/// A square layer of 1 m at z = 0, whose front is up, and a square cloth of 0.4 m over its middle. The cloth has the
+/// `slope` dz/dx; its middle is at the `height` [m].
 struct ClothOnLayer {
   static constexpr int kCells = 8;
   std::vector<Vec3> x;
@@ -60,7 +60,7 @@ TEST(ClothBehindAFlatLayer, ThatCrossesTheLayerMovesToItsFront) {
   });
 }
 
-// Such as the back of a coat that is worn over an apron.
+// An example is the back of a coat that is worn over an apron.
 TEST(ClothBehindAFlatLayer, ThatIsApartFromTheLayerStays) {
   const ClothOnLayer apart(0, -0.05);
   apart.with_layer([&](const UntangleInput& input, const ForbiddenRegion& layer) {
