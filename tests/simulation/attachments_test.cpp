@@ -1,4 +1,4 @@
-// Attachments: springs between cloths, and from cloth to bodies. Tests their forces, breaking and release.
+// Tests of attachments, which are springs between cloths or from cloth to bodies: forces, breaking, release.
 #include "physics/simulation/attachments.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ Hanging hang_up(const scene::Scene& scene) {
   return result;
 }
 
-constexpr double kWeight = 0.2 * 0.15 * 9.81;  // [N]
+constexpr double kWeight = 0.2 * 0.15 * 9.81;  // of the towel [N]
 
 TEST(Attachments, BearTheWeightThatHangsOnThem) {
   const Hanging hanging = hang_up(towel("stiffness = 500\n"));
@@ -48,7 +48,7 @@ TEST(Attachments, BearTheWeightThatHangsOnThem) {
   EXPECT_EQ(peg.name, "peg");
   EXPECT_TRUE(peg.holds);
   EXPECT_NEAR(peg.load / kWeight, 1, 0.01);
-  // The 11 springs of 500 N/m extend by 0.05 mm; the cloth below stretches too.
+  // The 11 springs of 500 N/m extend by 0.05 mm; the cloth below them stretches, too.
   EXPECT_NEAR(hanging.lowest.back(), 0.65, 0.001);
 }
 
@@ -70,7 +70,7 @@ TEST(Attachments, HoldWhatIsStruck) {
     for (const Vec3& v : simulation.state().velocities) fastest = std::max(fastest, v.norm());
   }
   EXPECT_GT(fastest, 0.3);
-  EXPECT_LT(fastest, 1);  // 0.66 measured
+  EXPECT_LT(fastest, 1);  // measured: 0.66
 }
 
 TEST(Attachments, BreakUnderTheLoadThatTheyBearAndHoldBelow) {
@@ -79,7 +79,7 @@ TEST(Attachments, BreakUnderTheLoadThatTheyBearAndHoldBelow) {
   const Hanging breaking = hang_up(towel("breaking_load = 0.15\n"));
   EXPECT_FALSE(breaking.reports.back().attachments.at(0).holds);
   EXPECT_EQ(breaking.reports.back().attachments.at(0).load, 0);
-  EXPECT_LT(breaking.lowest.back(), 0.65 - 0.4 * 9.81);  // one second of free fall is 4.9 m
+  EXPECT_LT(breaking.lowest.back(), 0.65 - 0.4 * 9.81);  // in one second, the towel falls by 4.9 m
 }
 
 TEST(Attachments, LetGoInTime) {
@@ -87,7 +87,7 @@ TEST(Attachments, LetGoInTime) {
   EXPECT_NEAR(released.lowest[14], 0.65, 0.002);
   EXPECT_TRUE(released.reports[13].attachments.at(0).holds);
   EXPECT_FALSE(released.reports[15].attachments.at(0).holds);
-  EXPECT_NEAR(released.lowest.back(), 0.65 - 0.5 * 9.81 * 0.16, 0.05);  // fall of 0.4 s
+  EXPECT_NEAR(released.lowest.back(), 0.65 - 0.5 * 9.81 * 0.16, 0.05);  // after a fall of 0.4 s
 }
 
 TEST(Attachments, BeginWhereTheClothIsThen) {
@@ -102,7 +102,7 @@ TEST(Attachments, BeginWhereTheClothIsThen) {
 TEST(Attachments, DrawTheirEndsTogetherToALength) {
   scene::Scene scene = towel("length = 0\nstiffness = 500\n");
   scene.physics.gravity.setZero();
-  scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
+  scene.cloths[0].pose.position.z() = 0.75;  // the upper edge is 0.07 m below the rail
   production::SceneSimulation simulation(scene);
   for (int frame = 0; frame < 25; ++frame) simulation.advance();
   double highest = 0;
@@ -114,7 +114,7 @@ TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
   const auto warnings = [](double gap, const std::string& keys, double step = 0.01) {
     scene::Scene scene = towel(keys);
     scene.time.step = step;
-    scene.cloths[0].pose.position.z() = 0.97 - gap - 0.15;  // its upper edge starts `gap` below the rail [m]
+    scene.cloths[0].pose.position.z() = 0.97 - gap - 0.15;  // the upper edge starts `gap` below the rail [m]
     scene.physics.gravity.setZero();
     scene.time.duration = 0.16;
     std::string all;
@@ -129,7 +129,7 @@ TEST(Attachments, WarnOnceIfTheyPullFasterThanClothCanFollowWhateverTheStep) {
   EXPECT_EQ(far.find("attach.peg"), far.rfind("attach.peg")) << far;
   const std::string in_short_steps = warnings(0.5, "length = 0\nbegin = 0.1\n", 0.002);
   EXPECT_NE(in_short_steps.find("at 250 m/s"), std::string::npos) << in_short_steps;
-  // A soft spring pulls slowly, at 0.5 m · √(0.1 N/m / 0.25 g) = 10 m/s at most.
+  // A soft spring pulls slowly enough, at up to 0.5 m · √(0.1 N/m / 0.25 g) = 10 m/s.
   EXPECT_EQ(warnings(0.5, "length = 0\nbegin = 0.1\nstiffness = 0.1\n").find("attach.peg"), std::string::npos);
 }
 
@@ -145,8 +145,8 @@ TEST(Attachments, FollowTheirBody) {
   EXPECT_NEAR(highest, 0.95 + 0.2, 0.01);
 }
 
-// The program does not measure the work of a lifting body. Without contact, the energy check must recognise from the
-// body's motion that energy comes in.
+// The program does not measure the work of the lifting body. As there is no contact either, the energy check must infer
+// the supply of energy from the motion of the body.
 TEST(Attachments, ToABodyThatLiftsAreNoEnergyWithoutASource) {
   production::SceneSimulation simulation(towel(
       "release = 0\n",
@@ -156,14 +156,13 @@ TEST(Attachments, ToABodyThatLiftsAreNoEnergyWithoutASource) {
   for (int frame = 0; frame < 15; ++frame) EXPECT_TRUE(simulation.advance().warnings.empty()) << frame;
 }
 
-// The reported energies include the energy that attachments store.
 TEST(Attachments, StoreEnergyThatIsReported) {
   scene::Scene scene = towel("length = 0\nstiffness = 1\n");
-  scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
+  scene.cloths[0].pose.position.z() = 0.75;  // the upper edge is 0.07 m below the rail
   scene.cloths[0].velocity = Vec3(0, 0, -1);
   production::SceneSimulation simulation(scene);
-  // Eleven springs of 1 N/m, of which the two at the ends count half: 10 N/m. After a frame of 0.04 s they are 0.09 to
-  // 0.11 m long.
+  // Eleven springs of 1 N/m, of which the first and the last count half, have a stiffness of 10 N/m. After a frame of
+  // 0.04 s, they are 0.09 to 0.11 m long.
   const double energy = simulation.advance().elastic_energy;
   EXPECT_GT(energy, 10 * 0.5 * 0.09 * 0.09);
   EXPECT_LT(energy, 10 * 0.5 * 0.11 * 0.11);
@@ -202,7 +201,7 @@ TEST(Attachments, BetweenClothsKeepTheirMomentumAndTheirDistance) {
   double farthest = 0;
   for (int frame = 0; frame < 25; ++frame) {
     simulation.advance();
-    // The corner lies between particles of the lower sheet, at fractions 0.75 and 0.5 of a cell.
+    // The place to which the corner is tied: at fractions 0.75 and 0.5 of the first cell of the lower sheet.
     const auto& lower = simulation.snapshot()->states[0].positions;
     const Vec3 place = 0.25 * lower[0] + 0.25 * lower[1] + 0.5 * lower[7];
     farthest = std::max(farthest, (simulation.snapshot()->states[1].positions[0] - place).norm());

@@ -1,4 +1,4 @@
-// CollisionStage: positions of particles, pins and bodies at both ends of a step, and the velocity of a push.
+// Tests of CollisionStage: positions of particles, pins and bodies at both ends of a step; velocities due to pushes.
 #include "physics/simulation/collision_stage.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ class CollisionStages : public ::testing::Test {
     next_ = now_;
   }
 
-  /// Positions of floor and ball at time t, in the order in which they follow the particles.
+  /// Positions of floor and ball at time t [s], in the order in which they follow the particles.
   std::vector<Vec3> bodies_at(double t) const {
     std::vector<Vec3> floor(model_.bodies[0].mesh.positions.size()), ball(model_.bodies[1].mesh.positions.size());
     model_.place(0, t, floor);
@@ -60,7 +60,7 @@ TEST_F(CollisionStages, PlaceBodiesBehindTheParticlesForBothEndsOfAStep) {
   EXPECT_NE(bodies_of(now_), bodies_of(next_));
   for (std::size_t i = 0; i < 25; ++i) {
     EXPECT_EQ(now_.x[i], model_.cloths[0].start[i]);
-    EXPECT_EQ(next_.x[i], now_.x[i] + 0.01 * now_.v[i]);  // the prediction
+    EXPECT_EQ(next_.x[i], now_.x[i] + 0.01 * now_.v[i]);  // predicted from the unchanged velocity
   }
 }
 
@@ -83,7 +83,7 @@ TEST_F(CollisionStages, ExpectHeldParticlesWhereTheyAreHeld) {
   EXPECT_EQ(next_.x[7], Vec3(1, 2, 3));
 }
 
-// The solved end positions of the sheet are 1 mm below the floor. Pushing them out of it also changes the velocities.
+// The solved end of the sheet is 1 mm below the floor. The push out of the floor also changes the velocities.
 TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   stage_->begin_step(0.2, 0.01, {}, now_, next_);
   for (std::size_t i = 0; i < 25; ++i) {
@@ -117,8 +117,8 @@ TEST_F(CollisionStages, TellAContinuationThatLeadsBackToItsStart) {
   EXPECT_FALSE(stage_->restarts_at(next_)) << "a new attempt";
 }
 
-// In 0.1 s the blade turns by half a turn, so its vertices would move straight through its middle. The block is beside
-// the middle, in reach of the turning blade, or out of it, or it is not released yet.
+// In a step of 0.1 s, the blade makes half a turn, so its vertices would move straight through its middle. The block is
+// within reach of the turning blade, out of its reach, or not yet released.
 TEST(TurningObstacle, IsSeenByBodiesThatForcesMove) {
   const auto turns_too_far = [](double y, double release) {
     scene::Scene scene;

@@ -1,4 +1,4 @@
-// Runs that gain energy without a source are refused with a reason.
+// Tests of EnergyBound: runs that gain energy without a source are refused, or cause a warning.
 #include "physics/simulation/energy_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   production::SceneSimulation simulation(scene);
   FrameReport report;
   for (int k = 0; k < 10; ++k) report = simulation.advance();
-  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: its pin moves by 3 m in a second
+  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // a fifth of the energy of 0.05 kg at 3 m/s [J]
   EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
 }
 
@@ -121,7 +121,7 @@ scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& ampli
   return scene;
 }
 
-// Without the check, such a run gains 3e15 J in 246 frames (measured).
+// Without the check, one of these runs gains 3e15 J in 246 frames (measured).
 TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
   for (const Vec3& amplitude : {Vec3(0, 0.02, 0), Vec3(0.01, 0, 0.005), Vec3(0, 0.1, 0)}) {
     production::SceneSimulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, amplitude));
@@ -131,7 +131,7 @@ TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
   }
 }
 
-// Gain of stored energy = work of the pins − what the method dissipates, within 2 % of the largest work.
+// The gain of energy is the work of the pins minus the dissipation of the method, up to 2 % of the largest work.
 TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     const bool damps = integrator != scene::Integrator::implicit_midpoint;
@@ -206,7 +206,7 @@ TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
 
 // A cylinder strikes a loose sheet of locking threads at 38 m/s. The mass-weighted norm of the velocity error hardly
 // measures residual forces in stiff threads. If it were the only criterion, the residual would do 133 J of work, more
-// than the available 114 J; threads would stretch by 75 %, and the run would warn. With a tolerance of 0.02 they
+// than the available 114 J; threads would stretch by 75 %, and the run would warn. With newton_tolerance = 0.02, they
 // stretch by 24 %.
 TEST(EnergyBound, FastImpactsAreSolvedUntilTheResidualDoesLittleWork) {
   production::SceneSimulation simulation(support::scene_of_text(R"(
@@ -242,8 +242,8 @@ material = { fabric = "denim", friction = 1, max_stretch = 0 }
   EXPECT_LT(strain, 0.5);
 }
 
-// A sheet falls on a ball. With the midpoint rule, this step is critical for contacts. Bound: a tenth of the energy in
-// play, which a run may gain without a warning.
+// A sheet falls on a ball, in steps of 10 ms, which are critical for contacts with the midpoint rule. Bound: a tenth of
+// the energy in play (see EnergyBound), which a run may gain without a warning.
 TEST(EnergyBound, ContactBringsNone) {
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.6, 13, 0.45);
@@ -300,7 +300,7 @@ TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
           left.low = left.high = {0, 0};
           right.low = right.high = {1, 0};
           scene.cloths[0].pins = {left, right};
-          // The residual of the solver may leave a small gain in each of 40 steps. Measured: 0.
+          // Tolerance: in each of 40 steps, the residual of the solver may add energy. (Measured: 0.)
           EXPECT_LT(largest_gain(scene, 10), 0.01)
               << name_of(integrator) << ", shape " << static_cast<int>(shape) << ", viscosity " << viscosity
               << (of == &scene::Material::stretch_viscosity ? " of stretch" : " of shear");
@@ -333,7 +333,7 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
     for (const double step : {0.01, 0.02}) {
       const std::vector<scene::Shape> shapes{scene::BoxShape{{0.3, 0.3, 0.3}}, scene::Cone{0.3, 0.3}};
       for (std::size_t s = 0; s < shapes.size(); ++s)
-        // Without a warning a run may gain a tenth of the energy in play.
+        // Bound: a tenth of the energy in play, which a run may gain without a warning.
         EXPECT_LT(largest_gain(falls_on(shapes[s], friction, step), 10), 0.1)
             << "friction " << friction << ", step " << step << " s, shape " << s;
     }
@@ -342,7 +342,7 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
 // An error of friction changes a velocity by at most the velocity itself. The solver's error per step is therefore at
 // most the largest velocity times 0.15 s, the time over which a velocity residual counts.
 TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
-  constexpr double kCounts = 0.15;  // [s]
+  constexpr double kCounts = 0.15;  // Numerics::Newton::error_duration [s]
   int iterations = 0, number = 0;
   for (const scene::Shape& shape :
        {scene::Shape(scene::BoxShape{{0.3, 0.3, 0.3}}), scene::Shape(scene::Cone{0.3, 0.3})}) {
@@ -358,10 +358,11 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
       iterations += report.newton_iterations;
       number += report.steps;
     }
-    // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 and 2.7 times as large.
+    // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 times (box) and 2.7 times
+    // (cone) as large.
     EXPECT_LT(solver, steps);
   }
-  // Iterations per step, measured: 17.3; 25.4 if a solve that diverges with friction did not restart with fixed normal
+  // Measured: 17.3 iterations per step; 25.4 if solves that diverge with friction did not restart with fixed normal
   // forces.
   EXPECT_LT(iterations, 20 * number);
 }
@@ -393,8 +394,8 @@ TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
 }
 
 // A sheet slides over the edge of a box. When a contact at the edge appears, the cloth may already be closer than the
-// contact distance. The contact therefore pushes it out over at least 5 ms. If it did so in one step of 1 ms, it would
-// throw a row of particles up at 1 m/s.
+// contact distance. The contact therefore pushes the cloth out over at least 5 ms. In one step of 1 ms, it would throw
+// a row of particles up at 1 m/s.
 TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   scene::LoadResult loaded = scene::load_text(
       "[time]\nfps = 25\nintegrator = \"bdf2\"\n[solver]\nnewton_tolerance = 0.04\n"
@@ -406,13 +407,13 @@ TEST(EnergyBound, ContactsThatAppearLateThrowNothing) {
   ASSERT_TRUE(loaded.ok()) << loaded.describe();
   for (const double step : {1e-3, 3.125e-4}) {
     loaded.scene.time.step = step;
-    // A damping method gains energy here only by the error of its steps.
+    // Bound: BDF2 damps, so energy can only be gained by the errors of its steps.
     EXPECT_LT(largest_gain(loaded.scene, 4), 0.01) << step;
   }
 }
 
-// A plate strikes a free sheet, which then moves along with it. At an impact, velocities jump under BDF2. This jump
-// must not count as work of the solver's residual: the work would exceed the kinetic energy.
+// A plate strikes a free sheet, which then moves along with the plate. With BDF2, velocities jump at an impact. If this
+// jump counted as work of the solver's residual, the work would exceed the kinetic energy.
 TEST(EnergyBound, ImpactsAreNoWorkOfTheSolver) {
   production::SceneSimulation simulation(support::scene_of_text(
       "[time]\nduration = 0.4\nstep = 0.01\nintegrator = \"bdf2\"\n[physics]\nair_density = 0\ngravity = [0, 0, 0]\n"
@@ -427,7 +428,7 @@ TEST(EnergyBound, ImpactsAreNoWorkOfTheSolver) {
     EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
   }
   EXPECT_GT(kinetic, 1e-3);
-  EXPECT_LT(work, 0.1 * kinetic);  // the bound of the residual in a step, Numerics::Energy
+  EXPECT_LT(work, 0.1 * kinetic);  // the bound for the residual in a step, see Numerics::Energy
 }
 
 // Uses a made-up report, because a run of a garment with buttons takes far longer.

@@ -1,4 +1,4 @@
-// How much energy each integration method keeps.
+// Compares how much energy the integration methods keep.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -9,7 +9,7 @@
 namespace weft::simulation {
 namespace {
 
-// Energy relative to the sheet hanging at rest [J]: elastic, kinetic and potential.
+// Elastic, kinetic and potential energy, relative to that of the sheet hanging at rest [J].
 class Energy {
  public:
   explicit Energy(const scene::Scene& scene) : scene_(scene) {
@@ -72,7 +72,7 @@ TEST(PinnedSheet, OfSecondOrderMethodsKeepMoreEnergyThanEuler) {
   const double finest = run(scene::Integrator::bdf2, 4800);
   EXPECT_LT(kept[0], kept[2]);
   EXPECT_LT(kept[2], kept[1]);
-  // Only the method takes energy here.
+  // Only the method can take energy from the sheet, and the midpoint rule hardly takes any.
   EXPECT_NEAR(kept[1], 1, 0.02);
   EXPECT_GT(finest, kept[2]);
 }

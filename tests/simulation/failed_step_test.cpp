@@ -1,4 +1,4 @@
-// Steps that cannot be solved: the state after a failed frame, and halving of steps.
+// Tests of steps that cannot be solved: the state after a failed frame, and the halving of steps.
 #include <gtest/gtest.h>
 
 #include <span>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::sheet_alone;
 
-// A steel sheet. In its fourth frame its pinned edge moves too fast for the solver.
+// A sheet as stiff as steel. In the fourth frame, its pinned edge moves too fast for the solver.
 scene::Scene sheet_with_fast_edge() {
   scene::Scene scene = sheet_alone(0.4, 9, 1);
   scene.solver.newton_iterations = 1;
@@ -95,7 +95,7 @@ TEST(FailedStep, InTheMiddleOfAFrameTakesBackWhatWasTied) {
   EXPECT_TRUE(before == after);
 }
 
-// Two jaws close on a hanging sheet until they overlap; pins move the edge of a sheet into a box.
+// kJaws: two jaws close on a hanging sheet until they overlap. kPinIntoABox: pins move the edge of a sheet into a box.
 constexpr const char* kJaws = R"(
 [[cloth]]
 name = "sheet"
@@ -159,13 +159,13 @@ TEST(FailedStep, TakesBackPinchedClothAndPinsThatLag) {
   }
 }
 
-// A box under a sheet is driven down; the program is interrupted within the step, and drives the box up instead.
+// The host drives the box under a sheet down, interrupts the step, and then drives the box up instead.
 TEST(FailedStep, LeavesNoBodyWhereItWasDrivenThen) {
   scene::Scene scene = sheet_alone(0.4, 5, 0.11);
   scene.time.step = 0.04;
   scene.contact.obstacles = true;
   scene.obstacles.push_back(testing::obstacle("box", scene::BoxShape{{0.6, 0.6, 0.2}}));
-  scene.obstacles[0].motion.keys = {{0, scene::Pose{}}, {9, scene::Pose{}}};  // it may be driven
+  scene.obstacles[0].motion.keys = {{0, scene::Pose{}}, {9, scene::Pose{}}};  // with keys, the box may be driven
   const model::Model model = environment::Environment(scene).model;
   Simulation whole(model), interrupted(model);
   const auto drive = [](Simulation& simulation, double z) {

@@ -20,7 +20,7 @@ scene::Scene sheet_on_ball() {
   return scene;
 }
 
-/// Positions of all frames.
+/// Positions of the sheet in all frames.
 std::vector<std::vector<Vec3>> film_of(const scene::Scene& scene, int frames) {
   production::SceneSimulation simulation(scene);
   std::vector<std::vector<Vec3>> film;
@@ -36,7 +36,8 @@ TEST(FarBodies, HaveNoInfluence) {
   const auto alone = film_of(sheet_on_ball(), kFrames);
   for (const Vec3& place : {Vec3(20, 0, 3), Vec3(-4000, 700, 3), Vec3(0, 0, 5), Vec3(0, 1.5, 0)}) {
     for (const bool moves : {false, true}) {
-      for (const bool comes_first : {moves != (place.z() > 4)}) {  // the order is swapped for one place
+      // A moving prop comes first in the scene; at one place, a still prop does.
+      for (const bool comes_first : {moves != (place.z() > 4)}) {
         scene::Scene scene = sheet_on_ball();
         scene::Obstacle prop = testing::obstacle("prop", scene::Sphere{0.1}, place);
         prop.pose.rotation = Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));

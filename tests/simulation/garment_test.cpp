@@ -1,4 +1,4 @@
-// Garments are sewn and worn: seams stay closed, measures become those of the pattern, nothing intersects.
+// Tests of sewn garments: seams stay closed, measures become those of the pattern, nothing intersects.
 #include "film/garment/garment.hpp"
 
 #include <fmt/format.h>
@@ -74,9 +74,9 @@ TEST_F(Garments, ATubeSewnRoundAPostFitsAndNeverIntersects) {
   const auto frames = support::run_scene(scene, {.keep_positions = true});
   for (const auto& frame : frames)
     EXPECT_EQ(frame.pairs, 0U) << "frame " << frame.report.frame << ": " << frame.between;
-  // The start is free of stress, however much it is stretched relative to the pattern.
+  // At the start, threads have no tension, however much the cloth is stretched relative to the pattern.
   EXPECT_LT(frames[0].report.max_strain, 1e-12);
-  EXPECT_LT(frames[0].report.elastic_energy, 0.03);  // only bending: the pattern is flat
+  EXPECT_LT(frames[0].report.elastic_energy, 0.03);  // of bending, because the pattern is flat [J]
 
   const garment::Garment garment =
       garment::sew(garment::load_pattern(scene.cloths[0].file, "a test"), scene.cloths[0].edge_length, "a test");
@@ -102,7 +102,7 @@ TEST_F(Garments, NothingFallsBeforeItIsSewn) {
     for (const Vec3& x : frames[frame].cloths[0]) sum += x.z();
     return sum / static_cast<double>(frames[frame].cloths[0].size());
   };
-  EXPECT_NEAR(height(15), height(0), 0.02);  // the band contracts the upper end
+  EXPECT_NEAR(height(15), height(0), 0.02);  // tolerance: the elastic band contracts the upper end
   const double fallen = 0.5 * 9.81 * 0.4 * 0.4;
   // Tolerance: implicit Euler is ahead by half a step of 10 ms, and the mean of the particles is not the centre of mass
   // while the shape changes.
@@ -157,7 +157,7 @@ TEST_F(Garments, AStartThatTouchesTheWearerIsRefusedWithItsPlace) {
   support::expect_error(ExitCode::scene_invalid, "'tube'", [&] { production::SceneSimulation simulation(scene); });
 }
 
-/// The message with which a start is refused.
+/// The message with which a start is refused; empty if it is accepted.
 std::string refusal_of(const scene::Scene& scene) {
   try {
     production::SceneSimulation simulation(scene);
@@ -223,7 +223,7 @@ TEST(SewnCloth, CatchesUpAfterTheSewingOnceItsThreadsAreReleased) {
   int steps = 0;
   for (; !cloth.is_constant_between(2 * kSewing, 3 * kSewing) && steps < 10; ++steps)
     EXPECT_TRUE(cloth.accept(released, kStep).empty()) << "its widening is reported once";
-  // The cloth is stopped in the second of five steps, so that two thirds of the way are left.
+  // Sewing stops in the second of five steps, so that two thirds of the way to the pattern are left.
   EXPECT_EQ(steps, 4);
   EXPECT_LT(cloth.max_strain(released), 1e-12);
 }

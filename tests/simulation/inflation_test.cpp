@@ -1,4 +1,4 @@
-// Compares closed cloth with air inside with theory: tension, volume, frequency, energy.
+// Compares closed cloth that encloses air with theory: tension, volume, frequency, energy.
 #include "physics/simulation/inflation.hpp"
 
 #include <gtest/gtest.h>
@@ -21,8 +21,8 @@ constexpr double kAmbient = Inflation::kAmbientPressure;
 
 class Balloon : public support::TestFolder {
  protected:
-  /// A sphere with isotropic stretch, without gravity and without air outside. `time` and `cloth` are rows of [time]
-  /// and of the cloth.
+  /// A sphere with isotropic stretch, without gravity and without drag. `time`, `cloth`: further rows of the tables
+  /// [time] and [[cloth]].
   scene::Scene scene(const std::string& time, const std::string& cloth) const {
     const mesh::Mesh sphere = mesh::make_sphere(kRadius, 32);
     std::ofstream out(folder_ / "sphere.obj");
@@ -52,7 +52,7 @@ TEST_F(Balloon, StretchesUntilTheTensionIsPressureTimesHalfTheRadius) {
     const FrameReport start = production::SceneSimulation(balloon).initial_report(), end = run(balloon);
     ASSERT_EQ(end.enclosed.size(), 1u);
     EXPECT_EQ(end.enclosed[0].pressure, pressure);
-    // Per rest length, kStretch ε = p R (1 + ε)² / 2 balances the pressure.
+    // The tension per rest length balances the pressure p: kStretch ε = p R (1 + ε)² / 2.
     const double a = pressure * kRadius / (2 * kStretch);
     const double strain = (1 - 2 * a - std::sqrt(1 - 4 * a)) / (2 * a);
     const double measured = std::cbrt(end.enclosed[0].volume / start.enclosed[0].volume) - 1;
@@ -72,7 +72,7 @@ TEST_F(Balloon, HoldsWhatIsPumpedInAtThePressureOfItsTension) {
     const double volume = end.enclosed[0].volume, pressure = end.enclosed[0].pressure;
     EXPECT_NEAR((kAmbient + pressure) * volume / (kAmbient * start * (1 + pumped)), 1, 1e-12);
     if (pumped < 0) {
-      EXPECT_LT(pressure, 0);  // the balloon dents at almost no pressure difference
+      EXPECT_LT(pressure, 0);  // the balloon dents at small pressure differences
       EXPECT_GT(pressure, -500);
       continue;
     }
@@ -92,7 +92,7 @@ TEST_F(Balloon, OfMoreAirIsOneIntoWhichThatIsPumped) {
 
 TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
   viscosity_ = 0;
-  // Radial motion u: ρ u'' = −(2 k / R² + 3 p₀ / R) u, 742 Hz; threads alone would give 184 Hz.
+  // The radial motion u follows ρ u'' = −(2 k / R² + 3 p₀ / R) u, at 742 Hz; with threads alone, at 184 Hz.
   const double rate = std::sqrt((2 * kStretch / kRadius + 3 * kAmbient) / (kRadius * kDensity));
   const double period = 2 * std::numbers::pi / rate;
   scene::Scene balloon =
@@ -107,10 +107,11 @@ TEST_F(Balloon, SwingsWithTheFrequencyOfItsAirAndKeepsItsEnergy) {
   for (int frame = 1; frame <= 160; ++frame) {
     const FrameReport report = simulation.advance();
     volumes.push_back(report.enclosed[0].volume);
-    // Measured: 0.003, the trapezoidal error in a potential that is not quadratic.
+    // Tolerance: the midpoint rule does not keep the energy of a potential that is not quadratic. (Measured: 0.003.)
     EXPECT_NEAR(report.kinetic_energy + report.elastic_energy + report.air_energy, all, 0.01 * all) << frame;
   }
-  // After four periods the balloon is back at the start; a quarter of a period later it is halfway.
+  // A period has 40 frames. After four periods, the balloon is back at the start; a quarter of a period earlier, its
+  // volume is the mean of both extremes.
   const double swing = volumes[20] - volumes[0];
   EXPECT_GT(swing, 0);
   EXPECT_NEAR(volumes[160], volumes[0], 0.05 * swing);
@@ -124,17 +125,17 @@ TEST_F(Balloon, IsPushedByThePressureInTheMiddleOfAStepOfTheMidpointRule) {
   balloon.time.fps = 10000;
   testing::solve_tightly(balloon);
   production::SceneSimulation simulation(balloon);
-  EXPECT_NEAR(simulation.advance().enclosed.at(0).pressure, 100, 1e-6);  // at the end of the step
+  EXPECT_NEAR(simulation.advance().enclosed.at(0).pressure, 100, 1e-6);  // at the end of the step [Pa]
   const ParticleState state = simulation.state();
   double momentum = 0, mass = 0;
   for (std::size_t i = 0; i < state.positions.size(); ++i)
     momentum += state.masses[i] * state.velocities[i].dot(state.positions[i].normalized()), mass += state.masses[i];
-  // The pressure grows by 1 MPa/s, so the velocity is half of that times h², divided by the density. The threads hardly
-  // act yet.
+  // The pressure grows by 1 MPa/s. So after a step over h, the velocity is half of this rate times h², divided by the
+  // density of the cloth. Tension is still negligible.
   EXPECT_NEAR(momentum / mass / (0.5 * 1e6 * 1e-8 / kDensity), 1, 0.03);
 }
 
-// The floor cuts off a cap of 10 % of the sphere; untangling moves the sphere up.
+// At the given start, a cap of 10 % of the sphere is below the floor; untangling moves it up.
 TEST_F(Balloon, IsClosedWithTheVolumeThatItHasOnceItIsUntangled) {
   const auto start = [&](const std::string& more) {
     return production::SceneSimulation(scene("", more + "pressure = { control = \"fill\", fill = 1 }\n" +

@@ -1,4 +1,4 @@
-// Compares forces that change with time and place, and an initial spin, with simple theory.
+// Compares forces that change with time and place, and an initial spin, with theory.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ TEST(KeyedForces, AreThoseOfTheEndOfAStepInWhichContactsAreFound) {
   EXPECT_NEAR(middle.x(), 0.04 * 0.04 * 4, 1e-4);
 }
 
-// Order of convergence of a place at 0.2 s, from the differences of its values for steps of 20, 10 and 5 ms.
+// Order of convergence of the position of the last particle at 0.2 s, from runs with steps of 20, 10 and 5 ms.
 double order_at_last_particle(scene::Scene scene) {
   testing::solve_tightly(scene);
   scene.time.integrator = scene::Integrator::implicit_midpoint;
@@ -93,7 +93,7 @@ TEST(KeyedForces, LengthsOfRopesKeepTheSecondOrderOfTheMidpointRule) {
               2, 0.2);
 }
 
-// Springs of 10 rad/s pull a sheet of four equal particles back.
+// A sheet of four equal particles, which springs pull back with a frequency of 10 rad/s.
 TEST(KeyedForces, PinsWithAStrengthKeepTheSecondOrderOfTheMidpointRule) {
   scene::Scene scene = testing::sheet_alone(0.2, 2, 0);
   scene.physics.gravity.setZero();
@@ -116,7 +116,7 @@ TEST(KeyedForces, SheetThatFacesWindFromSomeTimeOnCatchesUpAsTheoryHasIt) {
   // Drag: v' = a (w − v)² with wind w, a = ρ c / (2 σ), air density ρ, coefficient c, density σ; w − v = w / (1 + a w
   // t).
   const double a = 1.2 * scene.cloths[0].material.drag / (2 * scene.cloths[0].material.density);
-  EXPECT_NEAR(velocity_at_end(scene).z() / (kWind - kWind / (1 + a * kWind * 0.4)), 1, 0.005);  // 0.002 measured
+  EXPECT_NEAR(velocity_at_end(scene).z() / (kWind - kWind / (1 + a * kWind * 0.4)), 1, 0.005);  // measured: 0.002
   scene.time.duration = 0.16;
   EXPECT_EQ(velocity_at_end(scene), Vec3(0, 0, 0));
 }
@@ -157,7 +157,7 @@ TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
     return sum;
   };
   production::SceneSimulation simulation(scene);
-  // A square of lumped masses with n cells a side has the moment m a² / 12 (1 + 2 / n²) about each axis in its plane.
+  // A square of n × n cells with lumped masses has the moment of inertia m a² / 6 (1 + 2 / n²) about its normal.
   const double inertia = 0.2 * 0.09 * 0.09 / 6 * (1 + 2.0 / 64);
   const Vec3 start = angular_momentum(simulation);
   EXPECT_LT((start - Vec3(0, 0, inertia * std::numbers::pi)).norm(), 1e-12);

@@ -1,4 +1,4 @@
-// Layered garments: dressed one after the other, each outside the one below.
+// Tests of layered garments, which are dressed one after the other, each outside the one below.
 #include "film/scene/layers.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 namespace weft::simulation {
 namespace {
 
-// A tube around z as the text of an OBJ file, stretched along x by `ellipse`; if `flipped`, its faces point to the
+// Text of an OBJ file of a tube around z, stretched along x by the factor `ellipse`. `flipped`: its faces point to the
 // axis.
 std::string tube(double radius, double height, double ellipse = 1, bool flipped = false) {
   constexpr int kAround = 28, kUp = 9;
@@ -38,7 +38,7 @@ std::string tube(double radius, double height, double ellipse = 1, bool flipped 
   return text;
 }
 
-/// How often the ray from p away from the z axis pierces a surface.
+/// Number of times that the ray from p, away from the z axis, pierces a surface.
 int count_crossings(const Vec3& p, const std::vector<std::array<Index, 3>>& triangles, const std::vector<Vec3>& x) {
   const Vec3 outward = 10 * Vec3(p.x(), p.y(), 0).normalized();
   int times = 0;
@@ -95,7 +95,7 @@ TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
 
 TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   scene::Scene scene = dressed("preroll = 0.36\n");
-  // No friction: the shirt grips the vest so tightly that with friction the speed of the vest is chaotic.
+  // There is no friction, because the shirt grips the vest so tightly that friction would make its motion chaotic.
   for (scene::Cloth& cloth : scene.cloths) cloth.material.friction = 0;
   for (scene::Obstacle& obstacle : scene.obstacles) obstacle.friction = 0;
   const std::vector<scene::Layer> layers = scene::list_layers(scene);
@@ -124,7 +124,8 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
   EXPECT_NEAR(speed(three) / speed(one), 1, 0.25);
 }
 
-/// A sheet between jaws, its pinned edge pushed away by a ram, before and after another cloth (if any) is dressed.
+/// Results of a run in which jaws pinch a sheet, and a ram pushes its pinned edge away. `more`: a further cloth that is
+/// dressed over the sheet.
 struct HeldUp {
   std::vector<int> pinched, lagging;  // per frame
   std::vector<std::string> warnings;
@@ -185,12 +186,12 @@ TEST_F(Layers, PinchedAndHeldUpGoOnSoWhenTheNextComes) {
   EXPECT_EQ(below.lagging, alone.lagging);
   for (std::size_t k = 0; k < alone.pinched.size(); ++k)
     EXPECT_NEAR(below.pinched[k], alone.pinched[k], 0.2 * alone.pinched[k]) << "frame " << k;
-  // With one more cloth the solver stops at another iterate. Measured: at most a ninth of the pinched pairs differ, and
-  // positions at the end by 11 mm, for a swinging sheet of 0.4 m.
+  // Tolerances: with one more cloth, the solver stops at another iterate. Measured: at most a ninth of the pinched
+  // pairs differ, and positions at the end differ by up to 11 mm, for a swinging sheet of 0.4 m.
   for (std::size_t i = 0; i < alone.end.size(); ++i) EXPECT_LT((alone.end[i] - below.end[i]).norm(), 0.02);
 }
 
-// A sheet that lies across a tube can be moved neither outside of it nor inside.
+// The lid, a sheet that lies across the tube of the vest, cannot be moved to the outside of the vest.
 TEST_F(Layers, ThatCannotBePutOnLeaveWhatIsWornAsItWas) {
   production::SceneSimulation simulation(
       support::scene_of_text("[time]\npreroll = 0.36\n[physics]\ngravity = [0, 0, 0]\n"

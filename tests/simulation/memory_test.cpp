@@ -1,4 +1,4 @@
-// Memory of a simulation per particle.
+// Tests the memory of a simulation per particle.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -10,7 +10,7 @@
 namespace weft::simulation {
 namespace {
 
-// Measured in the frame in which the sheet meets the sphere, since near pairs take memory too.
+// Measured after the frame in which the sheet meets the sphere, because near pairs take memory, too.
 TEST(Simulation, TakesLessThanFiveKilobytesAParticle) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "the sanitizer has its own malloc";

@@ -1,4 +1,4 @@
-// Sewn garments over sewn garments.
+// Tests garments that are sewn over other sewn garments.
 #include <gtest/gtest.h>
 
 #include "support/scene_runs.hpp"
@@ -15,7 +15,8 @@ TEST(Outfit, HasNoIntersectionsAndIsSewn) {
   ASSERT_EQ(frames.size(), 16u);
   for (const support::MeasuredFrame& frame : frames) {
     EXPECT_EQ(frame.pairs, 0u) << frame.report.frame << ": " << frame.between;
-    // Before sewing a garment is far from its pattern: the loops of panels around a limb are wider by a third.
+    // The strain of a garment that is not sewn is a third, because the loops of panels around a limb start wider by a
+    // third.
     EXPECT_LT(frame.report.max_strain, 0.3) << frame.report.frame;
   }
 }

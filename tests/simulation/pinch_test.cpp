@@ -1,5 +1,5 @@
-// Two bodies leave no clearance for the cloth between them: the run continues, cloth stays separated from cloth, the
-// pinch is reported, and nothing intersects once the bodies have separated.
+// Tests of two bodies that leave cloth between them no clearance: the run continues, cloth stays separated from cloth,
+// the pinch is reported, and nothing intersects after the bodies have separated.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -202,7 +202,7 @@ keys = [
 ]
 )";
 
-/// The same scene with a limit on stretch (max_stretch), near which the threads stiffen.
+/// The scene with a limit on stretch (max_stretch), near which the threads stiffen.
 std::string locking(std::string scene) {
   const std::string_view before = "pin = ";
   return scene.insert(scene.find(before), "material = { max_stretch = 0.15 }\n");
@@ -234,7 +234,7 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   production::SceneSimulation simulation(scene);
   int pinched = 0, steps = 0;
   std::vector<std::string> pinches;
-  // Long steps also cause warnings about stretch and about residual forces; these do not concern the pinch.
+  // Long steps also cause warnings about stretch and about residual forces, which do not concern the pinch.
   const auto is_of_pinch = [](const std::string& text) {
     return text.find("max_stretch") == std::string::npos && text.find("solver.newton_tolerance") == std::string::npos;
   };
@@ -330,7 +330,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Blade{"whole_turn_a_step", turning_blade(25, "[0, {}, 0]", "[0.6, 0.3, 0.01]", 0.86), 0.04}),
     [](const auto& blade) { return std::string(blade.param.name); });
 
-/// Two boxes of 0.2 m with a gap between them along y, as one OBJ file.
+/// OBJ file of two boxes of 0.2 m with a `gap` [m] between them along y.
 std::string jaws_file(double gap) {
   std::string vertices, faces;
   for (int jaw = 0; jaw < 2; ++jaw) {
@@ -346,7 +346,8 @@ std::string jaws_file(double gap) {
 
 class PinchBetweenParts : public support::TestFolder {
  protected:
-  /// Reports on a sheet between jaws that close until their gap is `least_gap` [m], and open again.
+  /// Warnings of a run in which a sheet hangs between jaws that close until their gap is `least_gap` [m], and open
+  /// again.
   std::vector<std::string> reports(double least_gap, const std::string& more) {
     const std::array<double, 9> gaps{0.1, 0.1, 0.05, least_gap, least_gap, least_gap, 0.05, 0.1, 0.1};
     for (std::size_t k = 0; k < gaps.size(); ++k)
@@ -379,7 +380,8 @@ TEST_F(PinchBetweenParts, IsSaidToBeBetweenPartsOfThatBody) {
     EXPECT_NE(text.find("'sheet' has no room between parts of 'jaws' near"), std::string::npos) << text;
 }
 
-/// A flat ellipsoid, the hand, beside a tall one, the hip: one file with two unconnected components.
+/// OBJ file of a tall ellipsoid, the hip, and a flat one, the hand, which is not connected to it. `place` [m] and
+/// `angle` [rad]: of the hand.
 std::string hand_on_hip_file(const Vec3& place, double angle) {
   std::string vertices, faces;
   Index first = 1;
@@ -434,8 +436,8 @@ class HandOnHip : public PinchBetweenParts {
   }
 };
 
-// The hand leaves in another direction, turned by one radian. Pinched cloth may intersect the hand only. If it might
-// intersect the whole body, it would stay in the hand (measured: 29 triangles). Elsewhere the cloth rests on the hip.
+// The hand leaves in another direction, turned by one radian. Pinched cloth is exempt from the hand only. If it were
+// exempt from the whole body, it would stay in the hand (measured: 29 triangles).
 TEST_F(HandOnHip, LeavesTheClothAsItCame) {
   const Course course = run({0.1, -0.35, 1.05}, -1);
   EXPECT_GT(course.most_pinched, 10);
@@ -443,9 +445,9 @@ TEST_F(HandOnHip, LeavesTheClothAsItCame) {
 }
 
 // The hand leaves down along the cloth, or up past the held edge. Triangles that share a particle inside the hand must
-// be exempt too; otherwise the hand would catch them. Measured at the end: strain 0.08 to 0.10, no pairs; without the
-// rule 0.37 and 49 pairs. If all triangles beside pinched ones were exempt, the strain would be 0.04, but cloth
-// would stay inside bodies. Bound: 1.5 times the measured strain.
+// be exempt too; otherwise the hand would catch them. Measured: strain 0.08 to 0.10, and no intersecting pairs at the
+// end; without the rule 0.37 and 49 pairs. If all triangles beside pinched ones were exempt, the strain would be 0.04,
+// but cloth would stay inside bodies. Bound: 1.5 times the measured strain.
 TEST_F(HandOnHip, ReleasesClothWhenItLeavesSideways) {
   for (const Vec3& after : {Vec3(0.1, -0.25, 0.8), Vec3(0.1, -0.3, 1.2)}) {
     const Course course = run(after, 0);

@@ -1,4 +1,4 @@
-// Cloth pinned to places on a character's surface.
+// Tests of pins, most of which follow places on the surface of a character.
 #include "physics/simulation/pins.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ using Deformation = std::function<Vec3(const Vec3&, double)>;
 
 class PinsOnACharacter : public support::TestFolder {
  protected:
-  /// A body of boxes with motion from files, and a sheet beside it with one side pinned.
+  /// A box that moves by mesh files, and a sheet 10 mm above it, of which one side is pinned to the box.
   scene::Scene scene_of(const Deformation& moved, const std::string& more = "") {
     const mesh::Mesh box = mesh::make_box(Vec3(0.6, 0.4, 0.2), 0, 1);
     for (int k = 0; k < kFiles; ++k) {
@@ -68,14 +68,14 @@ struct Pinned {
   }
 };
 
-// If the body moves rigidly, so do the pinned particles: checked at the key frames, where its vertices are exact.
+// If the body moves rigidly, so do the pinned particles. Tested at the key frames, where the vertices are exact.
 TEST_F(PinsOnACharacter, MoveAsOneWithABodyThatDoes) {
   const Pinned pinned(scene_of(kRigid));
   ASSERT_EQ(pinned.at(0).size(), 9u);
   for (int k = 0; k < kFiles - 1; ++k)
     for (const auto& held : pinned.at(k / kFileRate)) {
       const Vec3 in_body = pinned.start(held) - kRigid(Vec3::Zero(), 0);  // the body is not rotated at time 0
-      // Files have single precision: 1e-7 m, with lever arms of about one side.
+      // Tolerance: files have single precision, which rounds vertices by up to 1e-7 m.
       EXPECT_LT((held.x_end - kRigid(in_body, k / kFileRate)).norm(), 1e-6) << k;
     }
 }
@@ -88,18 +88,19 @@ TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
   const auto before = pinned.at(t - d), now = pinned.at(t), after = pinned.at(t + d);
   for (std::size_t p = 0; p < now.size(); ++p) {
     const Vec3 difference = (after[p].x_end - before[p].x_end) / (2 * d);
-    // Error of the central difference: d² times a third derivative of some hundred m/s³, and rounding of 1e-16 m / d.
+    // Tolerance: the central difference errs by d² times a third derivative of some hundred m/s³, and by rounding,
+    // 1e-16 m / d.
     EXPECT_LT((difference - now[p].v_end).norm(), 1e-7);
     EXPECT_GT(now[p].v_end.norm(), 0.5);
   }
 }
 
-// On a bending surface, a particle keeps its distance of 10 mm from it.
+// A pinned particle keeps its distance of 10 mm from a surface that bends.
 TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
   const Pinned pinned(scene_of(kBent));
   for (int k = 0; k < kFiles - 1; ++k)
     for (const auto& held : pinned.at(k / kFileRate)) {
-      double min_deviation = 1;  // minimum deviation from 10 mm, over all faces
+      double min_deviation = 1;  // minimum deviation from 10 mm, over all faces [m]
       for (const auto& t : pinned.model.bodies[0].mesh.topology.triangles) {
         const auto at = [&](std::size_t c) {
           return pinned.model.vertex(0, static_cast<std::size_t>(t[c]), k / kFileRate).position;
@@ -111,7 +112,7 @@ TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
     }
 }
 
-// The free part of the cloth follows the body.
+// In a run, the pinned particles follow the body.
 TEST_F(PinsOnACharacter, CarryCloth) {
   const scene::Scene scene = scene_of(kRigid, "[contact]\nobstacles = false\n");
   const std::vector<Vec3> last = support::run_scene(scene, {.counts_intersections = false}).back().cloths[0];
@@ -133,7 +134,7 @@ TEST_F(PinsOnACharacter, FollowThePartsOfABodyWithBones) {
   ASSERT_EQ(begin.size(), 9u);
   Vec3 torso = Vec3::Zero(), hand = Vec3::Zero();
   for (std::size_t p = 0; p < begin.size(); ++p) {
-    // At the start a pinned particle is where the scene puts it, except for rounding and the inversion of a map.
+    // At the start, a pinned particle is where the scene puts it, up to rounding errors.
     EXPECT_LT((begin[p].x_end - pinned.start(begin[p])).norm(), 1e-12) << p;
     const bool first_pin = p < 5;
     EXPECT_EQ(begin[p].constraint.particle >= 20, first_pin) << "the upper row is of the first";
@@ -177,8 +178,7 @@ TEST(PinsThatOverlap, HoldWhatPinsBeforeThemHaveReleased) {
   const Pinned pinned(support::scene_of_text(
       "[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [\n"
       "{ low = [0, 1], high = [1, 1], release = 0.2 },\n"
-      "{ low = [0, 1], high = [0.5, 1], release = 0.1 },\n"  // released before the other pin, so it never holds a
-                                                             // particle
+      "{ low = [0, 1], high = [0.5, 1], release = 0.1 },\n"  // never holds: released before the first pin
       "{ low = [0, 1], high = [0, 1], keys = [{ time = 0.2 }, { time = 0.4, offset = [0, 0, 1] }] }]\n"));
   ASSERT_EQ(pinned.at(0.2).size(), 3u);
   for (const integrator::HeldParticle& held : pinned.at(0.2))
@@ -189,8 +189,8 @@ TEST(PinsThatOverlap, HoldWhatPinsBeforeThemHaveReleased) {
   EXPECT_NEAR((after[0].x_end - pinned.start(after[0]) - Vec3(0, 0, 0.5)).norm(), 0, 1e-12);
 }
 
-// 0.1 + 0.02 exceeds 0.12 in double precision. Compared without tolerance, these times would release pins one step
-// early.
+// In double precision, 0.1 + 0.02 exceeds 0.12. If times were compared without a tolerance, pins would be released one
+// step early.
 TEST(PinsThatAreReleased, HoldUntilTheStepThatEndsAtTheirRelease) {
   const Pinned pinned(
       support::scene_of_text("[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [{ low = [0, 1], "

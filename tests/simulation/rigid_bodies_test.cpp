@@ -18,7 +18,7 @@
 namespace weft::simulation {
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kGravity = 9.81;  // [m/s²]
 
 std::string box(const std::string& name, const std::string& keys) {
   return "[[obstacle]]\nname = \"" + name + "\"\nshape = \"box\"\n" + keys;
@@ -28,7 +28,7 @@ std::string timed(double duration, const std::string& more = "") {
   return "[time]\nduration = " + std::to_string(duration) + "\nstep = 0.01\n" + more + "\n";
 }
 
-/// Positions of the vertices of an object, by its index.
+/// Positions of the vertices of the object with this index.
 const std::vector<Vec3>& vertices(const production::SceneSimulation& simulation, std::size_t object) {
   return simulation.snapshot()->states.at(object).positions;
 }
@@ -80,7 +80,8 @@ TEST(RigidBodies, KeepTheirSpinAndShapeForAHundredTurns) {
   EXPECT_NEAR(energy, 0.5 * (0.05 / 12) * std::pow(20 * std::numbers::pi, 2), 1e-6 * energy);
   FrameReport report;
   for (int frame = 1; frame < scene.frame_count(); ++frame) report = simulation.advance();
-  // Effect of the solver's residual in 2,500 steps: 9e-5 of the energy, and 0.6° of the axis.
+  // Tolerances: in 2,500 steps, the residual of the solver changes the energy by a fraction of 9e-5, and turns the axis
+  // by 0.6° (measured).
   EXPECT_NEAR(report.kinetic_energy / energy, 1, 5e-4);
   const Fit end = fit(start, vertices(simulation, 0));
   EXPECT_LT(end.off, 1e-4 * 0.2);
@@ -88,7 +89,7 @@ TEST(RigidBodies, KeepTheirSpinAndShapeForAHundredTurns) {
 }
 
 TEST(RigidBodies, TumbleWithTheirAngularMomentum) {
-  // The axis of the intermediate moment is unstable (Dzhanibekov effect); angular momentum is always conserved.
+  // Rotation about the axis of the intermediate moment of inertia is unstable (Dzhanibekov effect): the brick flips.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 4\nstep = 0.002\nintegrator = \"implicit_midpoint\"\n[physics]\ngravity = [0, 0, 0]\n" +
       box("brick", "size = [0.2, 0.1, 0.05]\ndensity = 1000\nspin = [0.5, 720, 0]\n"));
@@ -129,7 +130,7 @@ TEST(RigidBodies, ComeToRestOnTheFloorAndStayThere) {
 }
 
 TEST(RigidBodies, SlideDownAnInclineAsBlocksDo) {
-  // μ = 0.5 holds up to 26.6°; at 35° a block accelerates by g (sin − μ cos).
+  // μ = 0.5 holds up to 26.6°; at 35°, a block accelerates by g (sin 35° − μ cos 35°).
   for (const double angle : {20.0, 35.0}) {
     const double turn = angle * std::numbers::pi / 180;
     const Vec3 off = 0.0505 * Vec3(std::sin(turn), 0, std::cos(turn));
@@ -149,7 +150,7 @@ TEST(RigidBodies, SlideDownAnInclineAsBlocksDo) {
     if (slope < 0)
       EXPECT_LT(distance, 1e-3);
     else
-      EXPECT_NEAR(distance / (0.5 * kGravity * slope * t * t), 1, 0.03);  // implicit Euler leads by the fraction h / t
+      EXPECT_NEAR(distance / (0.5 * kGravity * slope * t * t), 1, 0.03);  // implicit Euler is ahead by h / t
   }
 }
 
@@ -166,7 +167,7 @@ TEST(RigidBodies, HangInClothThatCarriesThem) {
   const Vec3 ball = middle(vertices(simulation, 1));
   EXPECT_GT(ball.z(), 0.7);  // the ball has not passed through
   EXPECT_LT(ball.z(), 1.1);
-  EXPECT_LT(ball.head<2>().norm(), 0.08);  // and is in the middle
+  EXPECT_LT(ball.head<2>().norm(), 0.08);  // the ball is in the middle
   EXPECT_LT(report.kinetic_energy, 0.05);
 }
 
@@ -181,7 +182,7 @@ TEST(RigidBodies, AreMovedByKeysUntilTheirRelease) {
   EXPECT_NEAR((middle(vertices(simulation, 0)) - Vec3(0.4, 0, 1)).norm(), 0, 1e-12);
   for (int frame = 6; frame <= 10; ++frame) simulation.advance();
   const Vec3 at = middle(vertices(simulation, 0));
-  EXPECT_NEAR(at.x(), 0.8, 1e-6);  // it continues at 2 m/s
+  EXPECT_NEAR(at.x(), 0.8, 1e-6);  // the box continues at 2 m/s
   EXPECT_NEAR(at.z(), 1 - 0.5 * kGravity * 0.04, 0.02);
 }
 
@@ -211,7 +212,7 @@ TEST(RigidBodies, ReleasedAtTimeZeroStandStillInThePreroll) {
 }
 
 TEST(RigidBodies, AreThrownAtTheirReleaseWithEachMethod) {
-  // The history of BDF2 says that the body rests. If BDF2 used it at the release, the body would leave 1.5 times as
+  // In the history of BDF2, the body rests. If BDF2 used this history at the release, the body would leave 1.5 times as
   // fast.
   for (const std::string method : {"implicit_euler", "bdf2", "implicit_midpoint"}) {
     production::SceneSimulation simulation(support::scene_of_text(
@@ -238,7 +239,7 @@ TEST(RigidBodies, RestUntilTheirReleaseIfLongerStepsAreRejected) {
   EXPECT_NEAR(report.kinetic_energy, 12.5, 0.1);
 }
 
-/// A ball and a block fall on a sheet on a floor, by BDF2.
+/// A sheet falls on a floor, and a ball and a block fall on the sheet; integrated by BDF2.
 scene::Scene busy_scene() {
   return support::scene_of_text(
       timed(0.6, "integrator = \"bdf2\"") +
@@ -284,8 +285,8 @@ TEST(RigidBodies, ThatPassThroughEverythingChangeNoContact) {
     EXPECT_EQ(vertices(whole, object), vertices(resumed, object)) << object;
 }
 
-// A frame in which everything rests is one step. The arm is in its place at both ends of the frame, but strikes the
-// crate within it.
+// A frame in which everything rests is one step. The arm is in the same place at both ends of the frame, but strikes
+// the crate within the frame.
 TEST(RigidBodies, AtRestAreStruckByWhatComesAndGoesWithinAFrame) {
   production::SceneSimulation simulation(support::scene_of_text(
       "[time]\nduration = 3\nfps = 1\nstep = 0.01\n[physics]\ngravity = [0, 0, 0]\n" +
@@ -298,7 +299,7 @@ TEST(RigidBodies, AtRestAreStruckByWhatComesAndGoesWithinAFrame) {
 }
 
 TEST(RigidBodies, KeepTheMomentumOfWhatCollides) {
-  // Two blocks collide off-centre, without gravity: checks linear momentum, and angular momentum about the origin.
+  // Two blocks collide off-centre, without gravity. Their linear momentum must be conserved.
   const scene::Scene scene = support::scene_of_text(
       timed(0.6) + "[physics]\ngravity = [0, 0, 0]\n" +
       box("a", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [-0.2, 0, 0]\nvelocity = [1, 0, 0]\nfriction = 0.5\n") +
@@ -314,7 +315,7 @@ TEST(RigidBodies, KeepTheMomentumOfWhatCollides) {
   const Vec3 of_a = (middle(vertices(simulation, 0)) - middle(a)) / frame,
              of_b = 3 * (middle(vertices(simulation, 1)) - middle(b)) / frame;
   EXPECT_LT((of_a + of_b - Vec3(1, 0, 0)).norm(), 1e-4);
-  EXPECT_GT(of_b.x(), 0.3);  // they have collided
+  EXPECT_GT(of_b.x(), 0.3);  // the blocks have collided
   EXPECT_LT(report.kinetic_energy, 0.5);
 }
 
@@ -355,9 +356,9 @@ TEST(RigidBodies, PassImpactsOnToWhatTheyTouch) {
     std::string method;
     double step, most;
   };
-  // Fraction of 0.25 J that is left: a fifth. Measured: 0.2000 (Euler); 0.218, 0.205, 0.201 (BDF2). If pairs were
-  // solved one by one, BDF2 would leave 0.32, 0.28, 0.22; if an impact were found by distance instead of velocity, 0.27
-  // at 1 ms.
+  // Of the initial 0.25 J, a fifth must be left. Measured fractions: 0.2000 (Euler); 0.218, 0.205, 0.201 (BDF2). If
+  // pairs were solved one by one, BDF2 would leave 0.32, 0.28, 0.22; if an impact were found by distance instead of
+  // velocity, 0.27 at 1 ms.
   for (const Run& run :
        {Run{"implicit_euler", 0.01, 0.201}, {"bdf2", 0.01, 0.22}, {"bdf2", 0.005, 0.22}, {"bdf2", 0.001, 0.202}}) {
     const std::string scene =
@@ -409,10 +410,11 @@ TEST(RigidBodies, MayTouchWhatTheyStandOn) {
                  "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, " + std::to_string(0.05 + 0.1 * i) + "]\n");
   production::SceneSimulation simulation(support::scene_of_text(scene));
   for (int frame = 1; frame < 13; ++frame) simulation.advance();
-  // The boxes rest within the contact thickness of each other, 0.5 mm, and half of it above the floor.
+  // Each box rests within 0.5 mm, the contact thickness, of the next box; the lowest one, within half of it of the
+  // floor.
   EXPECT_GT(middle(vertices(simulation, 4)).z(), 0.35);
   EXPECT_LT(middle(vertices(simulation, 4)).z(), 0.35175);
-  // A body inside another is refused.
+  // A box that crosses the floor is refused.
   EXPECT_THROW(production::SceneSimulation(
                    support::scene_of_text(timed(0.5) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
                                           box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 0.03]\n"))),
@@ -427,7 +429,7 @@ TEST(RigidBodies, MayTouchWhatTheyStandOnWhereOtherThingsAreUntangled) {
       "[[cloth]]\nname = \"sheet\"\nparticles = [9, 9]\nsize = [0.4, 0.4]\nposition = [0, 0, 0.003]\n"
       "start = \"untangle\"\n");
   const production::SceneSimulation simulation(scene);
-  EXPECT_NEAR(middle(vertices(simulation, 2)).z(), 0.1002, 1e-9);  // lifted by 0.2 mm
+  EXPECT_NEAR(middle(vertices(simulation, 2)).z(), 0.1002, 1e-9);  // the crate was lifted by 0.2 mm
 }
 
 // The scene has no cloth, so the message must not advise untangling.

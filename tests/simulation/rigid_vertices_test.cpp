@@ -1,4 +1,4 @@
-// Forces on the vertices of a rigid body, distributed to the particles that carry it.
+// Tests of RigidVertices, which distribute forces on the vertices of a rigid body to its frame particles.
 #include "physics/simulation/rigid_vertices.hpp"
 
 #include <gtest/gtest.h>

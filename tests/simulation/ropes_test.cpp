@@ -1,4 +1,4 @@
-// Ropes in runs: equal bits with any number of threads and after resuming, ties, and no effect without ropes.
+// Tests of ropes in runs: equal bits with any number of threads and after resuming, keyed lengths, attachments.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -88,8 +88,8 @@ TEST(RopeRuns, HaveTheBendingStiffnessOfTheirLengthInTheMatrix) {
   EXPECT_EQ(after, blocks_at(1, fresh));
 }
 
-// Putting on a layer replaces the step loop. If the first step of the new loop fails, the initial state of this loop is
-// shown and saved.
+// Putting on a layer replaces the step loop. If the first step of the new loop fails, its initial state is shown and
+// saved, so this state must have the rope length of its time.
 TEST(RopeRuns, HaveTheLengthOfTheirTimeOnceALayerIsPutOn) {
   const model::Model model =
       environment::Environment(
@@ -103,7 +103,7 @@ TEST(RopeRuns, HaveTheLengthOfTheirTimeOnceALayerIsPutOn) {
 }
 
 TEST(RopeRuns, BearWhatIsTiedToThem) {
-  // 0.2 kg on a cord tied to the middle of a taut line.
+  // A cord that carries 0.2 kg is tied to the middle of a taut line.
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 2\nstep = 0.02\n[[rope]]\nname = \"line\"\nfrom = [-0.5, 0, 0.1]\nto = [0.5, 0, 0.1]\n"
       "diameter = 0.006\ndamping = 0.1\npin = [{ at = 0 }, { at = 1 }]\n"

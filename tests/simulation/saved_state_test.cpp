@@ -1,4 +1,4 @@
-// A run that continues from a saved state equals the uninterrupted run, bit for bit.
+// Tests that a run that continues from a saved state equals the uninterrupted run, bit for bit.
 #include "simulation/saved_state.hpp"
 
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ size = [0.02, 0.5, 0.2]
 position = [0.3, 0, 0.1]
 )";
 
-// Two jaws close on a hanging sheet until they overlap, and open. They are thin: cloth inside a jaw may be nearer to
-// its back than to its front.
+// Two jaws close on a hanging sheet until they overlap, and open. The jaws are thin, so that cloth inside a jaw may be
+// nearer to the back of the jaw than to its front.
 constexpr const char* kThinJaws = R"(
 [time]
 duration = 1
@@ -296,7 +296,7 @@ TEST(SavedStates, AfterRejectedAndInexactStepsGoOnTheSameWay) {
 }
 
 TEST(SavedStates, KeepTheBoundOfEnergy) {
-  // A stiff sheet hangs from two corners; the steps are far too long for the midpoint rule.
+  // A sheet hangs from two corners; the steps are far too long for the midpoint rule.
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
   scene.time = {.duration = 10, .fps = 10, .step = 0.02, .integrator = scene::Integrator::implicit_midpoint};
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 100;
@@ -318,7 +318,7 @@ TEST(SavedStates, KeepTheBoundOfEnergy) {
   const std::string words = refusal(first, &states);
   EXPECT_NE(words.find("more than at the start"), std::string::npos) << words;
   ASSERT_GT(states.size(), 2u);
-  // The message contains the energy in play, from the minimum and the maximum of all frames before.
+  // The message contains the energy in play, which depends on minima and maxima over all earlier frames.
   for (const std::string& state : {states.front(), states.back()}) {
     production::SceneSimulation resumed(scene);
     resumed.restore(state);

@@ -1,5 +1,5 @@
-// One scene at the scale of a doll, a person and a circus tent: steps, iterations and strain do not depend on the
-// scale.
+// Tests a scene at the scale of a doll, a person and a circus tent: steps, iterations and strain must hardly depend on
+// the scale.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 struct Scale {
   double size;          // of the sheet [m]
-  bool is_time_scaled;  // steps and frames are fractions of the time of fall; else 10 and 40 ms
+  bool is_time_scaled;  // steps and frames are proportional to the time of fall; else 10 and 40 ms
   int frames;
 };
 
@@ -21,7 +21,7 @@ std::ostream& operator<<(std::ostream& out, const Scale& scale) {
   return out << scale.size << (scale.is_time_scaled ? " m, time scaled" : " m");
 }
 
-// A sheet of canvas falls on a ball of a fifth of its size.
+// A sheet of canvas falls on a ball, whose radius is a fifth of the size of the sheet.
 std::string tarpaulin(const Scale& scale) {
   const double l = scale.size, time = scale.is_time_scaled ? std::sqrt(l) : 1;
   const auto text = [](double value) { return std::to_string(value); };

@@ -1,4 +1,4 @@
-// Small scenes without a file.
+// Small scenes for tests, made without scene files.
 #pragma once
 
 #include <string>
@@ -26,7 +26,7 @@ inline scene::Material test_material() {
   return material;
 }
 
-/// A square sheet of the test material, flat at the given height [m], without air and without contact.
+/// A square sheet of the test material, of `size` [m], flat at `height` [m], without air and without contact.
 inline scene::Scene sheet_alone(double size, int particles, double height) {
   scene::Scene scene;
   scene.name = "test";

@@ -1,4 +1,4 @@
-// The whole step loop: pins, contact, and the same bits with any number of threads.
+// Tests of the whole step loop: pins, contact, and the same bits with any number of threads.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -47,7 +47,7 @@ TEST(Simulation, FrameZeroIsTheSheetAsTheSceneLaysIt) {
 TEST(Simulation, FrameTimesAreThoseOfTheRateAndNoSums) {
   scene::Scene scene = sheet_alone(0.4, 3, 1);
   scene.time.fps = 30;
-  scene.time.step = 0.01;  // three and a third steps would fit a frame, so four equal ones are used
+  scene.time.step = 0.01;  // a frame has 3.3 such steps, so it is divided into four equal ones
   production::SceneSimulation simulation(scene);
   for (int k = 1; k <= 20; ++k) {
     const FrameReport report = simulation.advance();
@@ -78,7 +78,7 @@ TEST(Simulation, FreeFallInVacuumIsTheLawOfTheMethodForEveryParticle) {
       if (integrator == scene::Integrator::bdf2) fall += 0.75 * h * h * (1 - std::pow(3, -n)) * scene.physics.gravity;
       const auto& x = sheet_of(simulation.snapshot());
       for (std::size_t i = 0; i < x.size(); ++i)
-        // A residual of 1e-9 of the weight in each step: at most 1e-9 · ½ g t² = 3e-9 m.
+        // Tolerance: a residual of 1e-9 of the weight in each step moves a particle by up to 1e-9 · ½ g t² = 8e-10 m.
         ASSERT_LT((x[i] - start[i] - fall).norm(), 4e-9) << "frame " << k << ", particle " << i;
     }
   }
@@ -142,7 +142,7 @@ TEST(Simulation, WithoutRigidityThereIsNoBendingAtAll) {
 
 TEST(Simulation, PinLetsGoAtItsReleaseTime) {
   scene::Scene scene = sheet_alone(0.2, 3, 1);
-  scene::Pin pin;  // the whole sheet
+  scene::Pin pin;  // holds the whole sheet
   pin.release = 0.2;
   scene.cloths[0].pins.push_back(pin);
   production::SceneSimulation simulation(scene);
@@ -152,7 +152,7 @@ TEST(Simulation, PinLetsGoAtItsReleaseTime) {
     EXPECT_EQ(sheet_of(simulation.snapshot()), start);
   }
   EXPECT_EQ(simulation.advance().constraints, 0);
-  // Two Euler steps of free fall, with the default tolerance of 5 % of the weight.
+  // Fall in the two Euler steps after the release. Tolerance: the residual of the solver.
   const double fall = 9.81 * 0.02 * 0.02 * 3;
   for (std::size_t i = 0; i < start.size(); ++i)
     EXPECT_NEAR(start[i].z() - sheet_of(simulation.snapshot())[i].z(), fall, 0.1 * fall);
@@ -237,7 +237,7 @@ TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
     EXPECT_LT(report.solver_error, 1e-9) << "frame " << k + 1;
     rejected += report.rejected_steps;
   }
-  EXPECT_LE(rejected, 4);  // measured: 2; 69 if the depth at a contact's tangent is accurate to 1e-3 of the force only
+  EXPECT_LE(rejected, 4);  // measured: 2; 69 if depths of linearisation were accurate to 1e-3 only
 }
 
 class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {};
@@ -265,14 +265,14 @@ INSTANTIATE_TEST_SUITE_P(
                       [](scene::Search& s) { s.velocity_cones = true; },
                       [](scene::Search& s) { s.normal_cones = true; }, [](scene::Search& s) { s.reuse = false; }));
 
-// With coherence, closest points of an earlier step are reused, so that positions differ, at first in their last
-// digits.
+// With `coherence`, closest points of an earlier step are reused. So positions differ from those of the default, at
+// first in their last digits.
 TEST(Simulation, KeptClosestPointsFindTheFirstContactsThatTheDefaultFindsAndKeepTheSheetApart) {
   scene::Scene scene = sheet_on_ball();
   production::SceneSimulation simulation(scene);
   scene.contact.search.coherence = true;
   production::SceneSimulation other(scene);
-  int first = 0;  // proximities in the first frame with contacts; later ones differ
+  int first = 0;  // near pairs in the first frame that has some; later numbers differ
   for (int k = 1; k <= 13; ++k) {
     const int expected = simulation.advance().proximities, found = other.advance().proximities;
     EXPECT_EQ(support::find_intersections(support::objects_of(*other.snapshot())).pairs.size(), 0u) << "frame " << k;
@@ -294,7 +294,7 @@ TEST(Simulation, SheetOnAFloorComesToRestWithinHalfItsThickness) {
     EXPECT_GT(x.z(), 0);
     EXPECT_LE(x.z(), half_thickness);
   }
-  // At rest: a fall of one step would give (g h)² / 2 = 0.02 J/kg.
+  // Bound for rest [J]: after a fall of one step, the energy would be (g h)² / 2 = 0.02 J/kg.
   const double mass = scene.cloths[0].material.density * 0.3 * 0.3;
   EXPECT_LT(report.kinetic_energy, 1e-6 * mass);
   EXPECT_GT(report.min_distance, 0);
@@ -316,7 +316,7 @@ std::uint64_t fingerprint(const frame::FrameSnapshot& snapshot) {
 }
 
 TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
-  // More particles than the grain size of the force loop, and contact with the ball from the start.
+  // The sheet has more particles than the grain size of the force loop, and meets the ball in the first frames.
   scene::Scene scene = sheet_on_ball();
   scene.cloths[0].particles_weft = scene.cloths[0].particles_warp = 48;
   std::vector<std::vector<std::uint64_t>> runs;
@@ -356,8 +356,8 @@ FrameReport swinging_strip(scene::Integrator integrator, int particles_across, i
 TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     const FrameReport row = swinging_strip(integrator, 2, 5), needles = swinging_strip(integrator, 101, 5);
-    // Measured with default tolerances: at most 0.1 % apart. If aggregates were halved along both axes, or blocks
-    // shifted by 1e-9 of their trace: 10 % and more.
+    // Measured: energies differ by at most 0.1 %. They would differ by 10 % and more if aggregates were halved along
+    // both axes, or if blocks were shifted by 1e-9 of their trace.
     EXPECT_NEAR(needles.kinetic_energy, row.kinetic_energy, 0.01 * row.kinetic_energy);
     EXPECT_NEAR(needles.max_strain, row.max_strain, 0.05 * row.max_strain);
     EXPECT_LT(needles.linear_iterations, 100);
@@ -405,7 +405,7 @@ TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {
   EXPECT_EQ(shown.snapshot()->frame, 4);
 }
 
-// A frame has one step: a stop requested during the step must not wait for its end.
+// Each frame has one step. A stop requested during a step must not wait for the end of the step.
 TEST(Stop, EndsAStepAndLeavesTheLastFrame) {
   scene::Scene scene = sheet_alone(0.6, 5, 2);
   scene.time.step = 1;

@@ -1,4 +1,4 @@
-// time.tolerance: the program chooses the steps, which end on frames.
+// Tests of `time.tolerance`, with which the program chooses step lengths, and of frames at rest, which are one step.
 #include "physics/integrator/step_control.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ scene::Scene falling_sheet(scene::Integrator integrator, double tolerance) {
   return scene;
 }
 
-// How much lower than after free fall the sheet is after this number of frames [m].
+// Distance by which the sheet, after this number of frames, is lower than by the law of free fall [m].
 double ahead_of_free_fall(const production::SceneSimulation& simulation, int frames) {
   const double t = frames / 25.0;
   return 2 - 0.5 * 9.81 * t * t - testing::sheet_of(simulation.snapshot())[7].z();
@@ -40,14 +40,15 @@ TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
     if (k > 5) {
       EXPECT_EQ(report.steps, 1);
     }
-    // The residual of Newton's method; one step too many or too few would cause an error of centimetres.
+    // Tolerance [m]: the residual of Newton's method. One step too many or too few would change the height by
+    // centimetres.
     EXPECT_NEAR(ahead_of_free_fall(simulation, k), 0, 1e-8);
   }
   EXPECT_GT(steps, 12);
 }
 
 TEST(StepTolerance, EstimateIsTheErrorInFreeFall) {
-  // Each Euler step of length h falls too far by ½ g h², and this error stays.
+  // In each Euler step of length h, the sheet falls too far by ½ g h², and this error stays.
   production::SceneSimulation simulation(falling_sheet(scene::Integrator::implicit_euler, 1e-5));
   double estimate = 0;
   for (int k = 1; k <= 10; ++k) {
@@ -89,7 +90,7 @@ TEST(StepTolerance, ImpactTakesShortStepsButNotWithoutEnd) {
       EXPECT_GT(report.min_distance, 0);
     }
     EXPECT_GT(rejected, 0);
-    // The sheet stops from 2.4 m/s: the tolerance needs one step of about 1e-4 s.
+    // The sheet stops from 2.4 m/s. To meet the tolerance, one step must be as short as about 1e-4 s.
     EXPECT_LT(max_steps, 200);
     EXPECT_GT(testing::lowest(testing::sheet_of(simulation.snapshot())), 0);
   }
@@ -120,7 +121,7 @@ TEST(StepTolerance, ErrorThatAStepCannotMeetIsTakenAndCounted) {
   EXPECT_GT(inexact, 0);
 }
 
-/// An edge that moves away at 10⁵ m/s.
+/// A pinned edge that moves away at 9e4 m/s.
 scene::Pin fast_edge() {
   scene::Pin edge;
   edge.low = {0, 1};
@@ -145,7 +146,7 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
     }
     EXPECT_NE(text.find("try a smaller time.tolerance"), std::string::npos) << text;
   }
-  // A second attempt from the kept state fails in the same way.
+  // A second attempt, from the last good state, fails in the same way.
   EXPECT_EQ(said[0], said[1]);
 }
 
@@ -170,7 +171,7 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   ASSERT_NE(at, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + at, "shortened to %lf", &h), 1);
   EXPECT_LT(h, numerics.steps.min_step);
-  // Each length is at least a fifth of the previous one.
+  // Each try is at least a fifth as long as the previous one.
   EXPECT_GE(h, 0.2 * numerics.steps.min_step);
 }
 
@@ -225,7 +226,7 @@ TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), farthest) << "particle " << i;
 }
 
-// Without gravity and air, no force acts on a drifting sheet: only its speed shows that it moves.
+// Without gravity and air, no force acts on a drifting sheet, so only its speed decides whether it rests.
 TEST(Rest, IsSlow) {
   for (const double speed : {0.01, 0.1}) {
     scene::Scene scene = testing::sheet_alone(0.3, 5, 1);
@@ -290,8 +291,8 @@ TEST(Rest, DetectsABodyThatMovesAndReturnsWithinAFrame) {
 }
 
 // A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Its bending friction leaves velocities of some
-// micrometres per second whose sign alternates. Even the shortest steps leave as much, so the visibility threshold must
-// accept them.
+// micrometres per second whose sign alternates. In the shortest steps, these velocities are as large, so the visibility
+// threshold must accept them.
 TEST(StepThatStalls, AcceptsInvisibleResiduals) {
   production::SceneSimulation simulation(support::scene_of_text(R"(
 time = { step = 0.002, integrator = 'bdf2' }

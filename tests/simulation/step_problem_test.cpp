@@ -1,4 +1,4 @@
-// The memory of a step: equal arguments and memory give equal forces, and no invalid cached value is used.
+// Tests of StepProblem: equal arguments and memory give equal forces, and no invalid cached value is used.
 #include "physics/simulation/step_problem.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace {
 constexpr double kRate = 100;  // [1/s]
 constexpr Index kSide = 5, kParticles = kSide * kSide;
 
-// Two crumpled moving sheets with every force that cloth can have; particle 3 of the first is in contact.
+// Two sheets with stretch, shear, bending and their viscosities. The fixture crumples and moves them, and adds a
+// contact of particle 3 of the first sheet.
 scene::Scene two_sheets() {
   scene::Scene scene = testing::sheet_alone(0.2, kSide, 0);
   scene::Material& material = scene.cloths[0].material;
@@ -152,7 +153,7 @@ TEST_F(StepProblems, ReassembleTheRowsOfMovedClothAndAllRowsInEachStep) {
   const std::vector<Mat3> start = blocks(used);
   const auto version = [&](std::size_t sheet) { return used.memory().system.blocks[sheet].version; };
   const auto first = version(0), second = version(1);
-  linearise(used, moved(1, 0.004));  // below 0.005 spacings, the limit for keeping blocks
+  linearise(used, moved(1, 0.004));  // below 0.005 spacings, up to which blocks are kept
   EXPECT_EQ(blocks(used), start);
   const std::vector<Vec3> far = moved(1, 0.5);
   linearise(used, far);
@@ -182,7 +183,7 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   problem.begin_step(0, x_, {});
   EXPECT_EQ(problem.memory().contacts.updates, 0);
   linearise(problem, x_);
-  EXPECT_NE(problem.memory().contacts.normal_forces[0], lagging);  // the contact normal force of the start
+  EXPECT_NE(problem.memory().contacts.normal_forces[0], lagging);  // the normal force at the start of the step
 }
 
 TEST_F(StepProblems, FollowNormalForcesAgainAfterContactsHaveChanged) {
@@ -250,7 +251,7 @@ TEST_F(SewnProblem, RecomputesForcesWhenTheRestShapeHasChanged) {
   EXPECT_EQ(force_at(0), start);
 }
 
-// Cells of 125 by 25 mm: the stiffest directions are the short ones.
+// The cells measure 125 by 25 mm. The matrix is stiffest along their short sides.
 TEST(ClothSystems, AggregateSlenderCellsAlongTheirShortSidesFirst) {
   scene::Scene scene = testing::sheet_alone(1, 9, 1);
   scene.cloths[0].size = {1, 0.2};

@@ -1,4 +1,4 @@
-// Cloth with locking threads under impacts and pulls, and the warnings if its stretch limit cannot hold.
+// Tests of cloth with locking threads under impacts and pulls, and of the warnings if its stretch limit is exceeded.
 #include <gtest/gtest.h>
 
 #include "film/production/scene_simulation.hpp"
@@ -121,7 +121,7 @@ TEST(StretchLimitInAScene, WarnsOnceIfItCannotBeKept) {
   ASSERT_EQ(seen_warnings.size(), 1U);
   EXPECT_NE(seen_warnings[0].find("'banner' is stretched by "), std::string::npos) << seen_warnings[0];
   EXPECT_NE(seen_warnings[0].find("max_stretch 0.1"), std::string::npos) << seen_warnings[0];
-  // The border is released and pulled as far again.
+  // The border is pulled down, released, and pulled down again: there is still only one warning.
   seen_warnings.clear();
   std::string pulled = kPulledDown;
   const std::string once = "{ time = 0.8, position = [0, 0, -0.2] }";

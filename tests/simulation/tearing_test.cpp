@@ -1,4 +1,4 @@
-// Seams that tear: the load that they bear, where they open, and saved states.
+// Tests of seams that tear: the load that they bear, where they open, and saved states.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -49,11 +49,11 @@ TEST_F(Tearing, SeamsPartAboveTheirLoadAndNotWhileTheyAreSewn) {
   EXPECT_EQ(frames.back().report.attachments.at(0).load, 0);
   double lowest = 2;
   for (const Vec3& x : frames.back().cloths.at(0)) lowest = std::min(lowest, x.z());
-  EXPECT_LT(lowest, 0);  // it falls for at least half a second
+  EXPECT_LT(lowest, 0);  // the lower panel falls for at least half a second
 }
 
 TEST_F(Tearing, SeamsPartWhereTheLoadIsFirst) {
-  // The weight hangs at one end of the lower edge.
+  // The weight of 0.1 kg hangs at the left end of the lower edge.
   const scene::Scene scene = strip(30 * kLoad, "weight = [{ edge = 'lower.low', high = [0.3, 1], mass = 0.1 }]\n");
   bool was_torn_in_part = false;
   for (const support::MeasuredFrame& frame :

@@ -1,4 +1,5 @@
-// Accuracy in time on a swinging sheet: order with fixed steps and with a tolerance, error estimates. Prints tables.
+// Tests the accuracy in time with a swinging sheet: order with fixed steps and with a tolerance, and error estimates.
+// Prints tables.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -17,8 +18,8 @@ int order_of(scene::Integrator integrator) {
   return integrator == scene::Integrator::implicit_euler ? 1 : 2;
 }
 
-// Moderately stiff: membrane waves have at most 2 / l √(2k/ρ) = 380 rad/s with cells of width l, and all steps here
-// resolve the waves that are excited. The free edge falls by 0.4 m in 0.3 s.
+// A moderately stiff sheet. Its membrane waves have frequencies up to 2 / l √(2k/ρ) = 380 rad/s, with cells of width l.
+// All steps resolve the waves that are excited. The free edge falls by 0.4 m in 0.3 s.
 class SwingingSheet : public ::testing::Test {
  protected:
   static constexpr int kFrames = 6;  // at 20 frames per second
@@ -32,7 +33,7 @@ class SwingingSheet : public ::testing::Test {
   static SwingEnd swing_with_step(scene::Integrator integrator, double step) {
     scene::Scene scene = sheet(integrator);
     scene.time.step = step;
-    // The error of Newton's method is then below 1e-8 m.
+    // With this tolerance, the error of Newton's method is below 1e-8 m.
     scene.solver.newton_tolerance = 1e-7;
     scene.solver.linear_tolerance = 1e-3;
     return testing::swing(scene, kFrames);
@@ -42,8 +43,8 @@ class SwingingSheet : public ::testing::Test {
     scene.time.tolerance = tolerance;
     return testing::swing(scene, kFrames);
   }
-  // Midpoint rule with steps eight times finer than the finest measured. Its error is a third of its distance to the
-  // run with twice the step.
+  // A run by the midpoint rule with steps eight times finer than the finest measured ones. Its error is a third of its
+  // distance to the run with twice the step.
   static const SwingEnd& reference() {
     static const SwingEnd kEnd = [] {
       const SwingEnd fine = swing_with_step(scene::Integrator::implicit_midpoint, 1.0 / 12800);
@@ -67,7 +68,8 @@ TEST_F(SwingingSheet, ConvergesWithTheOrderOfEachMethodWhereStepsAreFixed) {
       const double error = rms_distance(end.x, exact.x), order = before > 0 ? std::log2(before / error) : 0;
       std::printf("%-18s   1/%-4d %10.2e %6.2f %10.2e %10.2f\n", name_of(integrator).c_str(), rate, error, order,
                   end.estimate, end.estimate / error);
-      // Measured: 0.90, 0.93, 0.96 for Euler, whose next error term is a few per cent, and 1.99 to 2.03 for the others.
+      // Measured orders: 0.90, 0.93, 0.96 for Euler, whose next error term is a few per cent; 1.99 to 2.03 for the
+      // others.
       if (before > 0) {
         EXPECT_NEAR(order, order_of(integrator), integrator == scene::Integrator::implicit_euler ? 0.12 : 0.06);
       }
@@ -110,8 +112,8 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
       const double error = rms_distance(end.x, exact.x);
       std::printf("%-18s %11.2e %6d %8d %10.2e %8.2f %10.2f\n", name_of(integrator).c_str(), tolerance, end.steps,
                   end.rejected, error, before > 0 ? std::log2(before / error) : 0, end.estimate / error);
-      // The controller keeps a step length that is right within a tenth, so the error of one halving may deviate by a
-      // fifth.
+      // The controller does not change a step length by less than a tenth, so that errors may deviate by a fifth.
+      // Therefore, each halving of the tolerance must only reduce the error.
       if (before > 0) {
         EXPECT_LT(error, before);
       } else {
@@ -122,7 +124,7 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
       EXPECT_LT(end.estimate, 3 * error);
       before = error;
     }
-    // The exponent over all six halvings.
+    // Exponent over all six halvings of the tolerance.
     const double measured = std::log(first / before) / std::log(64.0);
     std::printf("%-18s exponent %.3f, expected %.3f\n", name_of(integrator).c_str(), measured, exponent);
     EXPECT_NEAR(measured, exponent, 0.05);
@@ -138,7 +140,7 @@ TEST_F(SwingingSheet, TheNewtonResidualHardlyChangesTheErrorAtATolerance) {
       const double error = rms_distance(testing::swing(scene, kFrames).x, exact.x);
       scene.solver.newton_tolerance = 1e-7;
       const double solved = rms_distance(testing::swing(scene, kFrames).x, exact.x);
-      // Measured: below 1 %.
+      // Measured difference: below 1 %.
       EXPECT_NEAR(error, solved, 0.03 * solved) << name_of(integrator) << " at " << tolerance;
     }
   }

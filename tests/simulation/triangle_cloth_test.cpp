@@ -1,4 +1,4 @@
-// Triangle cloth in scenes.
+// Tests of triangle cloth in scenes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,7 +60,7 @@ TEST(TriangleCloth, CrossedSheetIsPinnedByPlaceAndWeighsAsMuchAsQuads) {
 
 using TriangleClothOfFile = support::TestFolder;
 
-/// Writes a half pipe with a radius of 8 cm; open upward or, with the other sign, downward.
+/// Writes a half pipe with a radius of 8 cm. `sign`: 1 if it is open upward, −1 if downward.
 void write_half_pipe(const std::filesystem::path& file, double sign) {
   constexpr int kAround = 24, kAlong = 6;
   std::ofstream out(file);

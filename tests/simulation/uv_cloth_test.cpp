@@ -1,4 +1,4 @@
-// Garments from mesh files whose UV coordinates are their patterns.
+// Tests of garments from mesh files whose UV coordinates are their patterns.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 // A sheet of 0.28 m by 0.12 m in seven pleats at 45°. Two UV islands meet in the middle; the right one is mirrored.
 constexpr int kWide = 28, kHigh = 12;
-constexpr double kCell = 0.01;
+constexpr double kCell = 0.01;  // [m]
 
 class UvCloth : public support::TestFolder {
  protected:
@@ -67,7 +67,7 @@ TEST_F(UvCloth, PleatsOpenWhereTheUvsAreAFlatSheetAndStayWhereTheMeshIsItsShape)
   write_sheet(true);
   const double pleated = std::sqrt(0.5) * kCell * kWide, flat = kCell * kWide;
   EXPECT_NEAR(width("rest = 'mesh'\n"), pleated, 0.01 * pleated);
-  const double opened = width("");  // without keys
+  const double opened = width("");  // without the key `rest`
   EXPECT_GT(opened, pleated + 0.7 * (flat - pleated));
   EXPECT_LT(opened, 1.01 * flat);
 }
@@ -103,7 +103,8 @@ TEST_F(UvCloth, WhatDoesNotFitIsSaid) {
                         [&] { environment::Environment made(scene("rest = 'uv'\n")); });
 }
 
-// A sewn tube that hangs on a post is written and read back: its pattern is the same, and it continues to hang.
+// A sewn tube that hangs on a post is written and read back: its pattern must be the same, and it must continue to
+// hang.
 TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   std::string pattern = testing::kTube + "allowance = 0\n";  // allowances are not in meshes
   pattern.insert(pattern.rfind("[[seam]]"), "allowance = 0\n");
@@ -132,8 +133,8 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   double area = 0;
   for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t) area += mesh::rest_area(cloth.sheet, t);
   EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // tolerance: assimp reads files in single precision
-  // The faces of the file determine the numbering of vertices. The test therefore takes the distance from each place to
-  // the nearest place of the earlier run.
+  // The faces of the file determine the numbers of the vertices. The test therefore takes the distance from each
+  // particle to the nearest particle of the earlier run.
   const auto off = [&] {
     production::SceneSimulation again(read);
     for (int k = 0; k < kOn; ++k) again.advance();

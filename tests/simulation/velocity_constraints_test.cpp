@@ -1,4 +1,4 @@
-// The contact response of Etzmuß et al. (2001) in scenes: velocities prescribed in the solver (Eq. (4)).
+// Tests the contact response of Etzmuß et al. (2001) in scenes: velocities prescribed in the solver (Eq. (4)).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace weft::simulation {
 namespace {
 
-constexpr double kGravity = 9.81;
+constexpr double kGravity = 9.81;  // [m/s²]
 
 scene::Scene with_velocity_constraints(scene::Scene scene) {
   scene.contact.self = scene.contact.obstacles = true;
@@ -19,12 +19,12 @@ scene::Scene with_velocity_constraints(scene::Scene scene) {
   return scene;
 }
 
-/// A patch of 0.2 m on a plane that is inclined about the y axis; only friction holds it.
+/// A patch of 0.2 m on a plane that is inclined about the y axis by `angle` [rad]; only friction holds it.
 scene::Scene patch_on_slope(double angle, double friction) {
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0));
   scene.time.fps = 50;
   scene.time.step = 0.005;
-  scene.solver.newton_tolerance = 1e-4;  // relative to the weight: far below the tested 2 %
+  scene.solver.newton_tolerance = 1e-4;  // far below the tested 2 %
   scene.solver.linear_tolerance = 1e-3;
   const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   scene.obstacles.push_back(testing::obstacle("slope", scene::Plane{}));
@@ -60,7 +60,7 @@ TEST(VelocityConstraintsInScenes, ClothOnAPlaneRestsWithoutDrift) {
     furthest = std::max(furthest, (frames[50].cloths[0][i] - frames[0].cloths[0][i]).norm());
     moved = std::max(moved, (frames[50].cloths[0][i] - frames[25].cloths[0][i]).norm());
   }
-  // The patch slides for one or two steps, until friction knows the normal force.
+  // The patch slides for one or two steps, until the normal force that limits friction is known.
   EXPECT_LT(furthest, 2e-4);
   // A sticking patch does not move; with springs it creeps by up to 1e-4 m in this time.
   EXPECT_LT(moved, 1e-9);
@@ -139,14 +139,15 @@ TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
       const Vec3 down(std::cos(angle), 0, -std::sin(angle));
       double of_patch = 0;
       for (const Vec3& point : x) of_patch += down.dot(point) / static_cast<double>(x.size());
-      // Implicit Euler is ahead by half a step times the speed. Sliding begins up to half a degree, 0.05 s, late.
+      // Tolerance: implicit Euler is ahead by half a step times the speed; sliding begins up to half a degree (0.05 s)
+      // late.
       EXPECT_NEAR(of_patch, distance, 0.02 * distance + 0.05 * speed + 0.001)
           << "friction " << mu << ", " << angle / kTurn * 10 << " degrees";
     }
   }
 }
 
-// A tray that starts with a constant acceleration [m/s²], by piecewise linear key frames.
+// A tray starts with a constant acceleration, approximated by linear motion between key frames every 10 ms.
 TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
   constexpr double kMu = 0.3;
   for (double acceleration : {0.9 * kMu * kGravity, 1.1 * kMu * kGravity, 2 * kMu * kGravity}) {
@@ -160,13 +161,13 @@ TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
     for (const Vec3& x : frames.back().cloths[0])
       distance += x.x() / static_cast<double>(frames.back().cloths[0].size());
     const double expected = 0.5 * std::min(acceleration, kMu * kGravity) * 0.8 * 0.8;
-    // Euler adds half of the last step's motion, 1.25 %, and half of the tray's first step, 2.5 %.
+    // Tolerance: Euler's method adds half of the last step's motion, 1.25 %, and half of the tray's first step, 2.5 %.
     EXPECT_NEAR(distance, expected, 0.04 * expected) << acceleration << " m/s²";
   }
 }
 
 TEST(VelocityConstraintsInScenes, ClothThatMeetsClothKeepsItsMomentum) {
-  // Contacts between cloths use springs in this mode too.
+  // Contacts between cloths are springs also with velocity constraints.
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0));
   scene.physics.gravity = Vec3::Zero();
   scene.cloths.push_back(scene.cloths[0]);
@@ -191,7 +192,7 @@ TEST(VelocityConstraintsInScenes, ClothThatMeetsClothKeepsItsMomentum) {
     return Vec3(sum / total);
   };
   const auto both = [&](std::size_t k) { return Vec3(middle(frames[k].cloths[0]) + middle(frames[k].cloths[1])); };
-  EXPECT_GT((middle(frames[10].cloths[0]) - middle(frames[0].cloths[0])).norm(), 0.01);  // pushed along
+  EXPECT_GT((middle(frames[10].cloths[0]) - middle(frames[0].cloths[0])).norm(), 0.01);  // the first cloth was pushed
   EXPECT_LT((both(10) - both(9) - (both(1) - both(0))).norm(), 1e-6 * (both(1) - both(0)).norm());
 }
 
@@ -204,7 +205,7 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
     scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
     scene.time.duration = 6;
     scene.time.step = step;
-    int steps = 0, iterations = 0;  // in frames at rest
+    int steps = 0, iterations = 0;  // in frames from 120 on, in which the cloth rests
     for (const auto& frame : support::run_scene(scene)) {
       EXPECT_EQ(frame.pairs, 0u) << frame.between << " in frame " << frame.report.frame << " at " << step << " s";
       if (frame.report.frame >= 120) {
@@ -215,8 +216,8 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
         iterations += frame.report.newton_iterations;
       }
     }
-    // Measured per step: 2.1 or 3.2, depending on the remaining fold; 13 at 40 ms if steps did not start with the last
-    // walls.
+    // Measured iterations per step: 2.1 or 3.2, depending on the remaining fold; 13 at 40 ms if steps did not start
+    // with the walls of the previous step.
     EXPECT_LT(iterations, 4 * steps) << "at " << step << " s";
   }
 }

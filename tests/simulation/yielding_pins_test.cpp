@@ -1,4 +1,4 @@
-// Pins that an obstacle blocks, soft pins, and warnings about pins before the run.
+// Tests of pins that an obstacle blocks, of soft pins, and of warnings about pins before the run.
 #include "physics/simulation/yielding_pins.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ std::string hanging(double duration, const std::string& pin, const std::string& 
          pin + "\n" + more;
 }
 
-// At speeds from 1 to 1.5 m/s the crushed edge curls and hooks on the sheet in 2 of 9 runs, chaotically. At 1.3 m/s it
-// returned in four of four runs.
+// The edge moves at 1.3 m/s, at which it returned in four of four runs. At other speeds from 1 to 1.5 m/s, the crushed
+// edge curls and hooks on the sheet in 2 of 9 runs; this motion is chaotic.
 const std::string kIntoTheFloor = hanging(
     1.9,
     "keys = [{ time = 0 }, { time = 0.7, offset = [0, 0, -0.9] }, { time = 0.9 }, { time = 1.4, offset = [0, 0, 0] }]",
@@ -61,10 +61,10 @@ TEST_P(ObstructedPin, LagsBehindAndReturns) {
     for (const support::MeasuredFrame& frame : frames) {
       EXPECT_EQ(frame.pairs, 0u) << response << ", frame " << frame.report.frame;
       EXPECT_EQ(frame.report.pinched_pairs, 0);
-      // Measured: 1.07 where the sheet is crushed on the floor; a pin that does not yield stretches it to 30.
+      // Measured: 1.07, on the floor. If the pin did not yield, it would stretch the sheet by a factor of 30.
       EXPECT_LT(frame.max_stretch, 1.5) << response << ", frame " << frame.report.frame;
       lagging += frame.report.lagging_particles > 0;
-      // Other warnings concern threads that are stretched meanwhile.
+      // Other warnings, about stretched threads, are allowed.
       for (const std::string& warning : frame.report.warnings)
         if (warning.find("cloth.sheet.pin.0") != std::string::npos) said.push_back(warning);
     }
@@ -99,7 +99,7 @@ std::string taut(const std::string& name, const std::string& z) {
 }
 const std::string kIntoATautSheet = pinned_hem_scene(taut("taut", "0.6"));
 const std::string kIntoTwoLayers = pinned_hem_scene(taut("one", "0.6") + taut("two", "0.595"));
-// Gravity is 9.8 m/s²: at 9.81, one of fifteen values from 9.7 to 9.88 m/s², the hems hook and stay hooked.
+// Gravity is 9.8 m/s². At 9.81 m/s², but at no other of fifteen values from 9.7 to 9.88 m/s², the hems stay hooked.
 const std::string kIntoAnotherHem =
     "[physics]\ngravity = [0, 0, -9.8]\n" + pinned_hem_scene(
                                                 "[[cloth]]\nname = 'other'\nsize = [0.3, 0.3]\nparticles = [13, "
@@ -110,7 +110,7 @@ const std::string kIntoAnotherHem =
                                                 "time = 0 }, { time = 0.8, offset = [0.05, 0, 0.4] }, { time = 1.2, "
                                                 "offset = [0.05, 0, 0.4] }, { time = 2, offset "
                                                 "= [0, 0, 0] }]\n");
-// Pins tuck the ends of a sheet over a block under it, into the folds of the sheet.
+// A sheet lies over a block. Pins tuck its ends under the block, into the folds of the sheet.
 const std::string kIntoItsOwnCloth =
     "[time]\nduration = 2.8\n[[cloth]]\nname = 'sheet'\nsize = [2.2, 0.3]\nparticles = [45, 7]\nposition = [0, 0, "
     "0.64]\nmaterial = { fabric = 'cotton' }\n[[cloth.pin]]\nlow = [0, 0]\nhigh = [0, 1]\nrelease = 2.3\nkeys = [{ "
@@ -156,9 +156,9 @@ INSTANTIATE_TEST_SUITE_P(SlowOn, PressingPin,
                                            Obstructed{"layers", kIntoTwoLayers}),
                          name_of_obstructed);
 
-// The edge starts 0.15 m above the floor, turns by 90 degrees, half of it below the floor, and turns back. Threads to
-// particles that have already returned pull at the last corner. If only its own fraction of the pin's force acted, the
-// corner would stay 1 mm from its target.
+// The edge starts 0.15 m above the floor, turns by 90 degrees, so that the targets of half of it are below the floor,
+// and turns back. Threads to particles that have already returned pull at the last corner. If only its own fraction of
+// the pin's force acted on it, the corner would stay 1 mm from its target.
 TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   const scene::Scene scene = support::scene_of_text(
       "[time]\nduration = 2\n[[cloth]]\nname = 'sheet'\nsize = [0.5, 0.5]\nparticles = [21, 21]\n"
@@ -171,15 +171,15 @@ TEST(LaggingCorner, ReturnsAgainstTheThreadsThatHangOnIt) {
   EXPECT_LT((frames.back().cloths[0].front() - Vec3(-0.25, -0.25, 0.15)).norm(), 1e-12);
 }
 
-// The target of the edge leaves the box at 1 m/s. The edge follows half a second later; until then it lags by up to 0.2
-// m.
+// The target of the edge moves 0.2 m into the box, and leaves the box at 0.5 s with 1 m/s. The edge lags, until it is
+// held again at most a quarter of a second later.
 TEST(LaggingPin, IsHeldAgainWhileItMovesOn) {
   const scene::Scene scene = support::scene_of_text(
       hanging(1, "keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.4, 0] }, { time = 1.1, offset = [0, -0.4, 0] }]",
               "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\nposition = [0, 0.4, 0.6]\n"));
   const auto frames = support::run_scene(scene, {.counts_intersections = false, .keep_positions = true});
   EXPECT_EQ(frames[10].report.lagging_particles, 13);
-  // Frames from a quarter of a second after the target has left the box. The target moves by 40 mm per frame.
+  // These frames begin a quarter of a second after the target has left the box. The target moves by 40 mm per frame.
   for (std::size_t k = 19; k < frames.size(); ++k) {
     EXPECT_EQ(frames[k].report.lagging_particles, 0) << "frame " << k;
     const double y = 0.4 - (static_cast<double>(k) / 25 - 0.3);
@@ -196,7 +196,7 @@ TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
   for (const double mass : state.masses) weight += 9.81 * mass;
   for (std::size_t i = state.positions.size() - 13; i < state.positions.size(); ++i)
     sag += (0.8 - state.positions[i].z()) / 13;
-  // After 3 s the remaining swing is below a hundredth of the sag.
+  // Tolerance: after 3 s, the remaining swing is below a hundredth of the sag.
   EXPECT_NEAR(sag, weight / (13 * 5), 0.02 * weight / (13 * 5));
 }
 
@@ -236,9 +236,9 @@ TEST(LaggingPin, IsNotSaidToBeAtItsTargetWhenItIsReleased) {
   }
 }
 
-// The upper row is held. A pull that fades over 0.2 m draws the particles below to where the rigid motion of that row
-// takes them. At the end of a fast swing they are closer to these places than without the pull, the more so the nearer
-// they are to the row. Farther below nothing is pulled.
+// The upper row is held. A pull that fades over 0.2 m draws the particles below it to their targets, where the rigid
+// motion of the row would take them. At the end of a fast swing, these particles are closer to their targets than
+// without the pull, and closest near the row. Particles farther below are not pulled.
 TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
   const std::string keys = "keys = [{ time = 0 }, { time = 0.2, offset = [0.1, 0.6, 0.1], rotation = [0, 0, 60] }]\n";
   const auto distances = [&](const std::string& pin) {
@@ -247,7 +247,7 @@ TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
     const std::vector<Vec3>& start = frames.front().cloths[0];
     const Vec3 middle(0, 0, 0.8);
     const Eigen::AngleAxisd turn(std::acos(0.5), Vec3::UnitZ());
-    std::vector<double> mean(13, 0.0);  // mean distance of each row
+    std::vector<double> mean(13, 0.0);  // mean distance of each row [m]
     for (std::size_t i = 0; i < start.size(); ++i)
       mean[i / 13] +=
           (middle + Vec3(0.1, 0.6, 0.1) + turn * (start[i] - middle) - frames.back().cloths[0][i]).norm() / 13;
@@ -275,7 +275,7 @@ TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
   };
   const auto by_offset = end_of("keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.1, 0.05] }]");
   const auto by_position = end_of("keys = [{ time = 0 }, { time = 0.3, position = [0, 0.1, 0.85] }]");
-  // Equal up to the rounding of a sum.
+  // Both runs are equal up to the rounding of the target positions.
   for (std::size_t i = 0; i < by_offset.size(); ++i) EXPECT_LT((by_offset[i] - by_position[i]).norm(), 1e-6);
 }
 
@@ -309,7 +309,7 @@ TEST(PinWarnings, NamePinsThatJumpRushOrEnterObstacles) {
   const auto inside = of(hanging(0.4, "keys = [{ time = 0, offset = [0, 0.4, 0] }, { time = 0.3, offset = [0, 0, 0] }]",
                                  "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\n"
                                  "position = [0, 0.4, 0.6]\n"));
-  // One cape is on a block that jumps, another hangs behind it.
+  // A cape hangs behind a block that it follows: at `y` [m] from the centre of the block, which may move by `keys`.
   const auto cape = [&](const std::string& y, const std::string& keys) {
     return of(
         "time = { duration = 2, fps = 25 }\n[[cloth]]\nname = 'cape'\nsize = [0.4, 0.6]\nparticles = [5, 7]\n"
@@ -343,8 +343,8 @@ TEST(PinWarnings, NamePinsThatStretchTheClothBetweenThem) {
     return production::find_warnings(
         support::scene_of_text(hanging(1, "keys = [{ time = 0 }, { time = 1, " + upper_keys + " }]", more)));
   };
-  // The pins are 0.4 m apart and separate by 0.19 m. A fifth of the time suffices for 10 %; the next of 100 samples
-  // shows it.
+  // The pins are 0.4 m apart and separate by 0.19 m in 1 s. The limit of 10 % is exceeded from 0.21 s on, which the
+  // next of 100 samples shows.
   const auto apart = of("offset = [0, 0, 0.19]", lower);
   ASSERT_EQ(apart.size(), 1u);
   EXPECT_EQ(
@@ -354,7 +354,7 @@ TEST(PinWarnings, NamePinsThatStretchTheClothBetweenThem) {
   EXPECT_TRUE(of("offset = [0, 0, 0.03]", lower).empty()) << "by 7.5 %";
   EXPECT_TRUE(of("offset = [0, 0, 0.19]", lower + "strength = 50\n").empty()) << "it gives way";
   EXPECT_TRUE(of("offset = [0, 0, 0.19]", "").empty()) << "there is no other";
-  // Both pins hold one corner; the next particle is a third of a metre from it.
+  // Both pins select one corner; the next particle of the second pin is 33 mm from it.
   const auto corner = of("offset = [0, 0, 0.3]", "[[cloth.pin]]\nlow = [0, 0.5]\nhigh = [0, 1]\n");
   ASSERT_EQ(corner.size(), 1u);
   EXPECT_NE(corner[0].find("cloth.sheet.pin.1"), std::string::npos) << corner[0];
