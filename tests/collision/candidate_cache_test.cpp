@@ -58,7 +58,7 @@ std::set<std::pair<Index, Index>> set_of(const PairList& pairs) {
   return set;
 }
 
-/// Pairs of triangles without a common vertex, if a vertex of one triangle is closer than `reach` [m] to the other one.
+/// Pairs of triangles without a common vertex in which a vertex of one is closer than `reach` [m] to the other one.
 std::set<std::pair<Index, Index>> near(std::span<const Triangle> triangles, std::span<const Vec3> x, double reach) {
   std::set<std::pair<Index, Index>> found;
   for (std::size_t a = 0; a < triangles.size(); ++a)

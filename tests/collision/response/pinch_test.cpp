@@ -169,7 +169,7 @@ TEST_F(PinchedTriangle, ExemptsNoNeighboursAtACornerOutsideTheLimb) {
   EXPECT_TRUE(pinched_.exempts({scene_.triangles[0], face}));
   EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));
   for (const Index corner : {1, 2}) EXPECT_TRUE(pinched_.exempts({{corner, corner, corner}, face})) << corner;
-  pinched_.update_exempted(scene_.triangles, broad_phase_, x_, true);  // the step was rejected
+  pinched_.update_exempted(scene_.triangles, broad_phase_, x_, true);  // after a rejected step
   EXPECT_TRUE(pinched_.exempts({{0, 0, 0}, face}));
   pinched_.update_exempted(scene_.triangles, broad_phase_, x_);
   EXPECT_FALSE(pinched_.exempts({{0, 0, 0}, face}));

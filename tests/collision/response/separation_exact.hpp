@@ -20,7 +20,7 @@ struct SeparationTally {
   int queries = 0, meeting = 0, certified = 0, in_integers = 0;
   int missed = 0;             ///< certified pairs that meet
   int touching = 0;           ///< certified pairs that meet only at the start, where they touch within rounding errors
-  int needless_refusals = 0;  ///< refused ones of the benign pairs
+  int needless_refusals = 0;  ///< pairs that are benign, but refused
   int benign = 0;  ///< pairs that start at least 1e-5 m apart, move by at most 0.8 of this distance, and do not meet
   // Pairs that do not meet (`apart`), and the refused ones among them, by distance at the start [m]: below 1e-8, 1e-7,
   // …, 1e-2, above.
@@ -30,7 +30,7 @@ struct SeparationTally {
 /// Positions from which the search for separating planes of a step begins.
 enum class Watched {
   at_start,    ///< from the start of this step
-  on_the_way,  ///< from the middle of the step, after a check of its first quarter has found directions
+  on_the_way,  ///< from the middle of the step, after a test of its first quarter
   elsewhere    ///< from other positions, as in an earlier step
 };
 

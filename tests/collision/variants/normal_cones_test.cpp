@@ -161,8 +161,8 @@ TEST(NormalCones, MissNothingThatLiesAcrossASlit) {
 }
 
 TEST(NormalCones, SeeWhatHappensOnlyDuringTheStep) {
-  // Half a turn in the plane, along straight lines: normals are equal at start and end, and all points coincide
-  // halfway.
+  // The sheet makes half a turn in its plane, on straight lines. Normals are equal at start and end, but all points
+  // coincide halfway.
   TestMesh mesh = folded_sheet(12, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   std::vector<Vec3> x_t1;
