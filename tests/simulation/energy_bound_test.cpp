@@ -339,8 +339,8 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
     }
 }
 
-// An error of friction changes a velocity by at most the velocity itself. The solver's error per step is therefore at
-// most the largest velocity times 0.15 s, the time over which a velocity residual counts.
+// Wrong friction can at most stop the sheet. The velocity error of a step is therefore at most the largest velocity.
+// The solver counts a velocity error as an error of positions during 0.15 s.
 TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   constexpr double kCounts = 0.15;  // Numerics::Newton::error_duration [s]
   int iterations = 0, number = 0;

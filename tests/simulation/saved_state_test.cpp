@@ -174,8 +174,9 @@ material = { bend = 1e-4, bend_viscosity = 1e-5, bend_friction = 1e-4 }
 pin = [{ low = [0, 0], high = [0, 1] }, { low = [0.9, 0.9], high = [1, 1], release = 0.2 }]
 )";
 
-// A sheet lies on a wide plate that turns until 0.2 s. While it turns, steps are quartered; the first steps after that
-// may only double (with BDF2, which replaces the midpoint rule during contact).
+// A sheet lies on a wide plate that turns until 0.2 s. While it turns, steps have a quarter of their length.
+// Afterwards, each step is at most twice as long as the one before, because during contact, BDF2 replaces the midpoint
+// rule.
 constexpr const char* kTurntable = R"(
 [time]
 duration = 1

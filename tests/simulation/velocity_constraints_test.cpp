@@ -24,7 +24,7 @@ scene::Scene patch_on_slope(double angle, double friction) {
   scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0));
   scene.time.fps = 50;
   scene.time.step = 0.005;
-  scene.solver.newton_tolerance = 1e-4;  // far below the tested 2 %
+  scene.solver.newton_tolerance = 1e-4;  // its effect is far below the tested 2 %
   scene.solver.linear_tolerance = 1e-3;
   const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
   scene.obstacles.push_back(testing::obstacle("slope", scene::Plane{}));
@@ -127,7 +127,7 @@ TEST(VelocityConstraintsInScenes, ClothOnATiltingTraySlipsAsABlockDoes) {
     scene::Scene scene = patch_on_tray(
         mu, {{0, {}}, {0.4, {}}, {4.4, {Vec3::Zero(), Quat(Eigen::AngleAxisd(4 * kTurn, Vec3::UnitY()))}}});
     const auto frames = support::run_scene(scene, {.end = 111, .counts_intersections = false, .keep_positions = true});
-    double distance = 0, speed = 0;  // of a block along the tray, computed with far shorter steps
+    double distance = 0, speed = 0;  // of a block along the tray [m], [m/s], with far shorter steps
     const double h = 1e-5;
     for (int step = 0; step < 440000; ++step) {
       const double angle = kTurn * std::max(0.0, step * h - 0.4);
