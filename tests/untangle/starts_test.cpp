@@ -95,7 +95,7 @@ TEST(UntangledStart, ASheetThroughABallGoesOverToTheSmallerSide) {
     scene.cloths.push_back(sheet("sheet", {0, 0, height}));
     add_obstacle(scene, "ball", scene::Sphere{0.2});
     const frame::SnapshotPtr first = expect_untangled(scene, 50);
-    // The middle particle is at the top or at the bottom of the ball, up to the thickness of the cloth.
+    // The middle particle is at the top or at the bottom of the ball. Tolerance: the thickness of the cloth.
     const Vec3& middle = first->states[0].positions[12 + 25 * 12];
     EXPECT_NEAR(middle.z(), std::copysign(0.2, height), 0.004);
     EXPECT_LT(max_displacement(*first, *production::view_start(scene).snapshot), 0.2);
@@ -214,7 +214,7 @@ TEST(UntangledStart, HasTheSameBitsForAnyNumberOfThreads) {
   for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(one->states[s].positions, four->states[s].positions);
 }
 
-// Weft places the panels of a pattern, not the scene, so the scene cannot prevent intersections.
+// The panels of a pattern are placed by Weft. So the scene cannot prevent that they intersect at the start.
 TEST(UntangledStart, IsTheDefaultOfPatterns) {
   scene::Scene scene = empty_scene();
   scene::Cloth pillow = sheet("pillow", {0, 0, 1});
