@@ -322,7 +322,7 @@ TEST(Picture, LayerTwoMillimetresAboveShadesTheOneBelow) {
                0.1 * scale);
     const int shaded = renderer.draw(snapshot).pixel(160, 100)[1];
     EXPECT_GT(open, 90) << scale;
-    EXPECT_LT(shaded, open / 2) << scale;
+    EXPECT_LT(shaded, 0.6 * open) << scale;
   }
 }
 
