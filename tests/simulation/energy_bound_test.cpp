@@ -358,9 +358,10 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
       iterations += report.newton_iterations;
       number += report.steps;
     }
-    // If the solver accepted sliding of any size after ten iterations, `solver` would be 2.6 times (box) and 2.7 times
-    // (cone) as large.
-    EXPECT_LT(solver, steps);
+    // Measured: 0.4 to 1.05 times the error of the steps, as friction holds the sheet in one place or another. If the
+    // solver accepted sliding of any size after ten iterations, `solver` would be 2.6 times (box) and 2.7 times (cone)
+    // as large.
+    EXPECT_LT(solver, 1.5 * steps);
   }
   // Measured: 17.3 iterations per step; 25.4 if solves that diverge with friction did not restart with fixed normal
   // forces.
