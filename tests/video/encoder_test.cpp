@@ -300,7 +300,7 @@ TEST_F(EncoderTest, SettingsOutOfRangeAreNamed) {
   refuse("height: expected 1 to 16384 pixels, got 20000", [](Settings& s) { s.height = 20000; });
   refuse("crf: expected 1 to 51, got 0", [](Settings& s) { s.crf = 0; });
   refuse("encoder threads: expected 1 to 128, got 0", [](Settings& s) { s.threads = 0; });
-  refuse("fps: expected 0.01 to 1000 frames a second, got 0", [](Settings& s) { s.fps = 0; });
+  refuse("fps: expected 0.01 to 1000 frames a second in a video, got 0", [](Settings& s) { s.fps = 0; });
   refuse("preset: expected one of ultrafast, superfast,", [](Settings& s) { s.preset = "fastest"; });
   EXPECT_TRUE(files().empty());
 }
