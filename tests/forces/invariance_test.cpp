@@ -45,8 +45,8 @@ TEST(Invariance, NoForceAtRestOfAGradedGridAndAfterRigidMotion) {
   const Bend bend(grid, 0, {1e-3, 1e-4});
   for (const Force* force : std::initializer_list<const Force*>{&stretch, &shear, &bend})
     for (const Positions& x : {testing::flat(grid), testing::moved_rigidly(testing::flat(grid))}) {
-      // Tolerance: six times that of the even grid, because the shortest edges are six times as short relative to the
-      // width that they carry, and so six times as stiff.
+      // Tolerance: six times that of the even grid. The stiffness of an edge is proportional to the width of its strip
+      // of cloth and to 1 / length. For the shortest edges, width / length is six times as large as in the even grid.
       EXPECT_LT(testing::largest(testing::force_of(*force, x, testing::zeros(x))), 3e-11);
       EXPECT_LT(force->energy(x), 1e-23);
     }

@@ -14,7 +14,8 @@ struct Interruptions {
   int threads_after = 0;      ///< threads of the resumed runs; 0: as many as before
 };
 
-/// Results of the comparison. The counts are those of the uninterrupted run: a test can check that its case occurs.
+/// Results of the comparison. The counts are those of the uninterrupted run. With them, a test checks that the
+/// situation which it tests occurs.
 struct ContinuationResult {
   std::string difference;  ///< the first difference, with its frames; empty if there is none
   int rejected_steps = 0, inexact_steps = 0, pinched_pairs = 0;

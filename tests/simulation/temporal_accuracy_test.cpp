@@ -73,7 +73,8 @@ TEST_F(SwingingSheet, ConvergesWithTheOrderOfEachMethodWhereStepsAreFixed) {
       if (before > 0) {
         EXPECT_NEAR(order, order_of(integrator), integrator == scene::Integrator::implicit_euler ? 0.12 : 0.06);
       }
-      // The sum of local errors is 1.2 to 2.1 times the error (measured): in half a swing they nearly add up.
+      // Measured: the estimate, which is the sum of the sizes of the local errors, is 1.2 to 2.1 times the error at the
+      // end. The sheet makes only half a swing, in which local errors hardly cancel.
       EXPECT_GT(end.estimate, error);
       EXPECT_LT(end.estimate, 3 * error);
       before = error;
@@ -95,7 +96,8 @@ TEST_F(SwingingSheet, KeepsTheSecondOrderInAir) {
     const double coarse = rms_distance(end(integrator, 400), exact), fine = rms_distance(end(integrator, 800), exact);
     std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator).c_str(), fine,
                 std::log2(coarse / fine));
-    // Measured order: 2.01 and 2.00. With drag as a mean over the step: 1.1, and an error 9 to 34 times as large.
+    // Measured order: 2.01 and 2.00. If the drag were a mean over the step, the order would be 1.1, and the error 9 to
+    // 34 times as large.
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name_of(integrator);
   }
 }

@@ -41,7 +41,8 @@ struct CharacterContext {
 
 CharacterContext make_character_context(const scene::Scene& scene, const scene::Character& settings);
 
-/// Throws Error(scene_invalid) if the character starts after the end of `motion`, which has this duration [s].
+/// Throws Error(scene_invalid) if the `start` of the character is after the end of a motion of this duration [s].
+/// `motion`: what the message calls it.
 void check_start(const CharacterContext& context, const std::string& motion, double duration);
 
 /// "; did you mean ...?" with the most similar of the known names; empty if none is similar.
@@ -54,10 +55,10 @@ Index named_node(const CharacterContext& context, const std::string& key, const 
                  const std::vector<character::Node>& nodes, const std::string& source);
 
 /// For each of joint_names(), the node of a skeleton with that role; −1 if there is none. The names `given` in the
-/// scene override the nodes that are found by common names; a node that has a name there is no other joint, except the
-/// hips. `name`: the member of JointNames that applies to this file; `source`: the file, for messages. Throws
-/// Error(scene_invalid) for names in the scene that do not exist, and for a node that the scene names as two joints,
-/// except the hips.
+/// scene override the nodes that are found by common names. A node that the scene names as one joint is not found as
+/// another, except as the hips. `name`: the member of JointNames that applies to this file; `source`: the file, for
+/// messages. Throws Error(scene_invalid) for names in the scene that do not exist, and for a node that the scene names
+/// as two joints, except the hips.
 std::vector<Index> joints_of(const CharacterContext& context, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source);

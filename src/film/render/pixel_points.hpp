@@ -19,7 +19,7 @@ namespace weft::render {
 /// neighbours in the row can be read without a check.
 class Plane {
  public:
-  static constexpr int kBorder = 8;  ///< border on either side of each row [numbers]: as many as a packet has lanes
+  static constexpr int kBorder = 8;  ///< number of values before and after each row; as many as Lanes holds
 
   Plane() = default;
   Plane(int width, int height, float value);
@@ -56,7 +56,8 @@ class PixelPoints {
   Lanes kinds(int x, int y) const { return Eigen::Map<const Lanes>(kinds_.row(y) + x); }
   Lanes3 positions(int x, int y) const { return lanes(position_, x, y); }
   Lanes3 normals(int x, int y) const { return lanes(normal_, x, y); }
-  /// Height of the smooth surface above the drawn one, along the normal [m].
+  /// Height above the drawn triangle, along the normal [m], of the smooth surface that the triangles approximate
+  /// (rise() in geometry.frag).
   Lanes rises(int x, int y) const { return Eigen::Map<const Lanes>(rise_.row(y) + x); }
 
   /// The functions below return a row of values. surfaces(): number as in Seen; -1 beyond the ends of the row.

@@ -132,7 +132,7 @@ ReflectedLight::Arriving ReflectedLight::arriving(const Rays& rays) const {
     const Vector3f start = rays.origin.at(lane), way = rays.direction.at(lane);
     const float down = -floor_normal_.dot(way), height = floor_normal_.dot(start) - floor_height_;
     const bool meets_floor = has_floor_ && down >= kMinSlope * way.norm() && height >= 2 * least_ray_start_;
-    // `rays_` has no floor: the floor hides surfaces below it.
+    // `rays_` does not contain the floor. A ray that meets the floor first does not reach the surface below it.
     if (hits.mesh[lane] != Hits::kNone && !(meets_floor && height < down * hits.distance[lane])) {
       const auto& ranges = surfaces_[static_cast<std::size_t>(hits.mesh[lane])].ranges;
       auto range = std::ranges::find_if(ranges, [&](const auto& each) { return hits.triangle[lane] < each.end; });

@@ -10,7 +10,7 @@ namespace weft::forces {
 
 namespace {
 
-// Lower bound of ‖s‖, which keeps the matrix finite: a thread of length 0 has no direction.
+// Lower bound of ‖s_u‖ and ‖s_v‖. It keeps the stiffness of a thread of length 0, which has no direction, finite.
 constexpr double kMinStretch = 1e-12;
 
 // ‖s‖, at least kMinStretch
@@ -103,7 +103,8 @@ bool TriangleMembrane::accept_rest_shape(std::span<const Vec3> x, double max_ext
       triangle.lag = progress_ - progress_of(triangle, progress_);
     else if (!triangle.is_stopped)
       triangle.lag = std::max(0.0, triangle.lag - elapsed);
-    // Sewing shortens only threads that are longer at the start than in the pattern. It releases the others.
+    // Only threads that are longer at the start than in the pattern can stop a triangle. Further sewing shortens these,
+    // but reduces the tension of all others.
     const Gradient s = gradient(elements_[e], x);
     const double longest = 1 + max_extension;
     triangle.is_stopped =

@@ -30,8 +30,8 @@ class Weather {
 
   /// Gravity at time t [s], in [m/s²].
   Vec3 gravity(double t) const { return keys_ ? Vec3(keys_->at(t).value.head<3>()) : gravity_; }
-  /// Whether there are keys, gusts or fans. If not, the velocity of the air is Model::physics.wind
-  /// at all times and places.
+  /// Whether there are gusts, fans, or key frames of gravity and wind. If not, the velocity of the air is
+  /// Model::physics.wind at all times and places.
   bool differs_from_wind() const { return keys_.has_value() || gusts_.has_value() || !fans_.empty(); }
   /// Velocity of the air at x [m] and time t [s], in [m/s].
   Vec3 air(const Vec3& x, double t) const;

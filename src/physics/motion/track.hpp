@@ -38,10 +38,10 @@ PoseSample compose(const PoseSample& parent, const Pose& parent_start, const Pos
 ///
 /// Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions
 /// with derivatives in closed form (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with
-/// simple high order derivatives", SIGGRAPH 1995). The angular velocity is then continuous; at the keys it is
-/// given by slopes_between_keys() (spline.hpp), with the rotation vectors between keys as
-/// differences of values. Therefore a rotation about a fixed axis has the angle that a Spline
-/// through the angles of the keys has.
+/// simple high order derivatives", SIGGRAPH 1995). The angular velocity is then continuous. At the keys, it
+/// comes from slopes_between_keys() (spline.hpp), which here gets the rotation vectors from key to key in place of the
+/// differences of values. So if the axis is fixed, the angle is the same as that of a Spline through the angles of the
+/// keys.
 class RotationSpline {
  public:
   struct Sample {

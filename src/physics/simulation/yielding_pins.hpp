@@ -70,9 +70,10 @@ class YieldingPins {
   const model::Model& model_;
   std::vector<Index> first_particle_;  // of each cloth
   std::span<const double> masses_;
-  std::vector<double> pull_force_;  // per pin: W in the maximum force of Numerics::Pins [N]
-  bool needs_middle_ = false;       // whether the midpoint rule may integrate a pin with a strength
-  // Targets at the end of the step, the same in its middle (empty unless needs_middle_), and those at its start.
+  std::vector<double> pull_force_;  // per pin: the force W of Numerics::Pins, a multiple of the weight of the cloth [N]
+  bool needs_middle_ = false;       // whether a pin has a strength and the midpoint rule is the integrator
+  // Targets at the end of the step, in its middle (empty unless needs_middle_), and at its start. held_: those of
+  // targets_ whose particles are held exactly.
   std::vector<integrator::HeldParticle> targets_, middles_, at_start_, held_;
   std::vector<PinSpring> pulls_;
   std::vector<std::uint8_t> lagged_,

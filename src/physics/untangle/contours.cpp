@@ -14,7 +14,8 @@
 namespace weft::untangle {
 namespace {
 
-// Sine and cosine of the angle between a folded island and the surface that it crossed: 15 degrees.
+// Sine and cosine of the angle between a folded island (see label_islands()) and the surface that it crossed: 15
+// degrees.
 constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
 
 // Returns the number of the island of each particle. An island is a connected component of the mesh without the edges
@@ -41,8 +42,8 @@ std::vector<Index> label_islands(const UntangleInput& input, const std::set<std:
   return island;
 }
 
-/// A point of the line of crossing, and the normal of the crossed surface there. In Island::line,
-/// the normal points from the island to the mesh beside it.
+/// A point of the line of crossing, and the normal of the crossed surface there. In Island::line, the normal points
+/// from the island to the adjacent part of its own mesh.
 struct CutPoint {
   Vec3 place, normal;
 };
@@ -90,7 +91,7 @@ void extend_cut(const UntangleInput& input, std::span<const Crossing> crossings,
 
 // Moves that raise the particles of the island along `up` to at least `height` above the plane perpendicular to `up`
 // through the nearest point of the line. If the island crosses a single other surface, the moves also raise the
-// particles along the normal of that surface on the side of `up` to at least `height` above it.
+// particles to at least `height` above that surface, along its normal (reversed if it points away from `up`).
 std::vector<Move> flatten(const Island& island, const Vec3& up, double height, const collision::BroadPhase& surfaces,
                           std::span<const Vec3> x) {
   std::vector<Move> moves;
@@ -137,9 +138,9 @@ Vec3 direction_of(std::span<const CutPoint> line) {
   return along;
 }
 
-// Returns the cheapest moves (stretch_cost()) that take the island to the side of the mesh beside it: by flattening, or
-// by folding to one of two sides. Folding must cost a tenth less than the best candidate so far. Empty if the normals
-// along the line cancel each other.
+// Returns the cheapest moves (stretch_cost()) that take the island to the side of the crossed surface on which the
+// adjacent part of its own mesh is: by flattening, or by folding to one of two sides. Folding must cost a tenth less
+// than the best candidate so far. Empty if the normals along the line cancel each other.
 std::vector<Move> best_moves(const UntangleInput& input, const Island& island, double height,
                              const collision::BroadPhase& surfaces, std::span<const Vec3> x) {
   Vec3 up = Vec3::Zero();

@@ -14,8 +14,8 @@ namespace weft::cli {
 /// or exceeds the scene.
 FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial);
 
-/// Verifies the frame before the first of `frames`, which motion blur and motion layers need; frame numbers below 0 do
-/// not exist. Throws Error(frames_missing) if it is missing or broken.
+/// Verifies the frame one step before the first of `frames`, which motion blur and motion layers need. Does nothing if
+/// its number would be below 0. Throws Error(frames_missing) if it is missing or broken.
 void check_frame_before(const cache::Reader& reader, const FrameRange& frames);
 
 /// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights). Skips

@@ -48,9 +48,9 @@ std::string last_part(const std::string& name) {
   return name.substr(name.rfind('/') + 1);
 }
 
-// The reference with the name `run.name` (if there are several, that with the key `run.key`), else with the key
-// `run.key`. If there is neither, the reference whose name has the same part after the last slash; null if no reference
-// or several have it.
+// Finds the reference of a run. First choice: the same name (among several, the one with the same key, else the first).
+// Second choice: the same key. Third choice: the only reference whose name has the same part after the last slash.
+// Returns null if there is none of these.
 const RunFiles* find_reference(const std::vector<RunFiles>& references, const RunFiles& run) {
   const RunFiles* found = nullptr;
   for (const RunFiles& reference : references)
@@ -266,7 +266,7 @@ class Page {
     } else if (!run.pictures.empty()) {
       const std::string stem = (run.pictures.front().parent_path() / run.pictures.front().stem()).string();
       const std::string prefix = stem.substr(0, stem.find_last_not_of("0123456789") + 1);  // npos + 1 is 0
-      accept["prefix"] = prefix.empty() ? "./" : prefix;  // empty: numbers alone in the working folder
+      accept["prefix"] = prefix.empty() ? "./" : prefix;  // empty: working folder, file names of digits only
     }
     fs::path place = request_.reference.empty() ? fs::path("references") : request_.reference;
     if (reference != nullptr && !run.video.empty() && !reference->video.empty()) place = reference->video;

@@ -38,8 +38,10 @@ class PinchedPairs {
 
   /// Where the limb first met the cloth.
   struct Origin {
-    int side = 0;  ///< +1: the cloth was outside the limb; −1: inside the body, or behind an open one; 0: not recorded
-    std::vector<Triangle> faces;  ///< faces of the limb that first met the triangle or else its neighbour
+    int side = 0;  ///< +1: the cloth was outside the limb; −1: inside the body, or behind it if the body is an open
+                   ///< surface; 0: not recorded
+    std::vector<Triangle> faces;  ///< faces of the limb that first met the triangle; if there are none, those that
+                                  ///< first met the exempted neighbour
   };
 
   /// Two points for a contact that pushes a particle, or a point of a cloth triangle, back to its original side of the
@@ -47,12 +49,13 @@ class PinchedPairs {
   /// triangle and one corner of the face that it crosses.
   struct Push {
     FeaturePair exit_pair;
-    bool is_exit_clear = false;  ///< no obstacle contains the point to which the push leads, except a container
-                                 ///< of the cloth
+    bool is_exit_clear = false;  ///< no obstacle contains the point to which the push leads (a closed container
+                                 ///< in which the cloth was does not count)
   };
 
   PinchedPairs() = default;
-  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`, `limb_of`: per vertex; must outlive it.
+  /// Vertices from `first_obstacle` on belong to obstacles. `body_of`, `limb_of`: per vertex; must outlive this
+  /// object.
   PinchedPairs(Index first_obstacle, std::span<const std::size_t> body_of, std::span<const Index> limb_of)
       : first_obstacle_(first_obstacle), body_of_(body_of), limb_of_(limb_of) {}
 
@@ -88,8 +91,8 @@ class PinchedPairs {
   /// Removes triangles that, at x [m], are apart from their limb and back on their original side of it. Adds triangles
   /// that share a particle with a triangle of the set, unless they are apart from the limb of that triangle and on its
   /// original side. `triangles`: of all surfaces, cloth first. `is_repeated`: whether the step was rejected before. In
-  /// this case, neighbours are exempt on whichever side their common particle is, because keeping them apart may have
-  /// stretched the cloth.
+  /// this case, neighbours are exempt on whichever side their common particle is, because keeping neighbours apart from
+  /// the limb may have stretched the cloth.
   void update_exempted(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x,
                        bool is_repeated = false);
 
