@@ -47,7 +47,7 @@ std::string toml_of(const py::handle& value, const std::string& path) {
     throw py::type_error(
         fmt::format("{}: expected a number, a bool, a text, a path, or an array, list, tuple or dict of these, got {}",
                     path, Py_TYPE(value.ptr())->tp_name));
-  // A JSON string is also a TOML string.
+  // json.dumps() uses only escapes that TOML has, too. It does not escape U+007F, which TOML then refuses.
   return py::module_::import("json").attr("dumps")(value, py::arg("ensure_ascii") = false).cast<std::string>();
 }
 

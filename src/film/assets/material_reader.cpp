@@ -144,7 +144,7 @@ bool is_cutout(const aiMaterial& material) {
 /// Pictures that were skipped for the same reason.
 struct LeftOut {
   std::string reason;
-  std::vector<std::string> materials, pictures;  // names of the materials; paths of their pictures, may be empty
+  std::vector<std::string> materials, pictures;  // names of the materials; paths of their pictures, each may be ""
 };
 
 /// Text with the first three names, quoted, and the number of the others.
@@ -177,8 +177,8 @@ Vec2 placed_uv(const aiMaterial& material, const Vec2& uv) {
   aiUVTransform placing;
   const bool is_gltf = material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS;
   if (!type || !is_gltf || material.Get(AI_MATKEY_UVTRANSFORM(*type, 0), placing) != AI_SUCCESS) return uv;
-  // Reverses a conversion by assimp, which has changed the offset for v upward and for a rotation by −angle about the
-  // middle of the picture.
+  // In glTF, v points down, and a picture turns about the origin. assimp has converted the offset: to v upward, and to
+  // a rotation by −angle about the middle of the picture. This restores the offset that the glTF file contains.
   const double cos = std::cos(placing.mRotation), sin = -std::sin(placing.mRotation);
   const Vec2 scale(placing.mScaling.x, placing.mScaling.y),
       offset(placing.mTranslation.x - scale.x() / 2 * (1 - cos + sin),

@@ -92,7 +92,8 @@ double Loft::value(const Vec3& p) const {
   const double n = s[5];
   const double across = power(u / s[2], n) + power(v / (v > 0 ? s[3] : s[4]), n);
   const double rho_sq = (n == 2 ? across : std::pow(across, 2 / n)) + cap * cap;
-  // At the centre, the ray has no direction. The value there is minus the smallest half width or depth.
+  // The value is a distance along the ray from the centre of the section through p. If p is the centre, the ray has no
+  // direction, and the value is minus the smallest half width or depth.
   const double rho = std::sqrt(rho_sq), length = std::sqrt(u * u + v * v + beyond * beyond);
   return rho < 1e-9 ? -std::min({s[2], s[3], s[4]}) : length * (1 - 1 / rho);
 }

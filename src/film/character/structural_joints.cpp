@@ -19,9 +19,10 @@ constexpr double kMaxChainDifference = 0.1;
 constexpr int kComparedBones = 3;
 /// Minimum number of chains that branch at a hand.
 constexpr int kMinFingers = 3;
-/// Of two candidates for the elbow, the outer one is chosen if the shorter of its two bones is longer than this
-/// fraction of the shorter bone at the inner candidate. Some recordings have collarbones of 13 cm and forearms of 9 cm;
-/// the part of a hand up to the fingers is shorter than half a forearm.
+/// Decides between two candidates for the elbow. Compares the shorter of the two bones that meet at each candidate. The
+/// outer candidate is chosen if its shorter bone is longer than this fraction of the inner candidate's. The fraction is
+/// below 9/13, because some recordings have collarbones of 13 cm and forearms of 9 cm. It is above 1/2, because the
+/// part of a hand up to the fingers is shorter than half a forearm.
 constexpr double kMinOuterElbowRatio = 0.6;
 /// kMaxHalfDifference: maximum relative difference of the two halves of a split bone. kMaxLimbBoneRatio: maximum ratio
 /// between the lengths of upper and lower bone of a limb (1.0 to 1.3 in adults).
@@ -159,7 +160,8 @@ class StructuralJointFinder {
             pairs.push_back({static_cast<Index>(n), a, b, std::min(chain_length_[a], chain_length_[b])});
         }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::chain_length);
-    // The spine may be as long as a leg. But a pair that contains the spine is not disjoint from any other pair.
+    // The spine may be as long as a leg and form a pair with it. This pair is not disjoint from that of the arms, which
+    // branch from the spine, nor from other pairs at the hip.
     for (std::size_t first = 0; first < pairs.size(); ++first)
       for (std::size_t second = first + 1; second < pairs.size(); ++second)
         if (are_disjoint(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
@@ -179,7 +181,8 @@ class StructuralJointFinder {
   }
 
   /// Finds the upper and the lower bone on the longest chain through the node `from`. A pair of bones farther out
-  /// replaces the best pair so far if its shorter bone is longer than `outer` times the shorter bone of the best pair.
+  /// replaces the pair found so far if its shorter bone is longer than `outer` times the longest of the shorter bones
+  /// of all pairs before it.
   Chain chain_of(Index from, double outer) const {
     std::vector<Index> nodes;
     std::size_t last = 0, hand = 0;  // last possible end of the lower bone; node where fingers branch
@@ -230,8 +233,8 @@ class StructuralJointFinder {
     }
   }
 
-  /// Mean over the first clip of `figure`, a function of the positions of all nodes; its value in the rest pose if
-  /// there is no clip.
+  /// Mean of `figure` over the first clip; the value in the rest pose if there is no clip. `figure`: a function of the
+  /// positions of all nodes.
   template <class Figure>
   double mean_over_clip(const Figure& figure) const {
     const bool clip = !character_.clips.empty();

@@ -23,7 +23,7 @@ struct Settings {
   std::string camera;          ///< name; empty: the scene's first camera or, without cameras, automatic_camera()
   int threads = 0;             ///< number of threads of the software rasteriser; 0: its default
   bool layers = false;         ///< whether layers() will be called; pictures are then sharp, without blur
-  bool needs_image16 = false;  ///< whether the caller will call image16(); unused by Renderer
+  bool needs_image16 = false;  ///< for the caller: whether to write image16(); ignored by Renderer
   std::optional<frame::Stage::Look> look;  ///< overrides the look of the scene
   std::optional<double> motion_blur;       ///< shutter angle [degrees]; overrides Stage::motion_blur
 
@@ -53,8 +53,8 @@ class Renderer {
   /// Moves out the last picture as linear layers for compositing programs. The result has no channels without
   /// Settings::layers, and in a second call for the same picture. Channels R, G, B and A: the surfaces alone,
   /// premultiplied. Channels picture.R, picture.G and picture.B: the picture with floor and backdrop. Channel caught.A,
-  /// only if there is a floor and no translucent cloth: alpha of the surfaces over the floor's shadow, which is black
-  /// with the fraction of blocked light as alpha. The channels of DataPasses follow.
+  /// only if there is a floor and no translucent cloth: A + (1 − A) s, where s is the fraction of light that the shadow
+  /// on the floor blocks; this is the alpha of the surfaces over a black shadow. The channels of DataPasses follow.
   image::Layers layers();
   /// The last picture with 16 bits per channel, without dithering.
   image::Image16 image16();

@@ -129,8 +129,8 @@ Surroundings make_surroundings(const Style& style, const frame::Stage& stage, co
       around.boxes = {box(0.2, 0.1, 1, 5, 1.2), box(-0.4, -1, 0.5, 4, 1.1), box(-1, 0.8, 0.45, 14, 2.0)};
       break;
   }
-  // Scales sky and boxes so that a horizontal surface receives the style's fraction of all light,
-  // in the sky's colour. For `daylight` without Stage::sky_color, all channels have the same
+  // Scales sky and boxes so that a horizontal surface receives from them Style::sky_intensity (as a
+  // fraction of all light) times Style::sky_color. For `daylight` without Stage::sky_color, all channels have the same
   // factor, which keeps the blue of the sky.
   const Vec3 flat = evaluate_irradiance(irradiance_of(around), up);
   const Vec3 scale = style.sky_intensity * style.sky_color.cwiseQuotient(flat.cwiseMax(1e-6));

@@ -31,8 +31,8 @@ using Factors = std::array<double, kVariedValues>;
 /// - cloth exceeds `max_stretch` by more than a tenth, or is pinched by an obstacle,
 /// - pinned particles lag behind their targets,
 /// - energy appears without a source, or the solver leaves unbalanced forces.
-/// A fault is new if the unchanged scene does not have it. All faults of the unchanged scene count as new. A trial
-/// breaks if it has a new fault, or if it starts but does not run to the end.
+/// A fault is new if the unchanged scene does not have it. In the trial of the unchanged scene itself, all faults count
+/// as new. A trial breaks if it has a new fault, or if it starts but does not run to the end.
 enum class TrialVerdict {
   holds,       ///< ran to the end, without a new fault
   warned,      ///< ran to the end, with a new fault
@@ -71,8 +71,8 @@ struct SceneStability {
 /// All factors of one parameter, in ascending order, including 1. Only those that change the
 /// simulation of the scene are tried.
 const std::vector<double>& factors_of(VariedParameter axis);
-/// The map: all combinations of these factors of stiffness and step are tried, except those in
-/// which a factor changes nothing.
+/// Factors of stiffness and step that are varied together. The report shows these trials as a map, a grid of stiffness
+/// and step. All combinations are tried, except those in which a factor changes nothing.
 inline constexpr std::array<double, 5> kMapStiffness{0.01, 0.1, 1, 10, 100};
 inline constexpr std::array<double, 5> kMapSteps{0.25, 0.5, 1, 2, 4};
 

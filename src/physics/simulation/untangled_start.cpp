@@ -40,7 +40,7 @@ bool is_layer(const model::Model& model, std::size_t cloth, std::span<const std:
 }  // namespace
 
 double CollisionStage::lift_bodies(const Vec3& up, double t, SystemState& start) {
-  constexpr int kMaxStackHeight = 32;  // maximum height of a stack of bodies; each round lifts one more of its bodies
+  constexpr int kMaxStackHeight = 32;  // maximum number of bodies in a stack; each round frees one more from that below
   const std::size_t cloths = model_.cloths.size();
   const collision::Bodies& bodies = engine_.bodies();
   const auto is_free = [&](std::size_t body) {

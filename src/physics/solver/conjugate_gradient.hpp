@@ -26,10 +26,10 @@ struct LinearReport {
 class ConjugateGradient {
  public:
   /// Sets the system that the following calls solve. The system must not change between these calls: the first one that
-  /// needs the preconditioner prepares it. With AggregateSums::reuse, the preconditioner reuses sums over aggregates
-  /// that have been computed since the last call with AggregateSums::recompute. Frees the memory of
-  /// a precision that is not used for more than kSolvesUnused (conjugate_gradient.cpp) successive
-  /// calls with AggregateSums::recompute.
+  /// needs the preconditioner prepares it. With AggregateSums::reuse, the preconditioner keeps its sums over aggregates
+  /// (preconditioner.hpp) if it has computed them since the last call with AggregateSums::recompute; if not, it
+  /// computes them. With AggregateSums::recompute, also frees the memory for single or for double precision, if this
+  /// precision has not been used for more than kSolvesUnused (conjugate_gradient.cpp) successive calls of this kind.
   void prepare(const LinearSystem& system, AggregateSums sums = AggregateSums::recompute);
 
   /// Returns P⁻¹ b, a rough solution of A x = b that obeys the constraints. b must obey the
@@ -43,11 +43,11 @@ class ConjugateGradient {
   /// reduces ‖e‖²_A by its gain α rᵀz with z = P⁻¹ r. The sum of the last gains estimates ‖e‖²_A as it was before these
   /// steps (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error Estimation in Preconditioned Conjugate Gradients", BIT 45,
   /// 2005). Each diagonal block has its own summand of rᵀz. LinearReport::errors estimates the
-  /// error in the mass-weighted norm: the squared error is q times the estimate of ‖e‖²_A. q is the
-  /// largest ratio of a step's squared mass-weighted norm to its gain over these steps, at most 1,
-  /// and 1 if the system has no `norm_weights`. The reported error is 0 for diagonal blocks that
-  /// are not in the solve, without iterations, and if the residual is zero up to rounding. √(rᵀz)
-  /// cannot replace the estimate: for smooth motion, √(rᵀz) is far below ‖e‖_A, and flat sheets
+  /// error in the mass-weighted norm: the squared error is q times the estimate of ‖e‖²_A. For each of the same last
+  /// steps, take the ratio of its squared mass-weighted norm to its gain. q is the largest of these ratios, but at most
+  /// 1. If the system has no `norm_weights`, q is 1. The reported error of a diagonal block is 0 if the block is not in
+  /// the solve, if there were no iterations, or if the residual is zero up to rounding. √(rᵀz) cannot replace the
+  /// estimate: for smooth motion, √(rᵀz) is far below ‖e‖_A, so the iteration would end too early, and flat sheets
   /// would fold in free fall.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                      const Directions& directions = {});

@@ -25,7 +25,8 @@ std::string machine_class(const std::string& gl);
 /// version of Mesa, or if the file cannot be read.
 std::string machine_class_of(const std::filesystem::path& file);
 
-/// The reference of this name for the machine class `machine`; none if there is no file, or only a heat map.
+/// The reference of this name for the machine class `machine`; none if no file has this name, or only heat maps have it
+/// (is_heat_map()).
 std::optional<std::filesystem::path> find_reference(const std::filesystem::path& folder, const std::string& name,
                                                     const std::string& machine);
 

@@ -22,11 +22,10 @@ namespace weft::exporter {
 /// first frame would be wrong in later frames.
 ///
 /// glTF has y up: if z is up in the scene, (x, y, z) becomes (x, z, -y); Blender reverses this. v
-/// points down in glTF, so texture coordinates are (weft, 1 − warp) [m]. If these coordinates do
-/// not map the pictures of an object, the object also has a second set of texture coordinates,
-/// which does. A vertex on a seam occurs once for each panel; a vertex on a crease, once for each
-/// normal. Pictures are embedded. A mesh has one primitive per material; all primitives share its
-/// vertices.
+/// points down in glTF, so texture coordinates are (weft, 1 − warp) [m]. If the pictures
+/// of an object need other texture coordinates, the object also has these, as a second set. A vertex on a seam occurs
+/// once for each panel; a vertex on a crease, once for each normal. Pictures are embedded. A mesh has one primitive per
+/// material; all primitives share its vertices.
 class GltfFile {
  public:
   /// Adds the visible objects of the first frame.
@@ -35,8 +34,8 @@ class GltfFile {
   /// Adds the next frame, at `time` [s] after the first.
   void add(const frame::FrameSnapshot& snapshot, double time);
 
-  /// Adds the cameras of the next frame, starting with the first. glTF cameras cannot change their
-  /// field of view, so each camera keeps the field of view of its first frame.
+  /// Adds the cameras of a frame: of the first frame in the first call, then of each next frame. glTF cameras cannot
+  /// change their field of view, so each camera keeps the field of view of its first frame.
   void add_views(const std::vector<View>& views);
 
   /// `aspect`: width over height of rendered pictures. Throws Error(output_failed), also if the file would exceed 4

@@ -38,8 +38,8 @@ enum class PlaneKinds { constant, turning, all };
 ///      the start (for neighbours in one plane);
 ///   2. the same directions, turning from start to end;
 ///   3. the line between the closest points, constant, then turning;
-///   4. all again in each half of the trajectory; halves are halved again, at most Numerics::Repair::max_retries times
-///      in all.
+///   4. all again in each half of the trajectory. Halves are halved again, to at least 2^−n of the trajectory, where n
+///      is Numerics::Repair::max_retries.
 ///
 /// A turning plane has the normal n(t) = (1 − t) n₀ + t n₁, with t from 0 to 1. Let δ(t) be the difference of two
 /// linearly moving corners. Then n·δ is quadratic in t. Its Bernstein coefficients are n₀·δ₀, (n₀·δ₁ + n₁·δ₀)/2 and
