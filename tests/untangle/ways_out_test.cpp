@@ -64,7 +64,7 @@ TEST(ClothBehindAFlatLayer, ThatCrossesTheLayerMovesToItsFront) {
 TEST(ClothBehindAFlatLayer, ThatIsApartFromTheLayerStays) {
   const ClothOnLayer apart(0, -0.05);
   apart.with_layer([&](const UntangleInput& input, const ForbiddenRegion& layer) {
-    EXPECT_TRUE(layer.inside(apart.x[0]));
+    EXPECT_TRUE(layer.contains(apart.x[0]));
     EXPECT_TRUE(find_inside(input, layer, std::array{0.0015, 0.0}, apart.x).empty());
   });
 }
