@@ -295,9 +295,8 @@ std::string warn_if_hips_do_not_hold(const Pattern& pattern, const Vec2& factors
   const double waist = *drawn.waist * factors.x(), hips = trunk.hip_girth();
   if (hips >= kMinHipToWaistRatio * waist) return {};
   return fmt::format(
-      "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, too narrow to hold it up: pin its waist, as "
-      "in "
-      "pin = [{{ edge = \"{}\", follow = \"WEARER.torso\" }}]",
+      "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, too narrow to hold it up: pin its waist, "
+      "as in pin = [{{ edge = \"{}\", follow = \"WEARER.torso\" }}]",
       waist, hips, pattern.panels.empty() ? "PANEL.EDGE" : pattern.panels.front().name + ".EDGE");
 }
 
