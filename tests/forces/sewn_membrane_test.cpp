@@ -95,6 +95,26 @@ TEST(SewnMembranes, StayAsWideAsTheirThreadsMustBe) {
   EXPECT_NEAR(free.max_strain(held), kHeld - 1, 1e-12);
 }
 
+// One particle inside the sheet is held 30 % of a cell beside its place in the pattern, so that only triangles on one
+// side of it lock.
+TEST(SewnMembranes, AreNotReportedWiderForSingleTriangles) {
+  constexpr double kOnset = 0.1, kStep = 0.01;
+  mesh::Sheet sheet = flat_sheet();
+  sheet.sewn = true;
+  Positions held = sheet.rest;
+  held[static_cast<std::size_t>(kGrid.index(2, 1))].x() += 0.3 * kGrid.du(1);
+  for (Vec3& x : sheet.rest) x.x() *= 2;
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0}), free = sewn;
+  for (int step = 1; step <= 100; ++step) {
+    sewn.interpolate_rest_shape(step * kStep);
+    sewn.accept_rest_shape(held, kOnset, kStep);
+    free.interpolate_rest_shape(step * kStep);
+    free.accept_rest_shape(held, 1, kStep);
+  }
+  EXPECT_LT(sewn.energy(held), 0.9 * free.energy(held)) << "some triangles are wider than in the pattern";
+  EXPECT_EQ(sewn.widening().fraction, 0);
+}
+
 TEST(SewnMembranes, MakeUpForTheTimeInWhichTheyWereStopped) {
   mesh::Sheet sheet = flat_sheet();
   sheet.sewn = true;

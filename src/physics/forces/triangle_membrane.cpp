@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/archive.hpp"
 
@@ -121,13 +122,19 @@ bool TriangleMembrane::is_catching_up() const {
 }
 
 TriangleMembrane::Widening TriangleMembrane::widening() const {
-  Widening widest;
+  std::map<Index, double> least;  // by particle: smallest fraction of its triangles
   for (std::size_t e = 0; e < sewn_triangles_.size(); ++e) {
-    if (sewn_triangles_[e].lag == 0) continue;
-    const Eigen::Matrix2d excess = (1 - accepted_progress_ + sewn_triangles_[e].lag) * sewn_triangles_[e].excess;
-    const double fraction = std::max(excess(0, 0), excess(1, 1));
-    if (fraction > widest.fraction) widest = {fraction, elements_[e].particles};
+    const SewnTriangle& triangle = sewn_triangles_[e];
+    const Eigen::Matrix2d excess = (1 - accepted_progress_ + triangle.lag) * triangle.excess;
+    const double fraction = triangle.lag == 0 ? 0 : std::max(excess(0, 0), excess(1, 1));
+    for (const Index particle : elements_[e].particles) {
+      double& of_particle = least.try_emplace(particle, fraction).first->second;
+      of_particle = std::min(of_particle, fraction);
+    }
   }
+  Widening widest;
+  for (const auto& [particle, fraction] : least)
+    if (fraction > widest.fraction) widest = {fraction, particle};
   return widest;
 }
 

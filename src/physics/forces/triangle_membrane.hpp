@@ -53,10 +53,11 @@ class TriangleMembrane : public Membrane {
   /// Whether the next accept_rest_shape() advances triangles: the progress is 1, and a triangle that
   /// is not stopped lags.
   bool is_catching_up() const;
-  /// The triangle whose shape is wider than in the pattern by the largest fraction of its width.
+  /// The particle around which the cloth is wider than in the pattern by the largest fraction of its width: all of its
+  /// triangles are at least as wide. Single wide triangles, as at the tip of a dart, do not show.
   struct Widening {
-    double fraction = 0;  ///< 0 if all triangles have their shape in the pattern
-    std::array<Index, 3> corners{};
+    double fraction = 0;  ///< 0 if every particle has a triangle with its shape in the pattern
+    Index particle = 0;
   };
   Widening widening() const;
   /// Saves or restores which triangles were stopped. Call interpolate_rest_shape(`progress`), with

@@ -327,8 +327,8 @@ std::vector<ClothSystem::Widening> ClothSystem::accept(std::span<const Vec3> x, 
     // From now on, rest shapes follow from the saved lags alone, so that a resumed run has the same bits.
     if (ends || catches_up) sewing.set_progress(1);
     if (!ends) continue;
-    const auto [fraction, corners] = sewing.membrane->widening();
-    if (fraction > 0) widened.push_back({sewing.cloth, fraction, (x[corners[0]] + x[corners[1]] + x[corners[2]]) / 3});
+    const auto [fraction, particle] = sewing.membrane->widening();
+    if (fraction > 0) widened.push_back({sewing.cloth, fraction, x[particle]});
   }
   return widened;
 }

@@ -110,8 +110,8 @@ class ClothSystem {
   /// Cloth that was sewn wider than its pattern, because its threads would have locked.
   struct Widening {
     std::size_t cloth;  ///< number of the cloth
-    double fraction;    ///< by which its widest triangle is wider than in the pattern
-    Vec3 place;         ///< of this triangle
+    double fraction;    ///< TriangleMembrane::Widening::fraction
+    Vec3 place;         ///< of the particle of this widening [m]
   };
   /// Accepts a step over h [s] that ends with particles at x [m]: updates which ties of tearable
   /// seams hold, tears overloaded ones, and stops the sewing of triangles whose threads lock. After

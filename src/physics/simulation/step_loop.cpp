@@ -16,8 +16,7 @@ namespace {
 
 // A cloth is reported again only if its stretch is at least this multiple of the last reported one.
 constexpr double kReportAgainRatio = 1.5;
-// A smaller ClothSystem::Widening::fraction is not reported: single triangles beside an elastic waist are 6 % wider
-// than in the pattern (scenes/gallery/shirt.toml), which is not visible.
+// A smaller ClothSystem::Widening::fraction is not reported, because it is not visible.
 constexpr double kMinReportedWidening = 0.1;
 
 }  // namespace
