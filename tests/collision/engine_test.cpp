@@ -30,6 +30,11 @@ struct Sheet {
   }
 
   std::size_t particles() const { return masses.size(); }
+  std::vector<std::uint8_t> movable() const {
+    std::vector<std::uint8_t> movable(x.size(), kFixed);
+    std::fill_n(movable.begin(), particles(), std::uint8_t{kFree});
+    return movable;
+  }
   std::vector<Vec3> falling(double by) const {
     std::vector<Vec3> end = x;
     for (std::size_t i = 0; i < particles(); ++i) end[i].z() -= by;
@@ -127,8 +132,7 @@ TEST(Engine, FailingPairsBecomeContactsOnce) {
 TEST(Engine, APredictedEndBelowTheFloorIsPushedUp) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
-  std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   const std::vector<Vec3> through = sheet.falling(0.06), above = sheet.falling(0.04);
   std::vector<Vec3> guess = through, kept = above;
   EXPECT_TRUE(engine.begin_step(sheet.x, guess, movable, kEngineStep));
@@ -142,8 +146,7 @@ TEST(Engine, APredictedEndBelowTheFloorIsPushedUp) {
 // sheet is below the detection distance (3 mm) only after the push.
 TEST(Engine, FindsPairsThatAreNearOnlyAfterThePredictedEndIsPushed) {
   Sheet sheet(3, 0.001, 0.0042);
-  std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   for (const bool reuse : {true, false}) {
     EngineParameters parameters;
     parameters.search.reuse = reuse;
@@ -166,8 +169,7 @@ TEST(Engine, PushingApartSeparatesTheTrajectories) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   std::vector<Vec3> end = sheet.falling(0.06);
-  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   begin_step(engine, sheet.x, sheet.x);
   ASSERT_FALSE(engine.is_separated(sheet.x, end));
   const SeparationReport report = engine.push_apart(sheet.x, end, movable);
@@ -181,8 +183,7 @@ TEST(Engine, PushingApartSeparatesTheTrajectories) {
 TEST(Engine, PairsFailAnewOnlyUntilTheyWerePushedApart) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
-  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   std::vector<Vec3> corner = sheet.x, all = sheet.falling(0.06);
   corner[0] = all[0];
   const auto fails_anew = [&](std::span<const Vec3> end) {
@@ -206,8 +207,7 @@ TEST(Engine, ARestartedStepUsesTheContactsOfItsIntermediateState) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   std::vector<Vec3> bend = sheet.falling(0.06);
-  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   begin_step(engine, sheet.x, sheet.x);
   ASSERT_FALSE(engine.is_separated(sheet.x, bend));
   ASSERT_TRUE(engine.push_apart(sheet.x, bend, movable).separated);
@@ -246,8 +246,7 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   Sheet sheet(2, 0.005, 0.01);
   std::vector<Vec3> end = sheet.x;
   for (std::size_t v = end.size() - 4; v < end.size(); ++v) end[v].z() = -0.0001;
-  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  const std::vector<std::uint8_t> movable = sheet.movable();
 
   Engine engine = sheet.engine();
   begin_step(engine, sheet.x, end);
@@ -265,8 +264,7 @@ TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
   Sheet sheet(2, 0.005, 0.01);
   std::vector<Vec3> end = sheet.x;
   for (std::size_t v = end.size() - 4; v < end.size(); ++v) end[v].z() = -0.0001;
-  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   Engine engine = sheet.engine();
   begin_step(engine, sheet.x, end);
   ASSERT_FALSE(engine.is_separated(sheet.x, end));
@@ -280,8 +278,7 @@ TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
 // pairs may be exempted.
 TEST(Engine, APredictedEndExemptsNoPairs) {
   Sheet sheet(6, 0.005, 0.01);
-  std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
-  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});
+  const std::vector<std::uint8_t> movable = sheet.movable();
   std::vector<int> exempted;
   for (const bool separates_guess : {false, true}) {
     Engine engine = sheet.engine();

@@ -217,6 +217,22 @@ TEST(LaggingPin, IsPulledWithTheWeightOfItsClothUnderThePresentGravity) {
   EXPECT_NEAR(damping() / before, 2, 1e-12);
 }
 
+TEST(LaggingPin, IsPulledBackAtOneMetrePerSecond) {
+  const model::Model model = environment::Environment(support::scene_of_text(hanging(1, "", ""))).model;
+  const ClothSystem cloth(model);
+  YieldingPins pins(model, {0}, cloth.masses());
+  std::vector<Vec3> x = model.cloths[0].start;
+  constexpr double kStep = 0.01;
+  pins.begin_step(0, kStep, x);
+  const auto particle = static_cast<std::size_t>(pins.held().at(6).constraint.particle);
+  pins.release_particle(static_cast<Index>(particle), "'box' near (0, 0, 0) m");
+  for (const double distance : {0.005, 0.1}) {  // [m]; 0.1 m in a step would be 10 m/s
+    x[particle] = model.cloths[0].start[particle] - distance * Vec3::UnitZ();
+    pins.begin_step(0, kStep, x);
+    EXPECT_NEAR(pins.pulls().at(0).v.z(), std::min(distance / kStep, 1.0), 1e-12) << distance << " m";
+  }
+}
+
 // A pin that lags until its release has not reached its target.
 TEST(LaggingPin, IsNotSaidToBeAtItsTargetWhenItIsReleased) {
   for (const bool is_released : {false, true}) {
