@@ -122,6 +122,18 @@ TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
   }
 }
 
+// The smallest closed surface: nothing defines the angle between its two triangles.
+TEST(TriangleCurvature, OfTwoTrianglesWithTheSameCornersIsZero) {
+  const mesh::Mesh mesh{.topology = {.quads = {}, .triangles = {{0, 1, 2}, {0, 2, 1}}},
+                        .positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                        .uv = {}};
+  for (const CurvatureStencil& stencil : curvature_stencils(mesh::make_sheet_from_mesh(mesh))) {
+    EXPECT_EQ(stencil.vertices.size(), 3U);
+    // Tolerance: rounding errors of weights of about 1 / area = 2 1/m².
+    for (const Vec3& weight : stencil.weights) EXPECT_LT(weight.norm(), 1e-14);
+  }
+}
+
 TEST(TriangleBend, ConstantMomentLeavesNoForceInside) {
   for (const testing::Meshing& meshing : kMeshings) {
     const mesh::Mesh mesh = meshing.make(kSize, 16);

@@ -219,6 +219,7 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   for (std::size_t k : {side, (side + 1) % 3, (side + 2) % 3})
     patch.vertices.emplace_back(sheet_.triangles[at(triangle)][k], material(triangle, k));
   add_neighbour(patch, 0, side);
+  if (patch.vertices.size() < 4) return {};  // both triangles have the same corners
 
   const Point p = patch.vertices[0].second, q = patch.vertices[1].second;
   const Axes axes{0.5 * (p + q), q - p, patch.vertices[3].second - patch.vertices[2].second};
@@ -285,7 +286,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
       add(corners[k], -twist);
       const Vec3 bend = packed(outward * outward.transpose());
       const auto e = at(edges.of_triangle[t][k]);
-      if (edges.edges[e].triangles[1] < 0) border_normals.push_back(bend);
+      if (across[e].weights.empty()) border_normals.push_back(bend);
       const double sign = edges.edges[e].triangles[0] == static_cast<Index>(t) ? 1 : -1;
       depends_on_pins |= across[e].depends_on_pins;
       for (const auto& [vertex, slope] : across[e].weights) add(vertex, sign * slope * side.norm() / area * bend);

@@ -31,7 +31,8 @@ struct CurvatureStencil {
 /// too soft on crossed meshes and 6 % on Delaunay meshes, at every resolution).
 ///
 /// The slope across a border edge has the value of least energy, at which the moment about the border vanishes. As
-/// Poisson's ratio is 0, the curvature across the border is then 0.
+/// Poisson's ratio is 0, the curvature across the border is then 0. An edge whose two triangles have the same three
+/// corners counts as a border, because these corners do not define a slope.
 ///
 /// A triangle with three held corners is a clamp: the slope across its edges is that of the
 /// triangle's plane. The slope across other edges near a clamp is exact for linear functions, and
