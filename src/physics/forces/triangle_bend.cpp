@@ -70,15 +70,18 @@ TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendPara
   if (!pinned.empty()) pinned_.assign(pinned.begin() + first, pinned.begin() + first + std::ssize(sheet.rest));
   held_ = pinned_;
   rebuild_elements();
-  if (std::ranges::count(pinned_, 0) == std::ssize(pinned_)) sheet_ = {};
+  if (std::ranges::none_of(sheet_.triangles, [&](const auto& t) { return all_corners_marked(t, pinned_); }))
+    sheet_ = {};
 }
 
 void TriangleBend::set_held(std::span<const char> held) {
   if (sheet_.triangles.empty()) return;
   const std::span<const char> own = held.subspan(static_cast<std::size_t>(first_), held_.size());
-  if (std::ranges::equal(own, held_)) return;
+  const bool is_clamp_new = std::ranges::any_of(sheet_.triangles, [&](const mesh::Triangle& t) {
+    return all_corners_marked(t, own) != all_corners_marked(t, held_);
+  });
   held_.assign(own.begin(), own.end());
-  rebuild_elements();
+  if (is_clamp_new) rebuild_elements();
 }
 
 // Every call creates elements with the same particles in the same order, so the Jacobian keeps its sparsity pattern.

@@ -64,7 +64,7 @@ class TriangleBend final : public Force {
   Index first_;
   double rigidity_;
   BendDamping damping_;
-  mesh::Sheet sheet_;                // for the stencils, if any vertex is pinned; else empty
+  mesh::Sheet sheet_;                // for the stencils, if any triangle has three pinned corners; else empty
   std::vector<char> pinned_, held_;  // per vertex of the sheet; empty: none
   std::vector<Element> elements_;
   // Concatenated over all elements.

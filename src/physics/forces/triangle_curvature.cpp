@@ -59,11 +59,7 @@ class Slopes {
     }
   };
   static double cross(const Point& a, const Point& b) { return (std::conj(a) * b).imag(); }
-  /// Whether `marked` is set for all corners of a triangle.
-  bool all_corners_marked(std::span<const char> marked, Index triangle) const {
-    return !marked.empty() &&
-           std::ranges::all_of(sheet_.triangles[at(triangle)], [&](Index v) { return marked[at(v)] != 0; });
-  }
+  bool is_held(Index triangle) const { return all_corners_marked(sheet_.triangles[at(triangle)], held_); }
   Eigen::VectorXd fit_quadratic(Patch& patch, const Axes& axes) const;
   Eigen::VectorXd fit_clamped(const Patch& patch, const Axes& axes) const;
   Eigen::VectorXd fit_in_front_of_clamp(const Patch& patch, const Axes& axes, const std::array<Point, 2>& clamp) const;
@@ -159,7 +155,7 @@ Eigen::VectorXd Slopes::fit_quadratic(Patch& patch, const Axes& axes) const {
 Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const {
   // If a triangle at the edge is held, the slope is that of the linear function through its corners.
   for (std::size_t member : {0, 1}) {
-    if (!all_corners_marked(held_, patch.triangles[member].first)) continue;
+    if (!is_held(patch.triangles[member].first)) continue;
     const std::size_t apex = 2 + member;
     const Vec2 d = axes(patch.vertices[apex].second);
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(patch.vertices.size()));
@@ -171,13 +167,13 @@ Eigen::VectorXd Slopes::fit_clamped(const Patch& patch, const Axes& axes) const 
   double nearest = std::numeric_limits<double>::infinity();
   std::array<Point, 2> clamp;
   for (const auto& [triangle, corners] : patch.triangles) {
-    if (!all_corners_marked(held_, triangle)) continue;
+    if (!is_held(triangle)) continue;
     for (std::size_t side = 0; side < 3; ++side) {
       const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
       const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
       const Point from = corners[side], to = corners[(side + 1) % 3];
       const double distance = std::abs(0.5 * (from + to) - axes.middle);
-      if (next < 0 || all_corners_marked(held_, next) || distance >= nearest) continue;
+      if (next < 0 || is_held(next) || distance >= nearest) continue;
       nearest = distance;
       clamp = {from, to};
     }
@@ -196,7 +192,7 @@ Eigen::VectorXd Slopes::fit_in_front_of_clamp(const Patch& patch, const Axes& ax
   const auto count = static_cast<Eigen::Index>(patch.vertices.size());
   std::vector<char> in_clamp(patch.vertices.size());
   for (const auto& [triangle, corners] : patch.triangles) {
-    if (!all_corners_marked(held_, triangle)) continue;
+    if (!is_held(triangle)) continue;
     for (std::size_t k = 0; k < in_clamp.size(); ++k)
       for (Index corner : sheet_.triangles[at(triangle)]) in_clamp[k] |= patch.vertices[k].first == corner;
   }
@@ -225,8 +221,8 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   const Axes axes{0.5 * (p + q), q - p, patch.vertices[3].second - patch.vertices[2].second};
   Eigen::VectorXd best = fit_quadratic(patch, axes);
   Slope slope;
-  slope.depends_on_pins =
-      std::ranges::any_of(patch.triangles, [&](const auto& t) { return all_corners_marked(pinned_, t.first); });
+  slope.depends_on_pins = std::ranges::any_of(
+      patch.triangles, [&](const auto& t) { return all_corners_marked(sheet_.triangles[at(t.first)], pinned_); });
   if (slope.depends_on_pins)
     if (const Eigen::VectorXd of_clamp = fit_clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
 
@@ -271,8 +267,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
   for (std::size_t t = 0; t < stencils.size(); ++t) {
     const auto& m = sheet.material[t];
     const mesh::Triangle& corners = sheet.triangles[t];
-    const Vec2 a = m[1] - m[0], b = m[2] - m[0];
-    const double area = 0.5 * (a.x() * b.y() - a.y() * b.x());
+    const double area = mesh::rest_area(sheet, t);
     std::map<Index, Vec3> weights;
     const auto add = [&](Index vertex, const Vec3& weight) {
       weights.try_emplace(vertex, Vec3::Zero()).first->second += weight;

@@ -1,6 +1,7 @@
 // Second derivatives on triangle meshes, as weighted sums of vertex positions.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,11 @@ struct CurvatureStencil {
   std::vector<Index> vertices;  ///< the triangle's own corners come first
   std::vector<Vec3> weights;    ///< for s_uu, s_vv and s_uv [1/m²]
 };
+
+/// Whether all corners of a triangle are marked. `marked`: per vertex; empty: none is marked.
+inline bool all_corners_marked(const mesh::Triangle& triangle, std::span<const char> marked) {
+  return !marked.empty() && std::ranges::all_of(triangle, [&](Index v) { return marked[at(v)] != 0; });
+}
 
 /// Returns one stencil per triangle. In a triangle of area A with edges of length l, unit tangents t and outward
 /// in-plane normals n,
@@ -38,8 +44,8 @@ struct CurvatureStencil {
 /// triangle's plane. The slope across other edges near a clamp is exact for linear functions, and
 /// for the function that is 0 in the clamp and, in front of the clamp, the squared distance from
 /// it. `held`: per vertex, whether it is held now. `pinned`: per vertex, whether it may ever be
-/// held. `held` changes only the weights of a stencil, not its vertices. Empty `held`: no vertex is
-/// held. Empty `pinned`: no vertex may be held.
+/// held. `held` changes only the weights of a stencil, not its vertices, and only through the set of triangles with
+/// three held corners. Empty `held`: no vertex is held. Empty `pinned`: no vertex may be held.
 std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned = {},
                                                  std::span<const char> held = {});
 
