@@ -72,6 +72,27 @@ TEST(RigidFrame, RefusesWhatEnclosesNothing) {
   EXPECT_THROW(frame_of(open), std::invalid_argument);
 }
 
+// The moments of a flat body are rounding errors, so that its principal axes and inertia would be arbitrary.
+TEST(RigidFrame, RefusesABoxWithoutThicknessHoweverItIsTurned) {
+  for (int k = 1; k <= 20; ++k) {
+    Mesh flat = make_box(Vec3(1, 1, 1e-9), 0, 8);
+    const Mat3 turn = Eigen::AngleAxisd(0.1 * k, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    for (Vec3& x : flat.positions) x = turn * x;
+    EXPECT_THROW(frame_of(flat), std::invalid_argument) << k;
+  }
+}
+
+// The triangle that two tetrahedra share, inside of the surface around both. At each of its edges, three triangles
+// meet.
+TEST(RigidFrame, RefusesAWallInside) {
+  Mesh mesh;
+  mesh.positions = {{1, 0, 0}, {0, 1, 0}, {-1, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  mesh.topology.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
+  EXPECT_NO_THROW(frame_of(mesh));
+  mesh.topology.triangles.push_back({0, 1, 2});
+  EXPECT_THROW(frame_of(mesh), std::invalid_argument);
+}
+
 // One side of a cube faces inward. The signed volume of such a mesh is a third of that of the cube.
 TEST(RigidFrame, RefusesTrianglesThatFaceDifferentWays) {
   Mesh cube = make_box(Vec3(1, 1, 1), 0, 8);

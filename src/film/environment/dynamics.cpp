@@ -21,12 +21,12 @@ std::shared_ptr<const model::Dynamics> make_dynamics(const scene::Scene& scene, 
         model::Dynamics{std::move(frame), mass, obstacle.velocity, angular_velocity,
                         release > scene.start_time() ? release : no_release});
   } catch (const std::invalid_argument& expected) {
-    throw Error(
-        ExitCode::scene_invalid,
-        "{}:{}:{}: obstacle.{}: expected {} for a body with a mass, whose inertia is that of its interior; got "
-        "{} triangles that leave it open or face different ways; mend it in a modelling program, or use a shape",
-        scene.file.string(), obstacle.line, obstacle.column, obstacle.name, expected.what(),
-        mesh.topology.triangles.size());
+    throw Error(ExitCode::scene_invalid,
+                "{}:{}:{}: obstacle.{}: expected {} for a body with a mass, whose inertia is that of its interior; got "
+                "{} triangles that leave it open or flat, face different ways or divide its interior; mend it in a "
+                "modelling program, or use a shape",
+                scene.file.string(), obstacle.line, obstacle.column, obstacle.name, expected.what(),
+                mesh.topology.triangles.size());
   }
 }
 

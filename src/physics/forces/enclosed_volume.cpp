@@ -1,7 +1,6 @@
 #include "physics/forces/enclosed_volume.hpp"
 
 #include <array>
-#include <cmath>
 #include <map>
 
 #include "core/parallel.hpp"
@@ -9,14 +8,6 @@
 
 namespace weft::forces {
 namespace {
-
-// Volume up to which a surface counts as flat, relative to its area to the power 3/2. This ratio is
-// 0.09 for a sphere, and for a flat surface about 1e-16, because of rounding.
-constexpr double kFlatVolume = 1e-9;
-
-std::size_t index_of(Index i) {
-  return static_cast<std::size_t>(i);
-}
 
 // Loops of border edges. Each edge runs opposite to its direction in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
@@ -51,16 +42,16 @@ EnclosedVolume::EnclosedVolume(std::span<const mesh::Triangle> triangles, std::s
       closed.push_back({border[k], border[(k + 1) % border.size()], middle});
     ++middle;
   }
-  star_begin_.assign(index_of(middle) + 1, 0);
+  star_begin_.assign(at(middle) + 1, 0);
   for (const mesh::Triangle& t : closed)
-    for (Index corner : t) ++star_begin_[index_of(corner) + 1];
-  for (std::size_t i = 0; i < index_of(middle); ++i) star_begin_[i + 1] += star_begin_[i];
+    for (Index corner : t) ++star_begin_[at(corner) + 1];
+  for (std::size_t i = 0; i < at(middle); ++i) star_begin_[i + 1] += star_begin_[i];
   star_.resize(3 * closed.size());
   std::vector<Index> filled(star_begin_.begin(), star_begin_.end() - 1);
   for (const mesh::Triangle& t : closed)
-    for (std::size_t k = 0; k < 3; ++k) star_[index_of(filled[index_of(t[k])]++)] = {t[(k + 1) % 3], t[(k + 2) % 3]};
+    for (std::size_t k = 0; k < 3; ++k) star_[at(filled[at(t[k])]++)] = {t[(k + 1) % 3], t[(k + 2) % 3]};
 
-  flat_ = kFlatVolume * std::pow(mesh::surface_area(triangles, start), 1.5);
+  flat_ = mesh::largest_flat_volume(triangles, start);
   std::vector<Vec3> gradient(start.size());
   if (evaluate(start, gradient) < -flat_) sign_ = -1;
 }
@@ -68,18 +59,16 @@ EnclosedVolume::EnclosedVolume(std::span<const mesh::Triangle> triangles, std::s
 double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradient) const {
   std::vector<Vec3> middles(borders_.size(), Vec3::Zero());
   for (std::size_t b = 0; b < borders_.size(); ++b) {
-    for (Index i : borders_[b]) middles[b] += x[index_of(i)];
+    for (Index i : borders_[b]) middles[b] += x[at(i)];
     middles[b] /= static_cast<double>(borders_[b].size());
   }
-  const auto place = [&](Index i) -> const Vec3& {
-    return index_of(i) < x.size() ? x[index_of(i)] : middles[index_of(i) - x.size()];
-  };
+  const auto place = [&](Index i) -> const Vec3& { return at(i) < x.size() ? x[at(i)] : middles[at(i) - x.size()]; };
   // Positions relative to vertex i itself keep the products accurate far from the origin.
   const auto derivative = [&](std::size_t i) {
     const Vec3& own = place(static_cast<Index>(i));
     Vec3 sum = Vec3::Zero();
     for (Index s = star_begin_[i]; s < star_begin_[i + 1]; ++s) {
-      const auto& [j, k] = star_[index_of(s)];
+      const auto& [j, k] = star_[at(s)];
       sum += (place(j) - own).cross(place(k) - own);
     }
     return Vec3(sign_ / 6 * sum);
@@ -89,7 +78,7 @@ double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradien
   });
   for (std::size_t b = 0; b < borders_.size(); ++b) {
     const Vec3 of_each = derivative(x.size() + b) / static_cast<double>(borders_[b].size());
-    for (Index i : borders_[b]) gradient[index_of(i)] += of_each;
+    for (Index i : borders_[b]) gradient[at(i)] += of_each;
   }
   const Vec3 origin = x.empty() ? Vec3(Vec3::Zero()) : x.front();
   return parallel_sum(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {

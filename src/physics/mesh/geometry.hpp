@@ -16,6 +16,9 @@ inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
 /// Sum of the triangle areas [m²].
 double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
+/// Volume [m³] up to which a closed surface counts as flat: smaller volumes may be rounding errors.
+double largest_flat_volume(std::span<const Triangle> triangles, std::span<const Vec3> positions);
+
 /// Writes one unit normal per vertex, the normalised area-weighted mean over its triangles, into
 /// `normals`; zero if the area vectors of these triangles add up to zero. Allocates no memory.
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);

@@ -1,8 +1,12 @@
 #include "physics/mesh/rigid_frame.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
+
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::mesh {
 namespace {
@@ -25,11 +29,16 @@ void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, Moments& momen
   moments.second += volume / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
 }
 
-// Whether the surface has no border and its triangles are equally oriented. Otherwise, its Moments depend on the
-// origin.
-bool is_closed(std::span<const Triangle> triangles, std::size_t vertex_count) {
-  const TopologyReport report = inspect(triangles, vertex_count);
-  return report.degenerate.empty() && report.border.empty() && report.misoriented.empty();
+// Whether the triangles traverse each edge as often in one direction as in the other. Otherwise, the surface has a
+// border, different orientations or a wall inside, and its Moments depend on the origin.
+bool is_closed(std::span<const Triangle> triangles) {
+  std::map<std::array<Index, 2>, int> balance;  // per edge, lower vertex first
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index from = t[k], to = t[(k + 1) % 3];
+      balance[{std::min(from, to), std::max(from, to)}] += from < to ? 1 : -1;
+    }
+  return std::ranges::all_of(balance, [](const auto& edge) { return edge.second == 0; });
 }
 
 }  // namespace
@@ -39,7 +48,7 @@ Vec3 RigidFrame::corner(std::size_t k) {
 }
 
 RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
-  if (triangles.empty() || !is_closed(triangles, vertices.size()))
+  if (triangles.empty() || !is_closed(triangles))
     throw std::invalid_argument("a closed surface whose triangles face the same way");
   Moments moments;
   const Vec3 origin =
@@ -48,7 +57,8 @@ RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3
     add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin,
                     vertices[static_cast<std::size_t>(t[1])] - origin,
                     vertices[static_cast<std::size_t>(t[2])] - origin, moments);
-  if (!(std::abs(moments.volume) > 0)) throw std::invalid_argument("a surface around some volume");
+  if (!(std::abs(moments.volume) > largest_flat_volume(triangles, vertices)))
+    throw std::invalid_argument("a surface around some volume");
   const Vec3 middle = moments.first / moments.volume;
   const Mat3 covariance = moments.second / moments.volume - middle * middle.transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> principal(covariance);

@@ -25,7 +25,7 @@ class RigidFrame {
   static Vec3 corner(std::size_t k);
 
   /// The body is the volume inside a closed mesh. Throws std::invalid_argument if the mesh is empty, has a border, has
-  /// triangles with different orientations, or encloses no volume.
+  /// triangles with different orientations or walls inside, or encloses no volume.
   RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
   double volume() const { return volume_; }               ///< [m³]

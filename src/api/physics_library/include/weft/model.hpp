@@ -63,7 +63,7 @@ struct PoseKey {
 struct Body {
   std::string name{};
   Mesh mesh{};                  ///< in the coordinates of the body; must be closed, with triangles that
-                                ///< face the same way, if the body has a mass
+                                ///< face the same way and no walls inside, if the body has a mass
   Pose pose{};                  ///< pose at the start, if there are no keys
   std::vector<PoseKey> keys{};  ///< poses through which the body moves smoothly; must be empty if it has a mass
   double mass = 0;              ///< [kg]; if above 0, forces move the body; if 0, keys or Simulation::move() do
