@@ -10,17 +10,13 @@ namespace {
 // has no direction.
 constexpr double kMinPieceStretch = 1e-12;
 
-std::size_t slot(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 template <class Points>
 Vec3 vec_at(const Points& x, Index i) {
-  return solver::vec3_of(x[slot(i)]);
+  return solver::vec3_of(x[at(i)]);
 }
 
 double piece_length(std::span<const Vec3> x, const std::array<Index, 2>& ends) {
-  return (x[slot(ends[1])] - x[slot(ends[0])]).norm();
+  return (x[at(ends[1])] - x[at(ends[0])]).norm();
 }
 
 template <class Element, class Points>
@@ -41,10 +37,10 @@ RopeForce::RopeForce(std::span<const double> lengths, bool closed, Index first, 
     : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.bend_viscosity, 0}) {
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
-  for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[slot(p)], 0, 0, 0});
+  for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[at(p)], 0, 0, 0});
   if (parameters.bend > 0 || parameters.bend_viscosity > 0)
     for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
-      const double before = lengths[slot(p)], after = lengths[slot((p + 1) % pieces)];
+      const double before = lengths[at(p)], after = lengths[at((p + 1) % pieces)];
       bends_.push_back({{particle(p), particle(p + 1), particle(p + 2)}, before, after, 0.5 * (before + after)});
     }
   set_length_ratio(1);
@@ -61,7 +57,7 @@ void RopeForce::compute_weights(BendElement& bend) const {
 // the free side; see Bend.
 void RopeForce::set_held(std::span<const char> held) {
   for (BendElement& bend : bends_) {
-    const auto is_held = [&](std::size_t k) { return held[slot(bend.particles[k])] != 0; };
+    const auto is_held = [&](std::size_t k) { return held[at(bend.particles[k])] != 0; };
     bend.initial_length = 0.5 * (bend.before + bend.after);
     if (is_held(1) && is_held(0) != is_held(2)) bend.initial_length = 0.5 * (is_held(0) ? bend.after : bend.before);
     compute_weights(bend);
@@ -179,7 +175,7 @@ void RopeForce::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, d
   const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
-    const Vec3 d = x[slot(b)] - x[slot(a)], w = v[slot(b)] - v[slot(a)];
+    const Vec3 d = x[at(b)] - x[at(a)], w = v[at(b)] - v[at(a)];
     const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
     const Vec3 n = d / length;
     const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
@@ -221,7 +217,7 @@ double RopeForce::max_strain(std::span<const Vec3> x) const {
 void RopeForce::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
   for (const Piece& piece : pieces_) {
     const auto strain = static_cast<float>(std::abs(piece_length(x, piece.particles) / piece.rest - 1));
-    for (const Index p : piece.particles) strains[slot(p - first_)] = std::max(strains[slot(p - first_)], strain);
+    for (const Index p : piece.particles) strains[at(p - first_)] = std::max(strains[at(p - first_)], strain);
   }
 }
 
