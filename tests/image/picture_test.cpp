@@ -121,6 +121,18 @@ TEST(PictureFile, JpegHasTheFullRangeWhateverItsColorsAreStoredLike) {
   }
 }
 
+// Phones append a video to a photo. A thumbnail is a JPEG in a segment before the pixels, with an end marker.
+TEST(PictureFile, JpegMayHaveOtherDataBehindItsEndButMustHaveIt) {
+  const std::string jpeg = jpeg_bytes(64, 32, AV_PIX_FMT_YUVJ420P);
+  EXPECT_EQ(decode_picture(jpeg + std::string(5000, 'v')).rgba, decode_picture(jpeg).rgba);
+  // A segment states its length without its marker, 24 bytes.
+  const std::string thumbnail = std::string("\xff\xe1\x00\x18", 4) + std::string(18, 't') + "\xff\xd8\xff\xd9";
+  std::string photo = jpeg;
+  photo.insert(2, thumbnail);
+  EXPECT_EQ(decode_picture(photo).rgba, decode_picture(jpeg).rgba);
+  EXPECT_EQ(complaint(photo.substr(0, photo.size() / 2)), "the file ends too early");
+}
+
 TEST(PictureFile, WhatIsBrokenOrSomethingElseIsRefusedWithTheReason) {
   const std::string png = png_bytes(20, 20, PNG_FORMAT_RGBA, std::vector<std::uint8_t>(1600, 77));
   const std::string jpeg = jpeg_bytes(64, 32, AV_PIX_FMT_YUVJ420P);

@@ -121,11 +121,20 @@ Picture to_picture(const AVFrame& frame) {
   return picture;
 }
 
+/// Whether a JPEG file has an end marker after its pixels. Skips the segments before the pixels, because a thumbnail in
+/// them has an end marker, too. After the marker, the file may have other data, such as the video that phones append.
+bool has_end_of_jpeg(std::string_view bytes) {
+  const auto at = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0U; };
+  constexpr unsigned kMarker = 0xff, kPixels = 0xda;
+  std::size_t segment = 2;  // after the start marker
+  while (at(segment) == kMarker && at(segment + 1) != kPixels)
+    segment += at(segment + 1) == kMarker ? 1U : 2U + 256U * at(segment + 2) + at(segment + 3);
+  return bytes.find("\xff\xd9", segment) != std::string_view::npos;
+}
+
 Picture decode_jpeg(std::string_view bytes) {
-  // Searches for the end marker, because libav fills the missing part of a truncated file with grey.
-  if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 1024)).rfind("\xff\xd9") ==
-      std::string_view::npos)
-    fail("the file ends too early");
+  // libav fills the missing part of a truncated file with grey.
+  if (!has_end_of_jpeg(bytes)) fail("the file ends too early");
   return to_picture(*decode_frame(bytes, AV_CODEC_ID_MJPEG));
 }
 
