@@ -1,4 +1,4 @@
-// Appearance of bodies: metal, a clear coat, and pictures on floors.
+// Appearance of bodies: metal, a clear coat, heat of ropes, and pictures on floors.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -131,6 +131,28 @@ TEST(Look, OfOneBodyLeavesThatOfOthers) {
   // Tolerance [levels]: a metal ball scatters no light onto the other ball.
   EXPECT_LE(most, 2);
   EXPECT_NE(plain.rgb, metal.rgb);
+}
+
+// Ropes have heat, which also determines the scale if Stage::heat_max is 0. Tolerance [levels]: solid surfaces have no
+// threads and fibres.
+TEST(Heat, IsShownByRopesAsByCloth) {
+  for (const float share : {0.0f, 0.5f, 1.0f}) {
+    std::vector<image::Image> images;
+    for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::rope}) {
+      frame::FrameSnapshot snapshot;
+      auto stage = std::make_shared<frame::Stage>(*stage_without_sky());
+      stage->heat = frame::Stage::Heat::speed;
+      stage->heat_max = 2;
+      snapshot.stage = stage;
+      add_square(snapshot, kind, Vec3::Zero(), -Vec3::UnitY(), Vec3::UnitX(), 0.5);
+      snapshot.states[0].heat.assign(4, 2 * share);
+      snapshot.cameras = {camera_at(Vec3(0, -2, 0), Vec3::Zero(), 35)};
+      snapshot.lights = {sun(Vec3::UnitY())};
+      images.push_back(draw(snapshot));
+    }
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(images[1].pixel(kSide / 2, kSide / 2)[c], images[0].pixel(kSide / 2, kSide / 2)[c], 5) << share;
+  }
 }
 
 /// A floor of 10 m, seen from above, with a picture of two by two fields on each square metre. The front of the scene

@@ -164,7 +164,7 @@ struct Light {
 
 /// Settings of all pictures of a run: environment, exposure and display of heat.
 struct Stage {
-  /// The quantity that a colour scale shows on cloth, in place of the colours of the cloth.
+  /// The quantity that a colour scale shows on cloth and ropes, in place of their colours.
   enum class Heat { none, strain, speed };
   enum class Look { studio, stage, daylight, clay, wire, strain };
   Vec3 up{0, 0, 1};

@@ -238,7 +238,7 @@ ReflectedLight Renderer::Impl::reflected_light(const Plan& plan, double heat) {
   const std::vector<Shading::Material> looks = materials(plan);
   for (std::size_t i = 0; i < looks.size(); ++i)
     surfaces.push_back(reflecting_surface(passes->surfaces[i], looks[i].appearance, plan.lighting.style.plain,
-                                          heat > 0 && looks[i].cloth, colors));  // heat colours reflect no light
+                                          heat > 0 && looks[i].has_heat, colors));  // heat colours reflect no light
   Eigen::Vector3f floor_color = Eigen::Vector3f::Zero();
   if (plan.floor)
     floor_color = (plan.lighting.style.floor_tint * image::linear_from_srgb(plan.floor->look.color)).cast<float>();

@@ -99,8 +99,9 @@ bool is_skin(const frame::Surface& surface) {
 }
 
 Shading::Material material_of(const frame::Surface& surface, bool plain) {
-  return {plain ? clay(surface.appearance) : surface.appearance, surface.kind == frame::ObjectKind::cloth,
-          opacity_of(surface), !plain && is_skin(surface)};
+  const bool cloth = surface.kind == frame::ObjectKind::cloth;
+  return {plain ? clay(surface.appearance) : surface.appearance, cloth, opacity_of(surface), !plain && is_skin(surface),
+          cloth || surface.kind == frame::ObjectKind::rope};
 }
 
 Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
@@ -138,16 +139,15 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
     : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
                     !features.reflecting && !features.steep) {
   const LightSet& lights = features.lights;
-  const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");
-  std::vector<const char*> of_cloth = paint;
+  std::vector<const char*> of_solid(features.painted ? 1 : 0, "PAINTED");
+  if (features.heat) of_solid.push_back("HEAT");
+  std::vector<const char*> of_cloth = of_solid;
   if (features.glossy) of_cloth.push_back("GLOSSY");
-  if (features.heat) of_cloth.push_back("HEAT");
   of_cloth.push_back("CLOTH");
   if (features.trimmed) of_cloth.push_back("TRIMMED");
   if (features.sheer) of_cloth.push_back("SHEER");
   cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(lights, of_cloth));
   if (features.sheer) return;
-  std::vector<const char*> of_solid = paint;
   if (features.metal) of_solid.push_back("METAL");
   if (features.skin && features.painted) of_solid.push_back("SKIN");
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(lights, of_solid));
@@ -183,10 +183,10 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
     return !material.cloth && (material.appearance.metal > 0 || material.appearance.coat > 0);
   });
   skin_ = std::ranges::any_of(materials, &Material::skin);
-  for (const auto& [look, cloth, opacity, skin] : materials) {
+  for (const auto& [look, cloth, opacity, skin, has_heat] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
-    texels.push_back(Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness,
+    texels.push_back(Eigen::Vector4d(has_heat ? heat_scale : 0, look.hem, look.thickness,
                                      look.thickness > kTopstitchedThickness ? kTopstitchDistance : 0)
                          .cast<float>());
     const frame::Finish& finish = look.finish;

@@ -26,8 +26,9 @@ class Shading {
   struct Material {
     frame::Appearance appearance;
     bool cloth = false;
-    double opacity = 1;  ///< at normal incidence
-    bool skin = false;   ///< shaded as skin where no picture covers its colour
+    double opacity = 1;     ///< at normal incidence
+    bool skin = false;      ///< shaded as skin where no picture covers its colour
+    bool has_heat = false;  ///< shows the colours of heat, as cloth and ropes do
   };
   /// Features that select shader variants.
   struct Features {
@@ -43,7 +44,7 @@ class Shading {
     bool glossy = false;      ///< some cloth has shiny threads; set by draw(), as are the next three
     bool metal = false;       ///< some surface other than cloth is metal or has a clear coat
     bool skin = false;        ///< some surface has skin
-    bool heat = false;        ///< the colour scale of heat replaces the colours of cloth
+    bool heat = false;        ///< the colour scale of heat replaces the colours of cloth and ropes
     auto operator<=>(const Features&) const = default;
   };
   /// Sets the floor whose picture is drawn, and `tint`, a factor on the colour of that picture.

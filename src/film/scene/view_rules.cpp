@@ -303,7 +303,8 @@ const Table& render_rules() {
                   "fraction of all light that comes from the surroundings, not from lights; above 1 counts as 1")
           .by_default("as `look` defines it")
           .not_simulated()
-          .choice("heat", &Render::heat, {"none", "strain", "speed"}, "quantity that the colors of cloth show")
+          .choice("heat", &Render::heat, {"none", "strain", "speed"},
+                  "quantity that the colors of cloth and ropes show")
           .number(
               "heat_max", &Render::heat_max, within(0, 1e6), "",
               "value of the hottest color: strain (0.1 is 10 %), or speed in m/s; 0: the largest value of each frame")
