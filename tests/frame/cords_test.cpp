@@ -85,6 +85,28 @@ TEST(Cords, HaveTheSameFacesInAllFrames) {
   EXPECT_EQ(first.states[0].positions.size(), second.states[0].positions.size());
 }
 
+// A rope hangs from its start, or lies along an axis, and swings by some micrometres.
+TEST(Cords, DoNotTurnAboutTheirAxisWhenTheySwing) {
+  for (const Vec3& along : {Vec3(0, 0, -1), Vec3(0, 0, 1), Vec3(-1, 0, 0), Vec3(0, 1, 0)}) {
+    FrameSnapshot chain = rope_of(24, false, 3.2 * kDiameter);
+    Cords cords;
+    const Vec3 aside = along.unitOrthogonal(), across = along.cross(aside);
+    std::vector<Vec3> first;
+    for (const double turn : {0.0, 0.1, 0.5, 0.8}) {
+      const double angle = 2 * std::numbers::pi * turn;
+      const Vec3 swing = 1e-6 * (std::cos(angle) * aside + std::sin(angle) * across);
+      for (int i = 0; i < 24; ++i)
+        chain.states[0].positions[static_cast<std::size_t>(i)] = i * (kPiece * along + swing);
+      const std::vector<Vec3> positions = cords.sweep(chain).states[0].positions;
+      if (first.empty()) first = positions;
+      double farthest = 0;
+      for (std::size_t v = 0; v < positions.size(); ++v)
+        farthest = std::max(farthest, (positions[v] - first[v]).norm());
+      EXPECT_LT(farthest, 1e-4) << along.transpose() << ", " << turn;
+    }
+  }
+}
+
 TEST(Cords, LeaveSnapshotsWithoutRopesAsTheyAre) {
   FrameSnapshot snapshot;
   snapshot.surfaces.push_back(std::make_shared<Surface>());

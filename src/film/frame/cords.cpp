@@ -24,8 +24,12 @@ bool is_closed(const Surface& chain) {
   return chain.triangles.back()[1] == chain.triangles.front()[0];
 }
 
-Vec3 any_normal(const Vec3& tangent) {
-  return Quat::FromTwoVectors(Vec3::UnitZ(), tangent) * Vec3::UnitX();
+// Normal of the first ring. It changes continuously with the tangent, except where the tangent is opposite to
+// `reference`: there, the strands would turn by twice the azimuth of the smallest swing. Ropes that hang or lie along
+// an axis are far from this direction.
+Vec3 first_normal(const Vec3& tangent) {
+  const Vec3 reference = Vec3(2, 3, -1).normalized();
+  return Quat::FromTwoVectors(reference, tangent) * reference.unitOrthogonal();
 }
 
 // Transports a normal from the ring at `x` to the ring at `next_x` without rotation about the tangent (W. Wang, B.
@@ -124,7 +128,7 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
     const Vec3 chord = middle(r + 1) - middle(r - 1);
     tangents.push_back(chord.squaredNorm() > 0 ? Vec3(chord.normalized()) : r > 0 ? tangents.back() : Vec3::UnitZ());
   }
-  std::vector<Vec3> normals{any_normal(tangents[0])};
+  std::vector<Vec3> normals{first_normal(tangents[0])};
   for (std::size_t r = 1; r < middles.size(); ++r)
     normals.push_back(transport_normal(normals[r - 1], middles[r - 1], tangents[r - 1], middles[r], tangents[r]));
 
