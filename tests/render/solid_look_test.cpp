@@ -133,6 +133,23 @@ TEST(Look, OfOneBodyLeavesThatOfOthers) {
   EXPECT_NE(plain.rgb, metal.rgb);
 }
 
+// A body of two tetrahedra, of which the right one, which is smaller, is inside out. Both show their lit near sides.
+TEST(Shells, ThatAreInsideOutAreSeenFromOutside) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  const std::vector<Vec3> corners{{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}, {0, 0, 1}};
+  std::vector<Vec3> positions;
+  for (const Vec3& corner : corners) positions.emplace_back(corner - Vec3(2, 0, 0));
+  for (const Vec3& corner : corners) positions.emplace_back(0.8 * corner + Vec3(2, 0, 0));
+  add_surface(snapshot, frame::ObjectKind::obstacle, positions,
+              {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {6, 4, 5}, {5, 4, 7}, {6, 5, 7}, {4, 6, 7}});
+  snapshot.cameras = {camera_at(Vec3(0, -12, 0), Vec3::Zero(), 40)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  const image::Image image = draw(snapshot);
+  EXPECT_GT(image.pixel(41, 86)[1], 100);
+  EXPECT_NEAR(image.pixel(118, 85)[1], image.pixel(41, 86)[1], 3);
+}
+
 // Ropes have heat, which also determines the scale if Stage::heat_max is 0. Tolerance [levels]: solid surfaces have no
 // threads and fibres.
 TEST(Heat, IsShownByRopesAsByCloth) {

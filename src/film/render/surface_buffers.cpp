@@ -1,8 +1,10 @@
 #include "film/render/surface_buffers.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
+#include "core/disjoint_sets.hpp"
 #include "core/error.hpp"
 #include "film/render/seen.hpp"
 
@@ -14,6 +16,18 @@ bool has_holes(const frame::Surface& surface) {
   const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
   return cuts(surface.appearance) ||
          std::ranges::any_of(surface.parts, [&](const frame::SurfacePart& part) { return cuts(part.appearance); });
+}
+
+/// The shell of each triangle, named by its smallest vertex. A shell is a connected part of a surface.
+std::vector<Index> shells_of(std::span<const Triangle> triangles, std::size_t vertex_count) {
+  DisjointSets sets(vertex_count);
+  for (const auto& [a, b, c] : triangles) {
+    sets.join(a, b);
+    sets.join(b, c);
+  }
+  std::vector<Index> shells;
+  for (const Triangle& triangle : triangles) shells.push_back(sets.root(triangle[0]));
+  return shells;
 }
 
 }  // namespace
@@ -75,19 +89,25 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
   state_ = state;
   if (!has_corner_map_ || vertex_count_ != state.positions.size()) {
     corners_ = CornerMap(surface_->triangles, state.positions.size());
+    if (closed_) shells_ = shells_of(surface_->triangles, state.positions.size());
     vertex_count_ = state.positions.size();
     has_corner_map_ = true;
   }
   if (closed_) {
-    double volume_times_6 = 0;  // negative if the fronts of the triangles face inwards
     bounds_.setEmpty();
     for (const Vec3& position : state.positions) bounds_.extend(position);
-    for (const auto& [a, b, c] : surface_->triangles) {
+    // Six times the volume of each shell, by its smallest vertex [m³]; negative if its triangles face inwards.
+    std::vector<double> volumes(state.positions.size(), 0);
+    for (std::size_t t = 0; t < shells_.size(); ++t) {
+      const auto& [a, b, c] = surface_->triangles[t];
       const Vec3 from_center = state.positions[a] - bounds_.center();
-      volume_times_6 +=
+      volumes[shells_[t]] +=
           from_center.dot((state.positions[b] - state.positions[a]).cross(state.positions[c] - state.positions[a]));
     }
-    faces_outward_ = volume_times_6 > 0;
+    // The volume of a flat shell is a rounding error.
+    constexpr double kMaxFlatVolume = 1e-9;  // relative to the cube of the diagonal of `bounds_`
+    const auto [least, most] = std::ranges::minmax(volumes);
+    faces_outward_ = most > 0 && least > -kMaxFlatVolume * std::pow(bounds_.diagonal().norm(), 3);
   }
   mesh_ = make_shaded_mesh(surface_->triangles, corners_, state.positions, surface_->crease_angle);
   if (painted_) painted_ = make_painted_mesh(*surface_, mesh_);

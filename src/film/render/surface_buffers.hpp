@@ -40,8 +40,8 @@ class SurfaceBuffers {
   void draw(const PaintedRange& range) const;
   /// The painted mesh; null if nothing is painted.
   const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }
-  /// Whether only front faces are visible from `eye`. True if the surface is closed, is not cloth, has no holes, its
-  /// normals point outwards, and the eye is outside its bounding box.
+  /// Whether only front faces are visible from `eye`. True if the surface is closed, is not cloth, has no holes, the
+  /// normals of all its shells point outwards, and the eye is outside its bounding box.
   bool shows_only_fronts(const Vec3& eye) const { return faces_outward_ && !bounds_.contains(eye); }
   /// World positions of the drawn vertices [m], and the drawn triangles.
   std::span<const Vec3> positions() const { return positions_; }
@@ -72,6 +72,7 @@ class SurfaceBuffers {
   std::size_t vertex_count_ = 0;
   bool has_corner_map_ = false, closed_ = false, faces_outward_ = false;
   Box3 bounds_;
+  std::vector<Index> shells_;  // by triangle, if the surface is closed
   VertexArray array_;
   Buffer vertices_, triangles_, places_, trim_distances_, trim_places_;
   ShadedMesh mesh_;
