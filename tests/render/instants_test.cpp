@@ -68,6 +68,39 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   EXPECT_LT(linear_at(image, 136), 0.02);
 }
 
+// While the shutter is open, the camera moves over a striped floor, by the width of a tile with two stripes: 46 pixels.
+TEST(Instants, FloorIsBlurredByTheMotionOfTheCamera) {
+  frame::FrameSnapshot now;
+  now.stage = stage_without_sky();
+  frame::Surface& floor = add_floor(now);
+  floor.paint_uv = {{Vec2(0, 0), Vec2(10, 0), Vec2(10, 10)}, {Vec2(0, 0), Vec2(10, 10), Vec2(0, 10)}};
+  frame::Texture stripes{64, 64, {}};
+  for (int i = 0; i < 64 * 64; ++i) {
+    const std::uint8_t level = i % 64 < 32 ? 20 : 200;
+    stripes.rgba.insert(stripes.rgba.end(), {level, level, level, 255});
+  }
+  floor.appearance.paint.texture = std::make_shared<const frame::Texture>(std::move(stripes));
+  now.cameras = {camera_at(Vec3(0, 0, 3), Vec3::Zero(), 40)};
+  now.lights = {sun(-Vec3::UnitZ())};
+  frame::FrameSnapshot before = now;
+  before.cameras = {camera_at(Vec3(-1, 0, 3), Vec3(-1, 0, 0), 40)};
+  Settings settings = small_settings();
+  settings.motion_blur = 360;
+  Renderer renderer(settings);
+  const auto contrast = [&](const frame::FrameSnapshot* earlier) {
+    const image::Image image = renderer.draw(now, earlier);
+    int darkest = 255, brightest = 0;
+    for (int x = 60; x < 140; ++x) {
+      darkest = std::min<int>(darkest, image.pixel(x, kInstantHeight / 2)[1]);
+      brightest = std::max<int>(brightest, image.pixel(x, kInstantHeight / 2)[1]);
+    }
+    return brightest - darkest;
+  };
+  EXPECT_GT(contrast(nullptr), 150);
+  EXPECT_LT(contrast(&before), 20);
+  EXPECT_GT(contrast(&now), 150);
+}
+
 TEST(Instants, NothingIsBlurredUnasked) {
   const frame::FrameSnapshot now = square_at(0.1), before = square_at(-0.1);
   Renderer renderer(small_settings());

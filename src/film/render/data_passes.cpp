@@ -111,9 +111,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
-      // Ray through the centre of the pixel; its component along the view axis is 1 m.
-      const Vec3 along = view.axes.forward + (2 * here.x() / width_ - 1) * view.tan_half_width * view.axes.right +
-                         (2 * here.y() / height_ - 1) * view.tan_half_height * view.axes.up;
+      const Vec3 along = pixel_ray(view, here.x(), here.y(), width_, height_);
       const Hit& hit = hits_[static_cast<std::size_t>(y) * width_ + x];
       PixelValues shown;
       Vec3 position_before;

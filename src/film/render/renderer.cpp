@@ -394,7 +394,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   if (smears) {
     const frame::FrameSnapshot opening = snapshot_at(shutter / 360);
     const double motion = longest_motion(opening, view_at(shutter / 360, opening), snapshot, view_at(0, snapshot),
-                                         settings.width, settings.height);
+                                         find_floor(snapshot, up_of(snapshot)), settings.width, settings.height);
     count = std::clamp(static_cast<int>(std::ceil(motion / kMaxMotionPerPicture)), 1, quality.instants);
   }
   std::vector<Eigen::Vector3f> sums(static_cast<std::size_t>(settings.width) * settings.height,
@@ -417,7 +417,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
     }
     const double half = 0.5 * shutter / 360 / count;
     const frame::FrameSnapshot from = snapshot_at(instant.back + half), to = snapshot_at(instant.back - half);
-    smear.add(passes->surfaces, plan.view, from, view_at(instant.back + half, from), to,
+    smear.add(passes->surfaces, plan.floor, plan.view, from, view_at(instant.back + half, from), to,
               view_at(instant.back - half, to), sharp, sums);
   }
   for (std::size_t i = 0; i < sums.size(); ++i) rgba[i] = encode(Eigen::Vector3f(sums[i] / static_cast<float>(count)));

@@ -35,11 +35,38 @@ const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, cons
   return nullptr;
 }
 
+/// Motion of the point of the floor that the picture of `view` shows at (x, y), between two other views; all is 0 if no
+/// floor is visible there.
+PixelMotion floor_motion(const Floor& floor, const View& view, double x, double y, const View& from_view,
+                         const View& to_view, int width, int height) {
+  const Vec3 ray = pixel_ray(view, x, y, width, height);
+  const double height_of_eye = floor.normal.dot(view.eye - floor.point), fall = -floor.normal.dot(ray);
+  if (height_of_eye <= 0 || fall <= 0) return {};
+  const Vec3 point = view.eye + height_of_eye / fall * ray;
+  const Eigen::Vector3f start = to_pixels(from_view, point, width, height),
+                        end = to_pixels(to_view, point, width, height);
+  if (start.z() <= 0 || end.z() <= 0) return {};
+  return {(end - start).head<2>(), static_cast<float>(fall / height_of_eye)};
+}
+
+/// Largest motion [pixels] of 9 x 9 points of the floor, among them those at the corners of the picture.
+float longest_floor_motion(const Floor& floor, const View& view, const View& from_view, const View& to_view, int width,
+                           int height) {
+  constexpr int kSteps = 8;
+  float longest = 0;
+  for (int i = 0; i <= kSteps; ++i)
+    for (int j = 0; j <= kSteps; ++j)
+      longest = std::max(longest, floor_motion(floor, view, 1.0 * width * i / kSteps, 1.0 * height * j / kSteps,
+                                               from_view, to_view, width, height)
+                                      .motion.norm());
+  return longest;
+}
+
 }  // namespace
 
 double longest_motion(const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
-                      const View& to_view, int width, int height) {
-  float longest = 0;
+                      const View& to_view, const std::optional<Floor>& floor, int width, int height) {
+  float longest = floor ? longest_floor_motion(*floor, to_view, from_view, to_view, width, height) : 0;
   for (std::size_t i = 0; i < to.surfaces.size(); ++i) {
     if (!is_subject(*to.surfaces[i])) continue;
     const auto& ends = to.states[i].positions;
@@ -89,6 +116,23 @@ void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& v
                     });
     }
   }
+}
+
+/// Adds the motion of the floor where it is visible. The motion is that of the camera.
+void Smear::find_floor_motions(const Floor& floor, const View& view, const View& from_view, const View& to_view) {
+  if (longest_floor_motion(floor, view, from_view, to_view, width_, height_) < kMinMotion) return;
+  drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < width_; ++x) {
+        PixelMotion& pixel = motions_[static_cast<std::size_t>(y) * width_ + x];
+        PixelMotion found = floor_motion(floor, view, x + 0.5, y + 0.5, from_view, to_view, width_, height_);
+        const float length = found.motion.norm();
+        if (length < kMinMotion || found.nearness <= pixel.nearness) continue;
+        if (length > kMaxMotion) found.motion *= kMaxMotion / length;
+        pixel = found;
+      }
+    }
+  });
 }
 
 /// Stores for each tile the longest motion in this tile and its eight neighbours. If this motion is
@@ -142,10 +186,11 @@ Eigen::Vector3f Smear::smear_pixel(int x, int y, const Eigen::Vector2f& motion,
   return sum / static_cast<float>(taps);
 }
 
-void Smear::add(std::span<const SurfaceBuffers> surfaces, const View& view, const frame::FrameSnapshot& from,
-                const View& from_view, const frame::FrameSnapshot& to, const View& to_view,
-                std::span<const Eigen::Vector3f> sharp, std::vector<Eigen::Vector3f>& sum) {
+void Smear::add(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
+                const frame::FrameSnapshot& from, const View& from_view, const frame::FrameSnapshot& to,
+                const View& to_view, std::span<const Eigen::Vector3f> sharp, std::vector<Eigen::Vector3f>& sum) {
   find_motions(surfaces, view, from, from_view, to, to_view);
+  if (floor) find_floor_motions(*floor, view, from_view, to_view);
   dilate_motions();
   const int columns = (width_ + kTile - 1) / kTile;
   drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {

@@ -38,6 +38,13 @@ struct View {
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
                const std::optional<Floor>& floor);
 
+/// Direction of the ray through the place (x, y) of a picture of width x height pixels, counted from the lower left
+/// corner. Its component along the view axis is 1 m.
+inline Vec3 pixel_ray(const View& view, double x, double y, int width, int height) {
+  return view.axes.forward + (2 * x / width - 1) * view.tan_half_width * view.axes.right +
+         (2 * y / height - 1) * view.tan_half_height * view.axes.up;
+}
+
 /// A rectangle of pixels; x and y are counted from the lower left corner of the picture.
 struct PixelArea {
   int x = 0, y = 0, width = 0, height = 0;
