@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/render/depth_raster.hpp"
+#include "film/render/framing.hpp"
 #include "film/render/seen.hpp"
 
 namespace weft::render {
@@ -42,14 +43,6 @@ struct PixelValues {
 };
 
 }  // namespace
-
-const std::vector<Vec3>* EarlierFrame::positions(const frame::Surface& surface, std::size_t count) const {
-  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
-    const auto& found = snapshot.states[i].positions;
-    if (snapshot.surfaces[i]->name == surface.name && found.size() == count) return &found;
-  }
-  return nullptr;
-}
 
 void DataPasses::find_hits(std::span<const SurfaceBuffers> surfaces, const View& view) {
   hits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), {});
@@ -87,10 +80,7 @@ std::optional<Vec2> DataPasses::to_picture(const View& view, const Vec3& positio
 void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
                       const std::optional<EarlierFrame>& before, image::Layers& layers) {
   find_hits(surfaces, view);
-  const auto add = [&](const char* name) {
-    layers.channels.push_back({name, std::vector<float>(hits_.size())});
-    return layers.channels.size() - 1;
-  };
+  const auto add = [&](const char* name) { layers.channels.push_back({name, std::vector<float>(hits_.size())}); };
   const bool heated = std::ranges::any_of(surfaces, [](const SurfaceBuffers& s) { return !s.state().heat.empty(); });
   const std::size_t first = layers.channels.size();
   for (const char* name : {"depth.Z", "position.X", "position.Y", "position.Z", "normal.X", "normal.Y", "normal.Z",
@@ -107,7 +97,8 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
 
   std::vector<const std::vector<Vec3>*> positions_before;
   for (const SurfaceBuffers& drawn : surfaces)
-    positions_before.push_back(before ? before->positions(drawn.surface(), drawn.state().positions.size()) : nullptr);
+    positions_before.push_back(
+        before ? find_positions(before->snapshot, drawn.surface(), drawn.state().positions.size()) : nullptr);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);

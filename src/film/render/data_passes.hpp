@@ -15,10 +15,6 @@ namespace weft::render {
 struct EarlierFrame {
   const frame::FrameSnapshot& snapshot;
   View view;
-
-  /// Earlier positions of the surface with the name of `surface`. Null if `snapshot` has no surface
-  /// with this name and `count` vertices.
-  const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
 };
 
 /// Finds the nearest triangle of each pixel by rasterising on the CPU in single precision. Then
@@ -35,7 +31,7 @@ class DataPasses {
   ///   surface, 0 if it has no parts
   /// - uv.U, .V: Surface::uv (weft, warp) [m]; 0 if the surface has none
   /// - motion.X, .Y: displacement of the point since `before` [pixels, right and up], including the
-  ///   motion of the camera; a surface for which `before`->positions() is null counts as unmoved; 0
+  ///   motion of the camera; a surface that find_positions() does not find in `before` counts as unmoved; 0
   ///   if `before` is absent, for the backdrop, and for points that were behind the camera
   /// - heat.V: strain or speed (Stage::heat), only if a surface has heat values
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,

@@ -99,4 +99,12 @@ const frame::Camera* find_camera(const frame::FrameSnapshot& snapshot, const std
               known.empty() ? "it names none: leave the option out" : known, name);
 }
 
+const std::vector<Vec3>* find_positions(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
+                                        std::size_t count) {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
+    if (snapshot.surfaces[i]->name == surface.name && snapshot.states[i].positions.size() == count)
+      return &snapshot.states[i].positions;
+  return nullptr;
+}
+
 }  // namespace weft::render

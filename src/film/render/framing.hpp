@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "film/frame/frame_snapshot.hpp"
 #include "film/render/transforms.hpp"
@@ -81,5 +82,10 @@ class FrustumFit {
 /// The camera called `name`. If `name` is empty: the first camera, or null if the snapshot has none. Throws
 /// Error(usage) with the names of all cameras if none matches.
 const frame::Camera* find_camera(const frame::FrameSnapshot& snapshot, const std::string& name);
+
+/// Positions of the surface with the name of `surface` in a snapshot [m]; null if the snapshot has no surface with this
+/// name and `count` vertices.
+const std::vector<Vec3>* find_positions(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
+                                        std::size_t count);
 
 }  // namespace weft::render

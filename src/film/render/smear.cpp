@@ -26,15 +26,6 @@ Eigen::Vector3f to_pixels(const View& view, const Vec3& position, int width, int
       .cast<float>();
 }
 
-/// Positions of `surface` in a snapshot; null if the snapshot has no surface of this name with `count` vertices.
-const std::vector<Vec3>* positions_of(const frame::FrameSnapshot& snapshot, const frame::Surface& surface,
-                                      std::size_t count) {
-  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)
-    if (snapshot.surfaces[i]->name == surface.name && snapshot.states[i].positions.size() == count)
-      return &snapshot.states[i].positions;
-  return nullptr;
-}
-
 /// Motion of the point of the floor that the picture of `view` shows at (x, y), between two other views; all is 0 if no
 /// floor is visible there.
 PixelMotion floor_motion(const Floor& floor, const View& view, double x, double y, const View& from_view,
@@ -70,7 +61,7 @@ double longest_motion(const frame::FrameSnapshot& from, const View& from_view, c
   for (std::size_t i = 0; i < to.surfaces.size(); ++i) {
     if (!is_subject(*to.surfaces[i])) continue;
     const auto& ends = to.states[i].positions;
-    const std::vector<Vec3>* starts = positions_of(from, *to.surfaces[i], ends.size());
+    const std::vector<Vec3>* starts = find_positions(from, *to.surfaces[i], ends.size());
     if (starts == nullptr) continue;
     for (std::size_t v = 0; v < ends.size(); ++v) {
       const Eigen::Vector3f start = to_pixels(from_view, (*starts)[v], width, height),
@@ -90,8 +81,8 @@ void Smear::find_motions(std::span<const SurfaceBuffers> surfaces, const View& v
   std::vector<Eigen::Vector2f> motions;
   for (const SurfaceBuffers& drawn : surfaces) {
     const std::size_t count = drawn.state().positions.size();
-    const std::vector<Vec3>*starts = positions_of(from, drawn.surface(), count),
-          *ends = positions_of(to, drawn.surface(), count);
+    const std::vector<Vec3>*starts = find_positions(from, drawn.surface(), count),
+          *ends = find_positions(to, drawn.surface(), count);
     const auto& mesh = drawn.mesh();
     places.clear();
     motions.clear();
