@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -16,11 +17,13 @@ class BvhChannels : public support::TestFolder {
   /// The channel of a joint of a motion. `channels`: of the hips and of the spine; `frames`: their values at two times.
   character::Channel channel(const std::string& joint, const std::vector<std::string>& channels,
                              const std::vector<std::string>& frames) {
-    support::write_bytes(folder_ / "motion.bvh",
-                         "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS " + channels[0] +
-                             "\nJOINT Spine\n{\nOFFSET 0 5 1\nCHANNELS " + channels[1] +
-                             "\nEnd Site\n{\nOFFSET 0 5 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + frames[0] +
-                             "\n" + frames[1] + "\n");
+    std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS " + channels[0] +
+                       "\nJOINT Spine\n{\nOFFSET 0 5 1\nCHANNELS " + channels[1] +
+                       "\nEnd Site\n{\nOFFSET 0 5 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + frames[0] + "\n" +
+                       frames[1] + "\n";
+    if (hierarchy_on_one_line_)
+      std::replace(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("\nMOTION")), '\n', ' ');
+    support::write_bytes(folder_ / "motion.bvh", text);
     const LoadedCharacter motion =
         load_motion(folder_ / "motion.bvh", {{}, scene::FileUp::as_file, scene::UpAxis::y}, "here");
     const auto& nodes = motion.character.nodes;
@@ -30,6 +33,8 @@ class BvhChannels : public support::TestFolder {
     ADD_FAILURE() << "no channel of " << joint;
     return {};
   }
+
+  bool hierarchy_on_one_line_ = false;
 };
 
 TEST_F(BvhChannels, OfPositionsAloneMoveTheRoot) {
@@ -50,6 +55,15 @@ TEST_F(BvhChannels, OfOneCoordinateMoveAJointAlongIt) {
     const Quat turned = channel(joint, channels, frames).rotation.values.at(1);
     EXPECT_LT(turned.angularDistance(Quat(Eigen::AngleAxisd(90 * kDegree, Vec3::UnitX()))), 1e-6) << joint;
   }
+}
+
+// In BVH, any white space separates words.
+TEST_F(BvhChannels, MayBeInOneLineWithTheirJoints) {
+  const std::vector<std::string> channels{"4 Xposition Zposition Yrotation Xrotation", "2 Yposition Xrotation"},
+      frames{"1 3 0 0 6 0", "4 6 0 90 7 90"};
+  hierarchy_on_one_line_ = true;
+  EXPECT_EQ(channel("Hips", channels, frames).position.values, (std::vector<Vec3>{{1, 0, 3}, {4, 0, 6}}));
+  EXPECT_EQ(channel("Spine", channels, frames).position.values, (std::vector<Vec3>{{0, 6, 1}, {0, 7, 1}}));
 }
 
 }  // namespace

@@ -44,17 +44,39 @@ std::string_view without_comment(std::string_view line) {
   return std::ranges::count(kWithNumbers, keyword) > 0 ? line.substr(0, line.find('#')) : line;
 }
 
-// A line of the hierarchy of BVH, in the usual spelling.
-std::string usual_bvh_line(std::string_view line) {
+// The statements in a line of the hierarchy of BVH: a brace, or a keyword with what follows it. Most files have one
+// statement in each line.
+std::vector<std::string> statements_of(std::string_view line) {
+  constexpr std::array<std::string_view, 7> kFirstWords{"hierarchy", "root", "joint", "offset",
+                                                        "channels",  "end",  "motion"};
+  std::string spaced;  // braces are words of their own
+  for (const char c : line) spaced += c == '{' || c == '}' ? std::string{' ', c, ' '} : std::string(1, c);
+  std::vector<std::string> statements;
+  bool in_name = false;  // names of joints may contain spaces and keywords
+  for (const std::string_view word : words_of(spaced)) {
+    const std::string lower = lower_case(word);
+    const bool is_brace = word == "{" || word == "}";
+    if (is_brace || statements.empty() || (!in_name && std::ranges::count(kFirstWords, std::string_view(lower)) > 0)) {
+      statements.emplace_back(word);
+      in_name = lower == "root" || lower == "joint";
+    } else {
+      statements.back() += ' ' + std::string(word);
+    }
+  }
+  return statements;
+}
+
+// A statement of the hierarchy of BVH, in the usual spelling.
+std::string usual_bvh_statement(std::string_view statement) {
   constexpr std::array<std::string_view, 14> kUsual{"HIERARCHY", "ROOT",      "JOINT",     "OFFSET",    "CHANNELS",
                                                     "End",       "Site",      "MOTION",    "Xposition", "Yposition",
                                                     "Zposition", "Xrotation", "Yrotation", "Zrotation"};
   std::string text;
-  const std::vector<std::string_view> words = words_of(line);
+  const std::vector<std::string_view> words = words_of(statement);
   const std::string first = words.empty() ? "" : lower_case(words[0]);
   const bool names_joint = first == "root" || first == "joint";
   for (std::size_t w = 0; w < words.size(); ++w) {
-    const bool in_name = names_joint && w > 0 && words[w] != "{";
+    const bool in_name = names_joint && w > 0;
     std::string word(words[w]);
     for (const std::string_view usual : kUsual)
       if (!in_name && lower_case(word) == lower_case(usual)) word = usual;
@@ -132,12 +154,17 @@ std::string usual_bvh(std::string_view text) {
   std::size_t joint = 0, value = 0;  // of the next value in the frames
   return change_lines(text, [&](std::string_view line) -> std::string {
     if (part == Part::hierarchy) {
-      std::string usual = usual_bvh_line(line);
-      if (usual == "MOTION") part = Part::header;
-      const std::vector<std::string_view> words = words_of(usual);
-      if (usual.starts_with("OFFSET"))
-        for (std::size_t k = 1; k < std::min(words.size(), offset.size() + 1); ++k) offset[k - 1] = words[k];
-      return usual.starts_with("CHANNELS") ? with_all_channels(usual, offset, joints) : usual;
+      std::string completed;
+      for (const std::string& statement : statements_of(line)) {
+        std::string usual = usual_bvh_statement(statement);
+        if (usual == "MOTION") part = Part::header;
+        const std::vector<std::string_view> words = words_of(usual);
+        if (usual.starts_with("OFFSET"))
+          for (std::size_t k = 1; k < std::min(words.size(), offset.size() + 1); ++k) offset[k - 1] = words[k];
+        if (usual.starts_with("CHANNELS")) usual = with_all_channels(usual, offset, joints);
+        completed += (completed.empty() ? "" : " ") + usual;
+      }
+      return completed;
     }
     if (part == Part::frames) {
       if (std::ranges::all_of(joints, [](const BvhJoint& each) { return each.added.empty(); }))
