@@ -17,8 +17,8 @@ class BvhChannels : public support::TestFolder {
   /// The channel of a joint of a motion. `channels`: of the hips and of the spine; `frames`: their values at two times.
   character::Channel channel(const std::string& joint, const std::vector<std::string>& channels,
                              const std::vector<std::string>& frames) {
-    std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS " + channels[0] +
-                       "\nJOINT Spine\n{\nOFFSET 0 5 1\nCHANNELS " + channels[1] +
+    std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS " + channels[0] + "\nJOINT " + child_ +
+                       "\n{\nOFFSET 0 5 1\nCHANNELS " + channels[1] +
                        "\nEnd Site\n{\nOFFSET 0 5 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + frames[0] + "\n" +
                        frames[1] + "\n";
     if (hierarchy_on_one_line_)
@@ -35,6 +35,7 @@ class BvhChannels : public support::TestFolder {
   }
 
   bool hierarchy_on_one_line_ = false;
+  std::string child_ = "Spine";  // name of the second joint
 };
 
 TEST_F(BvhChannels, OfPositionsAloneMoveTheRoot) {
@@ -55,6 +56,14 @@ TEST_F(BvhChannels, OfOneCoordinateMoveAJointAlongIt) {
     const Quat turned = channel(joint, channels, frames).rotation.values.at(1);
     EXPECT_LT(turned.angularDistance(Quat(Eigen::AngleAxisd(90 * kDegree, Vec3::UnitX()))), 1e-6) << joint;
   }
+}
+
+TEST_F(BvhChannels, OfJointsWithEqualNamesMoveEach) {
+  child_ = "Hips";
+  const std::vector<std::string> channels{"3 Zrotation Yrotation Xrotation", "3 Zrotation Yrotation Xrotation"},
+      frames{"0 0 0 0 0 0", "0 0 0 0 0 90"};
+  const Quat turned = channel("Hips_", channels, frames).rotation.values.at(1);
+  EXPECT_LT(turned.angularDistance(Quat(Eigen::AngleAxisd(90 * kDegree, Vec3::UnitX()))), 1e-6);
 }
 
 // In BVH, any white space separates words.

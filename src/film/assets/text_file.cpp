@@ -5,6 +5,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstddef>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -151,6 +152,7 @@ std::string usual_bvh(std::string_view text) {
   enum class Part { hierarchy, header, frames } part = Part::hierarchy;
   std::array<std::string, 3> offset{"0", "0", "0"};
   std::vector<BvhJoint> joints;
+  std::set<std::string> names;       // of joints
   std::size_t joint = 0, value = 0;  // of the next value in the frames
   return change_lines(text, [&](std::string_view line) -> std::string {
     if (part == Part::hierarchy) {
@@ -158,6 +160,9 @@ std::string usual_bvh(std::string_view text) {
       for (const std::string& statement : statements_of(line)) {
         std::string usual = usual_bvh_statement(statement);
         if (usual == "MOTION") part = Part::header;
+        // assimp finds the joint of a channel by its name.
+        if (usual.starts_with("ROOT ") || usual.starts_with("JOINT "))
+          while (!names.insert(usual.substr(usual.find(' '))).second) usual += '_';
         const std::vector<std::string_view> words = words_of(usual);
         if (usual.starts_with("OFFSET"))
           for (std::size_t k = 1; k < std::min(words.size(), offset.size() + 1); ++k) offset[k - 1] = words[k];

@@ -13,8 +13,9 @@ namespace weft::assets {
 /// - OBJ: it has no comments in lines of numbers (vertices, UVs, normals, faces, line elements,
 ///   points).
 /// - BVH: keywords and names of channels have their usual spelling, such as "Frame Time:" for
-///   "frametime:", and spaces in names of joints are underscores. Joints with some channels of positions have all six
-///   channels: assimp skips the positions of others.
+///   "frametime:", and spaces in names of joints are underscores. Of joints with equal names, the first keeps its name,
+///   and others end with underscores. Joints with some channels of positions have all six channels: assimp skips the
+///   positions of others.
 std::optional<std::string> readable_text(const std::filesystem::path& file);
 
 }  // namespace weft::assets
