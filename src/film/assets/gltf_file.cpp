@@ -13,7 +13,6 @@
 #include <exception>
 #include <limits>
 #include <map>
-#include <set>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -23,6 +22,7 @@
 #include "core/input_file.hpp"
 #include "core/json.hpp"
 #include "core/nesting.hpp"
+#include "film/assets/gltf_nodes.hpp"
 #include "film/assets/import.hpp"
 #include "film/assets/source.hpp"
 
@@ -68,11 +68,6 @@ Gltf split(const std::filesystem::path& file) {
   return gltf;
 }
 
-/// The value of a key; null if there is none.
-const Json& part_of(const Json& json, const char* key) {
-  static const Json kNone;
-  return json.is_object() && json.contains(key) ? json[key] : kNone;
-}
 /// The entry of a list; throws if there is none.
 const Json& entry_of(const Json& gltf, const char* list, int number) {
   const Json& entries = part_of(gltf, list);
@@ -156,7 +151,7 @@ class Rewriter {
 
   /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
-    const bool renamed = name_nodes_apart();
+    const bool renamed = name_nodes_apart(gltf_);
     add_bind_matrices();
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
@@ -173,50 +168,6 @@ class Rewriter {
   }
 
  private:
-  static Json& list_of(Json& json, const char* key) {
-    static Json nothing;
-    return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
-  }
-
-  /// Gives each joint of a skin and each animated node without a camera a name that no other of them has, and no other
-  /// node without a mesh or camera: assimp names the node of a bone or of a channel by its name alone. Of several nodes
-  /// with one name, the first keeps it, joints before others; names of cameras and of meshes that do not move stay, as
-  /// scenes state them. Returns whether a name has changed.
-  bool name_nodes_apart() {
-    Json& nodes = list_of(gltf_, "nodes");
-    if (!nodes.is_array()) return false;
-    std::vector<std::size_t> order;  // joints first, then animated nodes
-    std::vector<bool> is_referred(nodes.size(), false);
-    const auto add = [&](const Json& node, bool may_hold_camera) {
-      const std::size_t n = node.is_number_unsigned() ? node.get<std::size_t>() : nodes.size();
-      if (n >= nodes.size() || is_referred[n] || (!may_hold_camera && nodes[n].contains("camera"))) return;
-      is_referred[n] = true;
-      order.push_back(n);
-    };
-    for (const Json& skin : part_of(gltf_, "skins"))
-      for (const Json& joint : part_of(skin, "joints")) add(joint, true);
-    const std::size_t joints = order.size();
-    for (const Json& animation : part_of(gltf_, "animations"))
-      for (const Json& channel : part_of(animation, "channels"))
-        add(part_of(part_of(channel, "target"), "node"), false);
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-      if (!is_referred[n] && !nodes[n].contains("mesh") && !nodes[n].contains("camera")) order.push_back(n);
-    std::set<std::string> names;  // of joints and animated nodes
-    bool changed = false;
-    for (std::size_t k = 0; k < order.size(); ++k) {
-      const std::size_t n = order[k];
-      if (!nodes[n].is_object()) continue;
-      std::string name = value_or<std::string>(nodes[n], "name", "");
-      if (name.empty() && k >= joints) continue;  // assimp gives it a name of its own
-      if (is_referred[n] ? !name.empty() && names.insert(name).second : !names.contains(name)) continue;
-      name = fmt::format("{}_{}", name.empty() ? "joint" : name, n);
-      while (!names.insert(name).second) name += '_';
-      nodes[n]["name"] = name;
-      changed = true;
-    }
-    return changed;
-  }
-
   /// Adds the matrices of skins that have none: the identity for each joint, which glTF prescribes then. assimp would
   /// read a null pointer.
   void add_bind_matrices() {
