@@ -109,6 +109,15 @@ TEST_F(CameraFile, StandsStillWithoutAnAnimation) {
   EXPECT_LT((camera.positions[0] - Vec3(0, 1, 3)).norm(), kSingle);
 }
 
+TEST_F(CameraFile, MayBeAtSeveralNodes) {
+  for (const char* list : {"animations", "accessors", "bufferViews", "buffers"}) document_.erase(list);
+  const nlohmann::json other = {{"name", "other"}, {"camera", 0}, {"translation", {7, 0, 0}}};
+  document_["nodes"].push_back(other);
+  document_["nodes"][0]["children"].push_back(2);
+  EXPECT_LT((load("eye").positions.at(0) - Vec3(0, 1, 3)).norm(), kSingle);
+  EXPECT_LT((load("other").positions.at(0) - Vec3(7, 0, 0)).norm(), kSingle);
+}
+
 TEST_F(CameraFile, TellsByHowMuchItIsTilted) {
   document_["nodes"][1]["rotation"] = {0, 0, std::sin(0.05), std::cos(0.05)};
   EXPECT_NEAR(load().roll, 0.1 * 180 / std::numbers::pi, 1e-4);

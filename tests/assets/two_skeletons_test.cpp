@@ -35,6 +35,12 @@ TEST_F(TwoSkeletons, MayHaveJointsWithoutNames) {
   EXPECT_NEAR(width_of(gltf), 6, 1e-6);
 }
 
+TEST_F(TwoSkeletons, MayShareAMesh) {
+  std::string gltf = gltf_of_two_skeletons();
+  gltf.replace(gltf.find(R"("mesh":1)"), 8, R"("mesh":0)");
+  EXPECT_NEAR(width_of(gltf), 6, 1e-6);
+}
+
 // The matrix of a joint is then the identity, as it is in the file.
 TEST_F(TwoSkeletons, MayLackBindMatrices) {
   std::string gltf = gltf_of_two_skeletons();

@@ -151,7 +151,8 @@ class Rewriter {
 
   /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
-    const bool renamed = name_nodes_apart(gltf_);
+    bool changed = copy_shared_parts(gltf_);
+    changed |= name_nodes_apart(gltf_);
     add_bind_matrices();
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
@@ -163,7 +164,7 @@ class Rewriter {
         make_linear(sampler);
         use_floats(sampler);
       }
-    if (!renamed && new_accessors_.empty() && floats_.empty()) return std::nullopt;
+    if (!changed && new_accessors_.empty() && floats_.empty()) return std::nullopt;
     return to_binary();
   }
 
@@ -350,9 +351,9 @@ class Rewriter {
       data += bytes;
       data.resize((data.size() + 3) / 4 * 4, '\0');
     };
-    for (std::size_t b = 0; b < gltf_["buffers"].size(); ++b) append(data_of(static_cast<int>(b)));
+    for (std::size_t b = 0; b < part_of(gltf_, "buffers").size(); ++b) append(data_of(static_cast<int>(b)));
     append(floats_);
-    for (Json& view : gltf_["bufferViews"]) {
+    for (Json& view : list_of(gltf_, "bufferViews")) {
       const int buffer = value_or<int>(view, "buffer", 0);
       if (buffer >= 0) entry_of(gltf_, "buffers", buffer);  // checks the number
       const std::size_t start = buffer < 0 ? starts.back() : starts[static_cast<std::size_t>(buffer)];

@@ -8,13 +8,14 @@
 namespace weft::assets {
 
 /// Returns bytes of a binary glTF file that assimp reads in place of `file`, or nullopt if assimp
-/// can read the file itself. Five kinds of files need this:
+/// can read the file itself. These kinds of files need this:
 /// - Files with integers in attributes or in channels of animations: the integers become floats.
 ///   Otherwise assimp would copy the bytes of the integers into its floats.
 /// - Files with animations in steps or splines: their keys become such with linear changes between
 ///   them, as assimp reads all keys.
 /// - Files with skins in which joints have no names or equal names, as those of two skeletons: they get names of their
 ///   own. assimp finds the node of a bone by its name.
+/// - Files in which nodes share a mesh but not its skin, or share a camera: each gets a copy.
 /// - Files with skins without bind matrices, which assimp does not expect: they get those that glTF prescribes.
 /// - Files in binary layout with another ending than .glb, such as .vrm, which assimp would read as
 ///   OBJ: their bytes are returned unchanged.

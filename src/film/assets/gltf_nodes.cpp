@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/json.hpp"
@@ -24,6 +27,34 @@ const Json& part_of(const Json& json, const char* key) {
 Json& list_of(Json& json, const char* key) {
   static Json nothing;
   return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
+}
+
+bool copy_shared_parts(Json& gltf) {
+  bool copied = false;
+  Json& nodes = list_of(gltf, "nodes");
+  for (const bool is_camera : {false, true}) {
+    const char* key = is_camera ? "camera" : "mesh";
+    Json& parts = list_of(gltf, is_camera ? "cameras" : "meshes");
+    if (!parts.is_array()) continue;
+    const std::size_t count = parts.size();
+    std::map<std::array<int, 2>, std::size_t> own;  // by part and its user: the skin of a mesh, the node of a camera
+    std::set<int> used;
+    int number = -1;
+    for (Json& node : nodes) {
+      ++number;
+      const int part = value_or<int>(node, key, -1), user = is_camera ? number : value_or<int>(node, "skin", -1);
+      if (part < 0 || std::cmp_greater_equal(part, count)) continue;
+      const auto [found, is_new] = own.emplace(std::array{part, user}, static_cast<std::size_t>(part));
+      if (is_new && !used.insert(part).second) {
+        found->second = parts.size();
+        Json copy = parts[static_cast<std::size_t>(part)];
+        parts.push_back(std::move(copy));
+        copied = true;
+      }
+      node[key] = found->second;
+    }
+  }
+  return copied;
 }
 
 bool name_nodes_apart(Json& gltf) {

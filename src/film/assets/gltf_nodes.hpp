@@ -1,4 +1,4 @@
-// Changes the nodes of glTF files so that assimp 5.2 assigns joints and channels to the right ones.
+// Changes the nodes of glTF files so that assimp 5.2 assigns joints, skins, cameras and channels to the right ones.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -10,6 +10,11 @@ const nlohmann::json& part_of(const nlohmann::json& json, const char* key);
 
 /// The value of a key, to be changed; a null of no use if there is none.
 nlohmann::json& list_of(nlohmann::json& json, const char* key);
+
+/// Copies a mesh for each skin with which nodes use it, and a camera for each node that uses it: assimp stores the
+/// bones of a skin in the mesh, and the name of the node in the camera, so that only the last node would count. Returns
+/// whether anything was copied.
+bool copy_shared_parts(nlohmann::json& gltf);
 
 /// Gives each joint of a skin and each animated node without a camera a name that no other of them has, and no other
 /// node without a mesh or camera: assimp names the node of a bone or of a channel by its name alone. Of several nodes
