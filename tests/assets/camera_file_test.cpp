@@ -118,6 +118,15 @@ TEST_F(CameraFile, MayBeAtSeveralNodes) {
   EXPECT_LT((load("other").positions.at(0) - Vec3(7, 0, 0)).norm(), kSingle);
 }
 
+// Programs often give a camera and the node above it one name.
+TEST_F(CameraFile, MayHaveTheNameOfItsRig) {
+  const LoadedCamera expected = load();
+  document_["nodes"][0]["name"] = "eye";
+  EXPECT_EQ(load().positions, expected.positions);
+  document_.erase("animations");
+  EXPECT_LT((load("eye").positions.at(0) - Vec3(0, 1, 3)).norm(), kSingle);
+}
+
 TEST_F(CameraFile, TellsByHowMuchItIsTilted) {
   document_["nodes"][1]["rotation"] = {0, 0, std::sin(0.05), std::cos(0.05)};
   EXPECT_NEAR(load().roll, 0.1 * 180 / std::numbers::pi, 1e-4);

@@ -75,7 +75,9 @@ bool name_nodes_apart(Json& gltf) {
     for (const Json& channel : part_of(animation, "channels")) add(part_of(part_of(channel, "target"), "node"), false);
   for (std::size_t n = 0; n < nodes.size(); ++n)
     if (!is_referred[n] && !nodes[n].contains("mesh") && !nodes[n].contains("camera")) order.push_back(n);
-  std::set<std::string> names;  // of joints and animated nodes
+  std::set<std::string> names;  // of joints, animated nodes and cameras
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (!is_referred[n] && nodes[n].contains("camera")) names.insert(value_or<std::string>(nodes[n], "name", ""));
   bool changed = false;
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::size_t n = order[k];

@@ -16,10 +16,10 @@ nlohmann::json& list_of(nlohmann::json& json, const char* key);
 /// whether anything was copied.
 bool copy_shared_parts(nlohmann::json& gltf);
 
-/// Gives each joint of a skin and each animated node without a camera a name that no other of them has, and no other
-/// node without a mesh or camera: assimp names the node of a bone or of a channel by its name alone. Of several nodes
-/// with one name, the first keeps it, joints before others; names of cameras and of meshes that do not move stay, as
-/// scenes state them. Returns whether a name has changed.
+/// Gives each joint of a skin and each animated node without a camera a name that no other of them has, nor a camera,
+/// nor any other node without a mesh: assimp names the node of a bone, a channel or a camera by its name alone. Of
+/// several nodes with one name, the first keeps it: cameras, then joints, then animated nodes. Names of cameras and of
+/// meshes that do not move stay, as scenes state them. Returns whether a name has changed.
 bool name_nodes_apart(nlohmann::json& gltf);
 
 }  // namespace weft::assets
