@@ -118,6 +118,16 @@ TEST_F(CameraFile, MayBeAtSeveralNodes) {
   EXPECT_LT((load("other").positions.at(0) - Vec3(7, 0, 0)).norm(), kSingle);
 }
 
+// A channel of KHR_animation_pointer has no node. Here, its values are also longer than translations.
+TEST_F(CameraFile, DoesNotMoveWithAnimatedColors) {
+  const LoadedCamera expected = load();
+  const nlohmann::json pointer = {{"pointer", "/materials/0/emissiveFactor"}},
+                       target = {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", pointer}}}};
+  document_["extensionsUsed"] = nlohmann::json::array({"KHR_animation_pointer"});
+  document_["animations"][0]["channels"].push_back(nlohmann::json{{"sampler", 0}, {"target", target}});
+  EXPECT_EQ(load().positions, expected.positions);
+}
+
 // Programs often give a camera and the node above it one name.
 TEST_F(CameraFile, MayHaveTheNameOfItsRig) {
   const LoadedCamera expected = load();

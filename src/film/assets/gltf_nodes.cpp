@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -27,6 +29,25 @@ const Json& part_of(const Json& json, const char* key) {
 Json& list_of(Json& json, const char* key) {
   static Json nothing;
   return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
+}
+
+bool remove_other_channels(Json& gltf) {
+  constexpr std::array<std::string_view, 4> kPaths{"translation", "rotation", "scale", "weights"};
+  bool removed = false;
+  for (Json& animation : list_of(gltf, "animations")) {
+    Json& channels = list_of(animation, "channels");
+    Json kept = Json::array();
+    for (const Json& channel : channels) {
+      const Json& target = part_of(channel, "target");
+      const std::string path = value_or<std::string>(target, "path", "");
+      if (part_of(target, "node").is_number_unsigned() && std::ranges::count(kPaths, std::string_view(path)) > 0)
+        kept.push_back(channel);
+    }
+    if (kept.size() == channels.size()) continue;
+    channels = std::move(kept);
+    removed = true;
+  }
+  return removed;
 }
 
 bool copy_shared_parts(Json& gltf) {

@@ -11,6 +11,10 @@ const nlohmann::json& part_of(const nlohmann::json& json, const char* key);
 /// The value of a key, to be changed; a null of no use if there is none.
 nlohmann::json& list_of(nlohmann::json& json, const char* key);
 
+/// Removes channels of animations that change no node, such as colors of materials (KHR_animation_pointer): assimp
+/// takes them for translations of the first node, or refuses the file. Returns whether there were any.
+bool remove_other_channels(nlohmann::json& gltf);
+
 /// Copies a mesh for each skin with which nodes use it, and a camera for each node that uses it: assimp stores the
 /// bones of a skin in the mesh, and the name of the node in the camera, so that only the last node would count. Returns
 /// whether anything was copied.
