@@ -333,6 +333,13 @@ TEST_F(MeshFiles, OfGltfHaveTheWeightsOfTheirMorphTargets) {
   EXPECT_NEAR(volume(load("morph.gltf", gltf)), 1.5 * 1.5 * 1.5 / 6, 1e-6);
 }
 
+TEST_F(MeshFiles, OfGltfHaveTheirAttributesInAnyOrder) {
+  std::string gltf = gltf_tetrahedron();
+  const std::string position = "\"POSITION\":0";
+  gltf.replace(gltf.find(position), position.size(), R"("TEXCOORD_1":0,"TEXCOORD_0":0,"POSITION":0)");
+  EXPECT_NEAR(volume(load("order.gltf", gltf)), 1.0 / 6, 1e-15);
+}
+
 TEST_F(MeshFiles, OfGltfHaveTheirDataInFilesWithPercentEncodedNames) {
   const std::string binary = glb_tetrahedron();
   std::string gltf = gltf_tetrahedron();

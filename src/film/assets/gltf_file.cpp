@@ -157,6 +157,7 @@ class Rewriter {
     add_bind_matrices();
     for (Json& mesh : list_of(gltf_, "meshes"))
       for (Json& primitive : list_of(mesh, "primitives")) {
+        changed |= has_second_sets(part_of(primitive, "attributes"));
         use_floats(list_of(primitive, "attributes"));
         for (Json& target : list_of(primitive, "targets")) use_floats(target);
       }
@@ -170,6 +171,13 @@ class Rewriter {
   }
 
  private:
+  /// Whether attributes have second sets. assimp refuses such a set if it is before the first one in the text; the new
+  /// text is sorted.
+  static bool has_second_sets(const Json& attributes) {
+    constexpr std::array kSecondSets{"TEXCOORD_1", "COLOR_1", "JOINTS_1", "WEIGHTS_1"};
+    return std::ranges::any_of(kSecondSets, [&](const char* name) { return attributes.contains(name); });
+  }
+
   /// Adds the matrices of skins that have none: the identity for each joint, which glTF prescribes then. assimp would
   /// read a null pointer.
   void add_bind_matrices() {

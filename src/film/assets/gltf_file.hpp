@@ -11,6 +11,7 @@ namespace weft::assets {
 /// can read the file itself. These kinds of files need this:
 /// - Files with integers in attributes or in channels of animations: the integers become floats.
 ///   Otherwise assimp would copy the bytes of the integers into its floats.
+/// - Files with second sets of attributes, such as texture coordinates: the sets become sorted.
 /// - Files with animations in steps or splines: their keys become such with linear changes between
 ///   them, as assimp reads all keys.
 /// - Files with skins in which joints have no names or equal names, as those of two skeletons: they get names of their
