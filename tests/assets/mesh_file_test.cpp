@@ -151,6 +151,12 @@ TEST_F(MeshFiles, OfAsciiPlyAreReadAndScaled) {
   EXPECT_NEAR(volume(loaded), 1000.0 / 6, 1e-12 * 1000);
 }
 
+TEST_F(MeshFiles, OfPlyMayHaveCommentsBeforeTheirFormat) {
+  std::string ply = ply_tetrahedron();
+  ply.insert(ply.find("format"), "comment written by hand\nobj_info none\n");
+  EXPECT_NEAR(volume(load("t.ply", ply)), 1.0 / 6, 1e-15);
+}
+
 TEST_F(MeshFiles, OfStlAreWatertightThoughTheirTrianglesShareNothing) {
   const LoadedMesh loaded = load("t.stl", stl_tetrahedron());
   EXPECT_EQ(loaded.mesh.positions.size(), 4u);

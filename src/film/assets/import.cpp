@@ -52,17 +52,23 @@ class RegularFiles : public Assimp::DefaultIOSystem {
   }
 };
 
-/// If the first byte of the data of a binary PLY file is that of a line feed, assimp 5.2 reads it as a part of the
-/// header. Returns the bytes of such a file with an additional line feed before the data; nullopt for all other files.
-std::optional<std::string> ply_with_spare_line_feed(const std::filesystem::path& file) {
+/// The bytes that assimp 5.2 shall read instead of a PLY file; nullopt if it can read the file itself. Two kinds of
+/// files need this:
+/// - If comments are before the line `format`, assimp refuses the file. They are removed.
+/// - If the first byte of binary data is that of a line feed, assimp reads it as a part of the header. It becomes two.
+std::optional<std::string> readable_ply(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
-  constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
-  std::string bytes = read_start(file, kHeaderBytes);
-  const std::size_t data = bytes.find(kEnd) + kEnd.size();
-  const bool ply = bytes.starts_with("ply\n") && bytes.find(kBinary) < data;
-  if (!ply || data < kEnd.size() || data >= bytes.size() || bytes[data] != '\n') return std::nullopt;
-  bytes = read_bytes(file);
-  bytes.insert(data, 1, '\n');
+  constexpr std::string_view kFormat = "\nformat ", kBinary = "\nformat binary_", kEnd = "\nend_header\n";
+  const std::string start = read_start(file, kHeaderBytes);
+  if (!start.starts_with("ply\n") && !start.starts_with("ply\r\n")) return std::nullopt;
+  const std::size_t line_end = start.find('\n'), format = start.find(kFormat), data = start.find(kEnd) + kEnd.size();
+  const bool has_comments = format != std::string::npos && format > line_end;
+  const bool loses_byte =
+      start.find(kBinary) < data && data >= kEnd.size() && data < start.size() && start[data] == '\n';
+  if (!has_comments && !loses_byte) return std::nullopt;
+  std::string bytes = read_bytes(file);
+  if (loses_byte) bytes.insert(data, 1, '\n');
+  if (has_comments) bytes.erase(line_end, format - line_end);
   return bytes;
 }
 
@@ -86,7 +92,7 @@ std::string percent_decode(const std::string& name) {
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
   importer.SetIOHandler(new RegularFiles);  // owned by the importer
   const aiScene* scene = nullptr;
-  if (const auto ply = ply_with_spare_line_feed(file))
+  if (const auto ply = readable_ply(file))
     scene = importer.ReadFileFromMemory(ply->data(), ply->size(), steps, "ply");
   else if (const auto gltf = readable_gltf(file))
     scene = importer.ReadFileFromMemory(gltf->data(), gltf->size(), steps, "glb");
