@@ -97,7 +97,10 @@ class CharacterReader {
                                                character_.nodes[n].name, scene_.mNumMeshes, m));
         const aiMesh& mesh = *scene_.mMeshes[m];
         names.insert({character_.nodes[n].name, mesh.mName.C_Str()});
-        if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str())) read_mesh(mesh, static_cast<Index>(n));
+        if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str()))
+          read_mesh(mesh, static_cast<Index>(n));
+        else
+          targets_.left_out.insert({character_.nodes[n].name, mesh.mName.C_Str()});
       }
     check_choice(names);
     const RawMesh unjoined = raw_mesh_;

@@ -170,8 +170,9 @@ character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets
   for (const aiNodeAnim* channel : std::span(animation.mChannels, animation.mNumChannels))
     add_identity_channels(*channel, targets, moved, clip);
   for (const aiMeshMorphAnim* channel : std::span(animation.mMorphMeshChannels, animation.mNumMorphMeshChannels)) {
-    const auto [begin, end] = targets.morphs.equal_range(plain_name(channel->mName.C_Str()));
-    if (begin == end) unknown_nodes.push_back(channel->mName.C_Str());
+    const std::string mesh = plain_name(channel->mName.C_Str());
+    const auto [begin, end] = targets.morphs.equal_range(mesh);
+    if (begin == end && !targets.left_out.contains(mesh)) unknown_nodes.push_back(channel->mName.C_Str());
     for (auto found = begin; found != end; ++found) reader.read_morphs(*channel, found->second, clip);
   }
   if (!unknown_nodes.empty())
