@@ -24,8 +24,8 @@ std::string one_leg() {
          "End Site\n{\nOFFSET 0 0 1\n}\n}\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n" + zeros + zeros;
 }
 
-// Without legs, the ratio of leg lengths is undefined. It must not become 0, since the speed of the clip would be
-// infinite.
+// Without legs, the ratio of leg lengths is undefined. The distance from hips to spine replaces it: 1 m in the body, 5
+// in the motion. The travel of the clip at this speed and that of the body must be scaled alike.
 TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
   support::write_bytes(folder_ / "rod.x", support::rod_file());
   support::write_bytes(folder_ / "stand.bvh", one_leg());

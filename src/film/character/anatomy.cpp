@@ -349,6 +349,19 @@ double Skeleton::arm_length(const Posture& posture) const {
   return sum / 2;
 }
 
+double size_ratio(const Skeleton& body, const Posture& rest, const Skeleton& motion, const Posture& first) {
+  double ours = body.leg_length(rest), theirs = motion.leg_length(first);
+  for (const Joint top : {Joint::neck, Joint::head, Joint::chest, Joint::spine}) {
+    if (ours > 0 && theirs > 0) break;
+    if (!body.has(top) || !motion.has(top)) continue;
+    const auto above_hips = [top](const Posture& at) {
+      return (at.places[joint_index(top)] - at.places[joint_index(Joint::hips)]).norm();
+    };
+    ours = above_hips(rest), theirs = above_hips(first);
+  }
+  return ours > 0 && theirs > 0 ? ours / theirs : 1;
+}
+
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
                                            std::span<const Flat> flat, const Vec3& up) {
   return AnatomyFinder(skeleton, postures, flat, up).find();

@@ -62,6 +62,11 @@ class Skeleton {
   std::array<std::array<Index, 2>, 2> fingers_{};  // nodes of index and little finger, left and right; -1: unknown
 };
 
+/// Ratio of the sizes of two skeletons, body / motion: of their leg lengths; if one of them has no whole leg, of the
+/// distances from the hips to the highest joint of the trunk that both have; 1 if both have no such joint. `rest`,
+/// `first`: a posture of each.
+double size_ratio(const Skeleton& body, const Posture& rest, const Skeleton& motion, const Posture& first);
+
 /// Weights of the left and the right foot in one posture: 1 if the foot stands flat on the floor, 0 if not.
 using Flat = std::array<double, 2>;
 

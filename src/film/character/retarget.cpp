@@ -112,8 +112,7 @@ class Retargeter {
         times_(key_times(clip)) {
     for (const double t : times_) postures_.push_back(theirs_.at(pose_at(motion.character, clip, t)));
     const Posture motion_rest = theirs_.at(rest_pose(motion.character));
-    const double our_leg = ours_.leg_length(rest_), their_leg = theirs_.leg_length(postures_.front());
-    ratio_ = our_leg > 0 && their_leg > 0 ? our_leg / their_leg : 1;
+    ratio_ = size_ratio(ours_, rest_, theirs_, postures_.front());
     same_ = same_skeleton(body, motion);
     if (!same_) steps_ = find_footsteps(theirs_, postures_, times_, up_);
     if (!same_ || rotation_above_hips(body).angularDistance(rotation_above_hips(motion)) > kSameAngle)
@@ -472,7 +471,7 @@ class Retargeter {
   const Posture rest_;
   const std::vector<double> times_;
   std::vector<Posture> postures_;  // postures of the motion at `times_`
-  double ratio_ = 1;               // ratio of leg lengths, body / motion; 1: unknown
+  double ratio_ = 1;               // size_ratio()
   bool same_ = false;              // whether both skeletons are the same
   Footsteps steps_;
   std::array<double, 2> toe_length_{};    // [m]

@@ -20,8 +20,8 @@ struct Retargeted {
 /// body gets the rotation halfway between these. If the motion lacks toes, the toes of the body follow the foot.
 /// - If the skeletons differ, directions and twists of bones are transferred relative to the axes of find_anatomy(), so
 ///   that the rest pose of the motion has no effect. In its rest pose, the body must stand upright with its feet flat
-///   on the floor. At time 0, the body has the heading of its rest pose. The travel of the hips is scaled by the ratio
-///   of the leg lengths and starts at the position of the body. Feet keep the contacts of the motion (footing.hpp).
+///   on the floor. At time 0, the body has the heading of its rest pose. The travel of the hips is scaled by
+///   size_ratio() and starts at the position of the body. Feet keep the contacts of the motion (footing.hpp).
 /// - If the skeletons are the same (joint positions equal up to one common factor), all rotations are copied, including
 ///   the heading. If the nodes above the hips have different rotations, the motion is first rotated about `up`, so that
 ///   both skeletons have the same heading in their rest poses. The lowest foot of the motion gets the height of the

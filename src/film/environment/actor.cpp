@@ -77,12 +77,8 @@ assets::LoadedCharacter load_upright(const CharacterContext& context, const scen
   return load(scene::FileUp::z);
 }
 
-double leg_length(const character::Rig& rig) {
-  const character::Skeleton skeleton(rig);
-  return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
-}
-
-/// Returns the clip with the travel that the scene sets. `size`: leg length of the body / that of the clip's skeleton.
+/// Returns the clip with the travel that the scene sets. `size`: of the body / of the clip's skeleton
+/// (character::size_ratio).
 character::Clip travel(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion,
                        const character::Rig& rig, const character::Clip& clip, double size,
                        std::vector<std::string>& warnings) {
@@ -136,10 +132,12 @@ character::Clip retarget_motion(const CharacterContext& context, const scene::Sk
         fmt::format("{}: motion file {}: nothing that moves {}", context.where, file, fmt::join(still, ", ")));
   put_on_floor(context, body);
   const character::Rig from{motion.character, theirs}, to{body.character, ours};
-  const double size = std::min(leg_length(from), leg_length(to)) > 0 ? leg_length(to) / leg_length(from) : 1;
-  const character::Clip clip =
-      travel(context, skeleton_motion, from, choose_clip(context, skeleton_motion.clip, motion.character.clips, file),
-             size, body.warnings);
+  const character::Clip& chosen = choose_clip(context, skeleton_motion.clip, motion.character.clips, file);
+  const character::Skeleton our_skeleton(to), their_skeleton(from);
+  const double size =
+      character::size_ratio(our_skeleton, our_skeleton.at(character::rest_pose(body.character)), their_skeleton,
+                            their_skeleton.at(character::pose_at(motion.character, chosen, 0)));
+  const character::Clip clip = travel(context, skeleton_motion, from, chosen, size, body.warnings);
   character::Retargeted result = character::retarget(to, from, clip, context.up());
   for (const std::string& warning : result.warnings)
     body.warnings.push_back(fmt::format("{}: motion file {}: {}", context.where, file, warning));
