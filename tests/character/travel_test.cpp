@@ -118,6 +118,14 @@ TEST_F(Travel, OfASinglePoseLastsAsLongAsItsClip) {
   EXPECT_NEAR((hips(clip, 2) - hips(clip, 0)).norm(), 1, 1e-3);
 }
 
+// The clip may last longer for the sake of the face.
+TEST_F(Travel, OfAClipLastsLongerThanItsKeys) {
+  Channel still;
+  still.rotation = {{0, 1}, {Quat::Identity(), Quat::Identity()}};
+  const Clip clip = set_travel_speed(rig_, {"idle", 2, {still}, {}}, 0.5, kUp).clip;
+  EXPECT_NEAR((hips(clip, 2) - hips(clip, 0)).norm(), 1, 1e-3);
+}
+
 TEST_F(Travel, GoesAheadWhereNoFeetTell) {
   Clip standing_clip = walk_;
   for (Channel& channel : standing_clip.channels) {

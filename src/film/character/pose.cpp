@@ -52,9 +52,6 @@ bool changes_position(const Channel& channel) {
   return std::ranges::any_of(places, [&](const Vec3& x) { return x != places.front(); });
 }
 
-/// Two key times of different joints count as one if they differ by at most this [s].
-constexpr double kSameTime = 1e-6;
-
 }  // namespace
 
 Affine Placement::to_affine() const {

@@ -40,6 +40,9 @@ Pose rest_pose(const Character& character);
 /// The pose of a clip at time t [s] after its start; for times outside the clip, the pose at its nearer end.
 Pose pose_at(const Character& character, const Clip& clip, double t);
 
+/// Two key times of different joints count as one if they differ by at most this [s].
+inline constexpr double kSameTime = 1e-6;
+
 /// Distinct times >= 0 of all rotation and position keys of a clip, ascending; always includes 0.
 std::vector<double> key_times(const Clip& clip);
 

@@ -20,10 +20,10 @@ constexpr double kMaxFootHeight = 0.05;
 /// Minimum mean speed of feet in stance, relative to the body, that counts as a walk [leg lengths/s].
 constexpr double kMinFeetSpeed = 0.1;
 
-/// Key times of a clip. A clip of one pose also has its end, so that the body can travel until then.
+/// Key times of a clip and, if its last key is earlier, its end, so that the body can travel until then.
 std::vector<double> travel_times(const Clip& clip) {
   std::vector<double> times = key_times(clip);
-  if (times.size() == 1 && clip.duration > times.back()) times.push_back(clip.duration);
+  if (clip.duration - times.back() > kSameTime) times.push_back(clip.duration);
   return times;
 }
 
