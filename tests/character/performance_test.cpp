@@ -156,5 +156,17 @@ TEST(Performance, TravelsInTheWorldAlsoIfTheClipTurnsTheRootsParent) {
   EXPECT_LT((world(2) - Vec3(0, 8, 0)).norm(), 1e-12);
 }
 
+// Keys at 60 Hz have this rate, also for a short time within a clip of few keys.
+TEST(KeyRate, IsThatOfTheDensestKeys) {
+  Channel even, uneven;
+  for (int k = 0; k <= 120; ++k) even.position.times.push_back(k / 60.0);
+  EXPECT_EQ(key_rate({"even", 2, {even}, {}}), 60);
+  uneven.rotation.times = {0, 5};
+  for (int k = 1; k <= 30; ++k) uneven.rotation.times.push_back(5 + k / 60.0);
+  uneven.rotation.times.push_back(20);
+  EXPECT_NEAR(key_rate({"uneven", 20, {uneven}, {}}), 60, 5);
+  EXPECT_EQ(key_rate({"pose", 0, {even}, {}}), 0);
+}
+
 }  // namespace
 }  // namespace weft::character

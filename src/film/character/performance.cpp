@@ -2,9 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace weft::character {
+namespace {
+
+/// Time over which key_rate() counts keys [s]: a fast movement, such as a kick, takes about this time.
+constexpr double kRateWindow = 0.25;
+
+}  // namespace
 
 double clip_time(const Timing& timing, double t) {
   const double elapsed = t - timing.motion_start;
@@ -86,12 +93,22 @@ double Performance::gap() const {
 }
 
 double key_rate(const Clip& clip) {
-  std::size_t max_keys = 1;
+  if (!(clip.duration > 0)) return 0;
+  double rate = 0;
+  const auto add = [&](const std::vector<double>& times) {
+    if (times.empty()) return;
+    rate = std::max(rate, static_cast<double>(times.size() - 1) / clip.duration);
+    std::size_t first = 0;
+    for (std::size_t last = 0; last < times.size(); ++last) {
+      // Excludes windows of exactly this length, so that rounding does not change the rate of even keys.
+      while (times[last] - times[first] > kRateWindow - kSameTime) ++first;
+      rate = std::max(rate, static_cast<double>(last - first) / kRateWindow);
+    }
+  };
   for (const Channel& channel : clip.channels)
-    max_keys =
-        std::max({max_keys, channel.position.times.size(), channel.rotation.times.size(), channel.scale.times.size()});
-  for (const MorphChannel& channel : clip.morphs) max_keys = std::max(max_keys, channel.weight.times.size());
-  return clip.duration > 0 ? static_cast<double>(max_keys - 1) / clip.duration : 0;
+    for (const auto* times : {&channel.position.times, &channel.rotation.times, &channel.scale.times}) add(*times);
+  for (const MorphChannel& channel : clip.morphs) add(channel.weight.times);
+  return rate;
 }
 
 }  // namespace weft::character

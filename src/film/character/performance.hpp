@@ -66,7 +66,8 @@ class Performance {
   Vec3 shift_{0, 0, 0};  // horizontal displacement from the start of the clip to the position of Playing::stance [m]
 };
 
-/// Mean rate of the keys of the channel with the most keys: (keys - 1) / duration [1/s]; 0 if the duration is 0.
+/// Rate of the keys of a clip [1/s]: the largest of any channel, (keys - 1) / duration in the mean or, if keys are
+/// uneven, in 0.25 s where they are densest; 0 if the duration is 0.
 double key_rate(const Clip& clip);
 
 }  // namespace weft::character
