@@ -346,6 +346,13 @@ TEST_F(MeshFiles, OfGltfHaveTheirAttributesInAnyOrder) {
   EXPECT_NEAR(volume(load("order.gltf", gltf)), 1.0 / 6, 1e-15);
 }
 
+TEST_F(MeshFiles, OfGltfMayLackScenes) {
+  std::string gltf = gltf_tetrahedron();
+  const std::string scenes = R"("scene":0,"scenes":[{"nodes":[0]}],)";
+  gltf.erase(gltf.find(scenes), scenes.size());
+  EXPECT_NEAR(volume(load("library.gltf", gltf)), 1.0 / 6, 1e-15);
+}
+
 TEST_F(MeshFiles, OfGltfHaveTheirDataInFilesWithPercentEncodedNames) {
   const std::string binary = glb_tetrahedron();
   std::string gltf = gltf_tetrahedron();

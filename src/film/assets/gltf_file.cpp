@@ -151,7 +151,8 @@ class Rewriter {
 
   /// The bytes of the new file; nullopt if nothing needs to change.
   std::optional<std::string> rewritten() {
-    bool changed = remove_other_channels(gltf_);
+    bool changed = add_missing_scene(gltf_);
+    changed |= remove_other_channels(gltf_);
     changed |= copy_shared_parts(gltf_);
     changed |= name_nodes_apart(gltf_);
     add_bind_matrices();

@@ -16,6 +16,7 @@ namespace weft::assets {
 ///   them, as assimp reads all keys.
 /// - Files with skins in which joints have no names or equal names, as those of two skeletons: they get names of their
 ///   own. assimp finds the node of a bone by its name.
+/// - Files without scenes: they get one of all nodes.
 /// - Files with animations of other things than nodes, such as colors of materials: their channels are left out.
 /// - Files in which nodes share a mesh but not its skin, or share a camera: each gets a copy.
 /// - Files with skins without bind matrices, which assimp does not expect: they get those that glTF prescribes.

@@ -31,6 +31,22 @@ Json& list_of(Json& json, const char* key) {
   return json.is_object() && json.contains(key) ? json[key] : nothing = Json();
 }
 
+bool add_missing_scene(Json& gltf) {
+  const Json& nodes = part_of(gltf, "nodes");
+  if (!nodes.is_array() || !part_of(gltf, "scenes").empty()) return false;
+  std::set<std::size_t> children;
+  for (const Json& node : nodes)
+    for (const Json& child : part_of(node, "children"))
+      if (child.is_number_unsigned()) children.insert(child.get<std::size_t>());
+  Json scene;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (!children.contains(n)) scene["nodes"].push_back(n);
+  gltf["scenes"] = Json::array();
+  gltf["scenes"].push_back(std::move(scene));
+  gltf["scene"] = 0;
+  return true;
+}
+
 bool remove_other_channels(Json& gltf) {
   constexpr std::array<std::string_view, 4> kPaths{"translation", "rotation", "scale", "weights"};
   bool removed = false;

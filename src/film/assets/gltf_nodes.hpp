@@ -11,6 +11,9 @@ const nlohmann::json& part_of(const nlohmann::json& json, const char* key);
 /// The value of a key, to be changed; a null of no use if there is none.
 nlohmann::json& list_of(nlohmann::json& json, const char* key);
 
+/// Adds a scene of all nodes to a file without scenes, which glTF allows and assimp refuses. Returns whether it did.
+bool add_missing_scene(nlohmann::json& gltf);
+
 /// Removes channels of animations that change no node, such as colors of materials (KHR_animation_pointer): assimp
 /// takes them for translations of the first node, or refuses the file. Returns whether there were any.
 bool remove_other_channels(nlohmann::json& gltf);
