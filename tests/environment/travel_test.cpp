@@ -1,4 +1,4 @@
-// The travel of a motion whose skeleton has legs, on a body without legs.
+// The travel of bodies without legs, and of bodies without a motion.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -43,6 +43,19 @@ TEST_F(TravelOfAMotion, MovesABodyWithoutLegs) {
   actor.keys.at(0, start);
   actor.keys.at(1, end);
   EXPECT_NEAR((end[0] - start[0]).norm(), 1.5, 1e-3);
+}
+
+TEST_F(TravelOfAMotion, NeedsAClip) {
+  scene::Scene scene;
+  scene::Character& character = scene.characters.emplace_back();
+  scene::CharacterFile file;
+  file.path = folder_ / "statue.obj";
+  support::write_bytes(file.path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  file.travel = {scene::Travel::Kind::speed, 1.5};
+  character.source = file;
+  const std::vector<std::string> warnings = make_actor(scene, character).warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("has no clip that could travel; it stands still"), std::string::npos) << warnings[0];
 }
 
 }  // namespace

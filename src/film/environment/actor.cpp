@@ -187,6 +187,9 @@ Body make_playing_body(const CharacterContext& context, const Source& source) {
     const auto joints = joints_of(context, source.joints, &scene::JointNames::body, body.character, body.source);
     body.clip = travel(context, source, {body.character, joints},
                        choose_clip(context, source.clip, body.character.clips, body.source), 1, body.warnings);
+  } else if (source.travel.kind == scene::Travel::Kind::speed) {
+    body.warnings.push_back(
+        fmt::format("{}: travel: {} has no clip that could travel; it stands still", context.where, body.source));
   }
   if (body.clip)
     if (const auto warning = warn_of_missing_skin(body.character, *body.clip))
