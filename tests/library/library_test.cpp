@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <weft/settings.hpp>
 #include <weft/simulation.hpp>
 
+#include "api/library/scene_data.hpp"
 #include "library/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -68,6 +70,15 @@ TEST(LibraryScene, ChangesAddUp) {
   EXPECT_NE(scene.text().find("fabric = \"silk\""), std::string::npos) << scene.text();
   EXPECT_EQ(scene.cloths(), std::vector<std::string>{"sheet"});
   EXPECT_EQ(scene.obstacles(), std::vector<std::string>{"ball"});
+}
+
+TEST(LibraryScene, ALaterChangeReplacesAnEarlierKeyThatItExcludes) {
+  const Scene exact = Scene::parse(kDrape, {"time.tolerance=1e-4"}), even = exact.with({"time.step=0.005"});
+  EXPECT_EQ(even.data().scene.time.step, 0.005);
+  EXPECT_EQ(even.data().scene.time.tolerance, std::nullopt);
+  EXPECT_EQ(even.with({"time.tolerance=1e-3"}).data().scene.time.tolerance, 1e-3);
+  EXPECT_EQ(even.with({"time.fps=50"}).data().scene.time.step, 0.005);
+  EXPECT_THROW(exact.with({"time.step=0.005", "time.tolerance=1e-3"}), SceneError) << "one call gives both";
 }
 
 TEST(LibrarySimulation, HasTheBitsOfTheProgram) {

@@ -185,6 +185,9 @@ class Module(unittest.TestCase):
             "radius = 0.15\nsegments = 16\n", ""))
         scene = weft.load(self.folder / "drape.toml", {"time.fps": 50}).with_changes({"time.step": 0.005})
         self.assertEqual(pickle.loads(pickle.dumps(scene)).text, scene.text)
+        exact = scene.with_changes({"time.tolerance": 1e-4})  # in place of time.step
+        self.assertEqual(pickle.loads(pickle.dumps(exact)).text, exact.text)
+        self.assertNotIn("\nstep = ", exact.text)
         silk = weft.fabric("silk")
         self.assertEqual(repr(copy.copy(silk)), repr(silk))
         corners, triangles = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 3]]

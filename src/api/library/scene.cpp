@@ -22,14 +22,14 @@ std::vector<Mistake> public_mistakes(const scene::LoadResult& loaded) {
   return mistakes;
 }
 
-std::shared_ptr<const Scene::Data> checked(scene::LoadResult loaded, std::vector<std::string> changes) {
+Scene checked(scene::LoadResult loaded, std::vector<std::vector<std::string>> changes) {
   if (!loaded.ok()) {
     std::string lines = loaded.describe();
     lines.pop_back();  // the last line feed
     throw SceneError(lines, public_mistakes(loaded));
   }
-  return std::make_shared<const Scene::Data>(
-      Scene::Data{std::move(loaded.scene), std::move(loaded.text), std::move(loaded.file), std::move(changes)});
+  return Scene(std::make_shared<const Scene::Data>(
+      Scene::Data{std::move(loaded.scene), std::move(loaded.text), std::move(loaded.file), std::move(changes)}));
 }
 
 template <class List>
@@ -44,21 +44,19 @@ std::vector<std::string> names_of(const List& list) {
 Scene::Scene(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
 
 Scene Scene::load(const std::filesystem::path& file, const std::vector<std::string>& changes) {
-  return Scene(checked(scene::load(file, changes), changes));
+  return checked(scene::load(file, changes), {changes});
 }
 
 Scene Scene::parse(std::string_view toml, const std::vector<std::string>& changes, const std::filesystem::path& name) {
-  return Scene(checked(scene::load_text(toml, name, changes), changes));
+  return library::scene_of(toml, name, name, {changes});
 }
 
 Scene Scene::with(const std::vector<std::string>& changes) const {
-  std::vector<std::string> all = data_->changes;
-  all.insert(all.end(), changes.begin(), changes.end());
+  std::vector<std::vector<std::string>> all = data_->changes;
+  all.push_back(changes);
   // The scene is loaded with its absolute path, because the working folder may have changed. Mistakes show the path
   // that the caller gave.
-  scene::LoadResult loaded = scene::load_text(data_->text, data_->scene.file, all);
-  loaded.file = data_->file;
-  return Scene(checked(std::move(loaded), std::move(all)));
+  return library::scene_of(data_->text, data_->scene.file, data_->file, std::move(all));
 }
 
 const std::string& Scene::name() const {
@@ -92,3 +90,14 @@ Material fabric(std::string_view name) {
 }
 
 }  // namespace weft
+
+namespace weft::library {
+
+Scene scene_of(std::string_view text, const std::filesystem::path& name, const std::filesystem::path& shown,
+               std::vector<std::vector<std::string>> changes) {
+  scene::LoadResult loaded = scene::load_batches(text, name, changes);
+  loaded.file = shown;
+  return checked(std::move(loaded), std::move(changes));
+}
+
+}  // namespace weft::library

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 #include <weft/scene.hpp>
 
@@ -12,9 +13,18 @@ namespace weft {
 
 struct Scene::Data {
   scene::Scene scene;
-  std::string text;            ///< TOML without the changes
-  std::filesystem::path file;  ///< path as given by the caller
-  std::vector<std::string> changes;
+  std::string text;                               ///< TOML without the changes
+  std::filesystem::path file;                     ///< path as given by the caller
+  std::vector<std::vector<std::string>> changes;  ///< those of load() or parse(), then those of each with()
 };
 
 }  // namespace weft
+
+namespace weft::library {
+
+/// A scene of a TOML text with changes (Scene::Data::changes). `name`: see Scene::parse(). `shown`: path of the scene
+/// in messages. Throws SceneError.
+Scene scene_of(std::string_view text, const std::filesystem::path& name, const std::filesystem::path& shown,
+               std::vector<std::vector<std::string>> changes);
+
+}  // namespace weft::library

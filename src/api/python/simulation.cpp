@@ -175,18 +175,22 @@ void bind_errors(py::module_& module) {
   });
 }
 
-// Pickled form of a scene: text, changes and absolute path.
-using SceneState = std::tuple<std::string, std::vector<std::string>, std::filesystem::path>;
+// Pickled form of a scene: text, absolute path and changes.
+using SceneState = std::tuple<std::string, std::filesystem::path, std::vector<std::vector<std::string>>>;
 
 void bind_scene(py::module_& module) {
   py::class_<Scene>(module, "Scene", "A checked scene; it never changes.")
       .def(py::pickle(
           [](const Scene& scene) {
-            return SceneState(scene.data().text, scene.data().changes, scene.data().scene.file);
+            return SceneState(scene.data().text, scene.data().scene.file, scene.data().changes);
           },
-          [](const SceneState& state) { return std::apply(&Scene::parse, state); }))
+          [](const SceneState& state) {
+            const auto& [text, file, changes] = state;
+            return library::scene_of(text, file, file, changes);
+          }))
       .def("with_changes", &change, py::arg("changes"),
-           "This scene with further changes, such as {\"cloth.band.material.fabric\": \"silk\"}.")
+           "This scene with further changes, such as {\"cloth.band.material.fabric\": \"silk\"}. A key replaces a "
+           "key of the scene that excludes it: time.step replaces time.tolerance.")
       .def_property_readonly("name", &Scene::name, "Name of the file without its ending.")
       .def_property_readonly("fps", &Scene::fps, "Frames per second.")
       .def_property_readonly("frames", &Scene::frames, "Number of frames; frame k is the state at time k / fps.")

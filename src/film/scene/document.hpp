@@ -25,7 +25,7 @@ std::optional<toml::table> parse(std::string_view text, Findings& findings);
 
 /// Sets a value in the document. `override_text`: "path.to.key=value". In the path, a name or an index selects an entry
 /// of a list or array, also as its last part. Creates missing tables. A plain word that is not a TOML value counts as
-/// text. If the path or the value is not valid, reports a mistake and changes no value.
-void apply_override(const std::string& override_text, toml::table& document, Findings& findings);
+/// text. If the path or the value is not valid, reports a mistake and changes no value. `batch`: see Place.
+void apply_override(const std::string& override_text, int batch, toml::table& document, Findings& findings);
 
 }  // namespace weft::scene

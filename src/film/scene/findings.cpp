@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
 #include <tuple>
 #include <utility>
 
 namespace weft::scene {
 
 Place place_of(const toml::source_region& source) {
-  if (source.path && !source.path->empty()) return {0, 0, *source.path};
+  if (source.path && !source.path->empty()) {
+    const std::size_t space = source.path->find(' ');
+    return {0, 0, source.path->substr(space + 1), std::stoi(source.path->substr(0, space))};
+  }
   return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column), {}};
 }
 

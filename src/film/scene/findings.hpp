@@ -16,10 +16,12 @@ namespace weft::scene {
 struct Place {
   int line = 0, column = 0;   ///< counted from 1; 0: none
   std::string override_text;  ///< see Mistake
+  int batch = 0;              ///< 0: the file; else number of the list of overrides, see load_batches()
 };
 
 /// Place of a node or key of a parsed document. `source`: its source region. If an override gave the node, the path in
-/// `source` is the text of this override; if the file gave it, this path is empty.
+/// `source` is the batch and the text of this override, with a space between them; if the file gave it, this path is
+/// empty.
 Place place_of(const toml::source_region& source);
 
 /// The mistakes and the places of keys. A key path is the whole path of a key, such as cloth.band.size.

@@ -15,8 +15,11 @@ namespace weft::scene {
 
 namespace {
 
-void read_document(toml::table document, const std::vector<std::string>& overrides, Scene& scene, Findings& findings) {
-  for (const std::string& text : overrides) apply_override(text, document, findings);
+using Batches = std::vector<std::vector<std::string>>;  // lists of overrides; see load_batches()
+
+void read_document(toml::table document, const Batches& batches, Scene& scene, Findings& findings) {
+  for (std::size_t k = 0; k < batches.size(); ++k)
+    for (const std::string& text : batches[k]) apply_override(text, static_cast<int>(k) + 1, document, findings);
   Reader reader(findings, scene.file.parent_path());
   reader.read(document, scene_rules(), &scene, "");
   for (Character& character : scene.characters)
@@ -50,7 +53,7 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
 /// Loads a scene. `text`: content of the file; nullopt if the file cannot be read (`findings` then contains this
 /// mistake).
 LoadResult load_from(const std::optional<std::string_view>& text, const std::filesystem::path& file,
-                     const std::vector<std::string>& overrides, Findings& findings) {
+                     const Batches& batches, Findings& findings) {
   LoadResult result;
   result.file = file;
   result.text = text.value_or("");
@@ -62,7 +65,7 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
                                 in_quotes(result.scene.name)));
   if (text) {
     if (auto document = parse(*text, findings)) {
-      read_document(std::move(*document), overrides, result.scene, findings);
+      read_document(std::move(*document), batches, result.scene, findings);
     }
   }
   result.mistakes = findings.take_mistakes();
@@ -89,13 +92,17 @@ std::string LoadResult::describe() const {
 LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Findings findings;
   const std::optional<std::string> text = read_file(file, findings);
-  return load_from(text ? std::optional<std::string_view>(*text) : std::nullopt, file, overrides, findings);
+  return load_from(text ? std::optional<std::string_view>(*text) : std::nullopt, file, {overrides}, findings);
 }
 
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides) {
+  return load_batches(text, name, {overrides});
+}
+
+LoadResult load_batches(std::string_view text, const std::filesystem::path& name, const Batches& batches) {
   Findings findings;
-  return load_from(text, name, overrides, findings);
+  return load_from(text, name, batches, findings);
 }
 
 }  // namespace weft::scene

@@ -45,6 +45,11 @@ LoadResult load(const std::filesystem::path& file, const std::vector<std::string
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides = {});
 
+/// Same as load_text(), with lists of overrides that are applied one after the other. Of two keys that exclude each
+/// other, that of a later list replaces that of an earlier one; one list must not give both.
+LoadResult load_batches(std::string_view text, const std::filesystem::path& name,
+                        const std::vector<std::vector<std::string>>& batches);
+
 /// The JSON schema (Draft 2020-12) of a format, generated from its rule table.
 std::string json_schema(const Table& table = scene_rules(), const std::string& title = "Weft scene");
 

@@ -72,15 +72,16 @@ std::string suggest_names(const std::string& part, const std::vector<std::string
 
 }  // namespace
 
-void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
-  // Messages show this text as the place of a mistake. As the source path of a node, it also marks the node as given by
-  // an override.
-  std::string source = "--set " + override_text;
+void apply_override(const std::string& override_text, int batch, toml::table& document, Findings& findings) {
+  // Messages show this text as the place of a mistake.
+  std::string shown = "--set " + override_text;
   std::replace_if(
-      source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-  if (source.size() > 80) source = std::string(beginning_of(source, 77)) + "...";
+      shown.begin(), shown.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  if (shown.size() > 80) shown = std::string(beginning_of(shown, 77)) + "...";
+  // Marks nodes as given by this override; see place_of().
+  const std::string source = fmt::format("{} {}", batch, shown);
   const auto refuse = [&](const std::string& key, const std::string& text) {
-    findings.report(key, {0, 0, source}, text);
+    findings.report(key, {0, 0, shown}, text);
   };
 
   const auto equals = override_text.find('=');

@@ -23,18 +23,19 @@ Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
 
-/// Whether a value comes from the command line.
-bool is_override(const toml::node& node) {
-  return !place_of(node.source()).override_text.empty();
+/// Batch of a value; see Place.
+int batch_of(const toml::node& node) {
+  return place_of(node.source()).batch;
 }
 
-/// Whether the file gives the key of `rule`, but an override (--set) gives a key that excludes this key, and thus
-/// replaces it.
+/// Whether a later batch than that of the key of `rule` gives a key that excludes this key, and thus replaces it. For
+/// example, the file gives the key, and --set the other one.
 bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
   const toml::node* node = table.get(rule.key);
-  return node != nullptr && !is_override(*node) && std::ranges::any_of(rules, [&](const Rule& other) {
+  return node != nullptr && std::ranges::any_of(rules, [&](const Rule& other) {
+           if (other.excludes != rule.key && rule.excludes != other.key) return false;
            const toml::node* given = table.get(other.key);
-           return given != nullptr && is_override(*given) && (other.excludes == rule.key || rule.excludes == other.key);
+           return given != nullptr && batch_of(*given) > batch_of(*node);
          });
 }
 
@@ -113,10 +114,10 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   }
   findings_.set_place(key, place_of(node->source()));
 
-  // If two keys exclude each other, a key of --set replaces a key of the file. If --set gives both or the file gives
-  // both, report a mistake.
+  // If two keys exclude each other, the one of the later batch replaces the other one. If one batch gives both, report
+  // a mistake.
   const toml::node* excluded = rule.excludes.empty() ? nullptr : table.get(rule.excludes);
-  if (excluded != nullptr && is_override(*node) == is_override(*excluded)) {
+  if (excluded != nullptr && batch_of(*node) == batch_of(*excluded)) {
     findings_.report(key, place_of(node->source()),
                      fmt::format("expected either {} or {}, got both", rule.key, rule.excludes));
     return;

@@ -22,8 +22,8 @@ class WEFT_API Scene {
   /// relative paths in the text start at its folder.
   static Scene parse(std::string_view toml, const std::vector<std::string>& changes = {},
                      const std::filesystem::path& name = "scene.toml");
-  /// Returns this scene with further changes, applied after its own and checked again. Throws
-  /// SceneError with all mistakes.
+  /// Returns this scene with further changes, applied after its own and checked again. A key replaces
+  /// a key of the scene that excludes it: time.step replaces time.tolerance. Throws SceneError with all mistakes.
   Scene with(const std::vector<std::string>& changes) const;
 
   const std::string& name() const;             ///< file name without its ending
@@ -37,10 +37,10 @@ class WEFT_API Scene {
 
   struct Data;
   /// For the library itself.
+  explicit Scene(std::shared_ptr<const Data> data);
   const Data& data() const { return *data_; }
 
  private:
-  explicit Scene(std::shared_ptr<const Data> data);
   std::shared_ptr<const Data> data_;
 };
 
