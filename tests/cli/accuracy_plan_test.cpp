@@ -96,11 +96,14 @@ TEST(AccuracyPlan, SolvesNothingLessExactlyThanTheScene) {
   const Accuracy accuracy =
       measure_accuracy(tiny_sheet({fmt::format("solver.newton_tolerance={}", kScene)}), check, plan);
   EXPECT_GT(references, 0);
-  EXPECT_EQ(looser, 2) << "one for each reference, by which the error of its solver is known";
+  EXPECT_EQ(looser, 3) << "one for each reference and for the step, by which the error of the solver is known";
   for (const bench::Run& run : accuracy.runs) EXPECT_LE(run.setting.newton_tolerance, kScene);
   for (const Candidate* each : {&accuracy.reference, &accuracy.second})
     EXPECT_LE(each->setting.newton_tolerance, kScene);
   EXPECT_FALSE(runs_of_axis(accuracy, Axis::mesh).empty());
+  ASSERT_EQ(step_limited_runs(accuracy).size(), 1u);
+  EXPECT_TRUE(std::isnan(step_limited_runs(accuracy)[0]->solver_error)) << "no run is solved more exactly";
+  EXPECT_NE(conclusion(accuracy).find("the solver is not known"), std::string::npos) << conclusion(accuracy);
 }
 
 TEST(AccuracyPlan, IsRefusedWhereItDoesNotSuitTheScene) {

@@ -29,7 +29,7 @@ constexpr int kReferenceStepDivisor = 8, kReferenceStepDivisorWithContact = 2;
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
 // The runs of a step divide newton_tolerance by ten each time, from the scene's value down to this minimum. If the
-// scene's value is smaller, all runs have the scene's.
+// scene's value is smaller, all listed runs have the scene's.
 constexpr double kMinNewtonTolerance = 1e-8, kDecade = 0.1;
 // newton_tolerance of the runs of Axis::mesh, relative to the scene's: their error must be that of the mesh.
 constexpr double kMeshNewtonRatio = 1e-2;
@@ -324,8 +324,9 @@ bool AccuracyMeasurement::is_step_limited(const Run& run, const Run& tighter) co
 }
 
 // Runs one fixed step. Divides newton_tolerance by ten for each run, from the scene's value until Run::is_step_limited,
-// but not below kMinNewtonTolerance. Stops if a run fails. Returns the run with is_step_limited; nullptr if there is
-// none.
+// but not below kMinNewtonTolerance. Stops if a run fails. If the scene's value is at kMinNewtonTolerance already, a
+// looser run, which is not listed, shows whether the step determines the error. Returns the run with is_step_limited;
+// nullptr if there is none.
 AccuracyMeasurement::SamplePtr AccuracyMeasurement::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
@@ -335,6 +336,14 @@ AccuracyMeasurement::SamplePtr AccuracyMeasurement::measure_grid(Integrator inte
     runs.push_back({.axis = Axis::grid, .setting = setting});
     samples.push_back(run(runs.back(), reference_));
     if (!samples.back()) break;
+    if (runs.size() == 1 && setting.newton_tolerance <= kMinNewtonTolerance) {
+      Run looser{.axis = Axis::grid, .setting = setting};
+      looser.setting.newton_tolerance /= kDecade;
+      if (const SamplePtr sample = run(looser, reference_)) {
+        looser.change = at(difference(*sample, *samples.back()), q);
+        runs.back().is_step_limited = is_step_limited(looser, runs.back());
+      }
+    }
     if (runs.size() > 1) {
       Run& before = runs[runs.size() - 2];
       before.change = at(difference(*samples[runs.size() - 2], *samples.back()), q);
@@ -346,7 +355,7 @@ AccuracyMeasurement::SamplePtr AccuracyMeasurement::measure_grid(Integrator inte
   }
   const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
   for (std::size_t k = 0; k < runs.size(); ++k)
-    if (samples[k]) runs[k].solver_error = at(difference(*samples[k], **tightest), q);
+    if (samples[k] && samples[k] != *tightest) runs[k].solver_error = at(difference(*samples[k], **tightest), q);
   const auto found = std::ranges::find_if(runs, &Run::is_step_limited);
   SamplePtr exact = found == runs.end() ? nullptr : samples[static_cast<std::size_t>(found - runs.begin())];
   result_.runs.insert(result_.runs.end(), std::make_move_iterator(runs.begin()), std::make_move_iterator(runs.end()));

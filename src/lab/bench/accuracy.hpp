@@ -48,10 +48,11 @@ struct Run {
   Errors spread{};           ///< largest difference of a start to the medians (without contact: to the first start)
   /// Only for Axis::grid, in deciding_quantity(); otherwise NaN. `change`: difference to the run with a tenth of this
   /// newton_tolerance. `solver_error`: difference to the successful run with the same step and the smallest
-  /// newton_tolerance.
+  /// newton_tolerance; NaN for that run itself.
   double change = std::numeric_limits<double>::quiet_NaN(), solver_error = change;
   /// Only for Axis::grid: whether the step, not the solver, determines the error. True if `change` is at most a tenth
-  /// of the error of the run with a tenth of this newton_tolerance, or at most the uncertainty of that error.
+  /// of the error of the run with a tenth of this newton_tolerance, or at most the uncertainty of that error. If the
+  /// scene's newton_tolerance is 1e-8 or less, a run with ten times its value decides instead, in the same way.
   bool is_step_limited = false;
   /// Cost of the run from the first start; but the CPU time is the minimum over all starts. If
   /// there is only one start and its run takes less than 0.3 s of CPU time, it is run twice, and

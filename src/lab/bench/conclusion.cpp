@@ -170,7 +170,8 @@ std::string error_parts_text(const Accuracy& accuracy, Quantity quantity) {
     if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
         run.setting.step != accuracy.of_scene.step)
       continue;
-    if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance) left["the solver"] = run.solver_error;
+    if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance && std::isfinite(run.solver_error))
+      left["the solver"] = run.solver_error;
     if (run.is_step_limited) left["the step"] = error_of(run, quantity);
   }
   const auto text = [&](const char* source) {
