@@ -57,6 +57,17 @@ TEST(SceneStability, VariesTheFrictionOfObstaclesToo) {
     EXPECT_NE(stability.find(with(VariedParameter::friction, factor)), nullptr) << factor;
 }
 
+// A heavier rope that hangs by its ends stretches more, a stiffer one less.
+TEST(SceneStability, VariesRopesToo) {
+  const SceneStability stability = measure_scene_stability(support::scene_of_text(
+      "[time]\nduration = 0.1\nfps = 10\nstep = 0.05\n[contact]\nself = false\n[[rope]]\nname = \"line\"\n"
+      "from = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 4\nstretch = 1000\ndrag = 0\npin = [{ at = 0 }, { at = 1 }]\n"));
+  for (const VariedParameter value : {VariedParameter::stiffness, VariedParameter::mass, VariedParameter::damping})
+    ASSERT_NE(stability.find(with(value, 10)), nullptr) << name_of(value);
+  EXPECT_GT(stability.find(with(VariedParameter::mass, 10))->max_strain, stability.as_is.max_strain);
+  EXPECT_LT(stability.find(with(VariedParameter::stiffness, 10))->max_strain, stability.as_is.max_strain);
+}
+
 TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
   const auto margins = margins_of(strip());
   const auto stiffer = std::ranges::find_if(margins, [](const Margin& margin) {

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <set>
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "film/production/scene_simulation.hpp"
 #include "film/run_error/trajectory.hpp"
+#include "film/scene/ropes.hpp"
 
 namespace weft::bench {
 namespace {
@@ -38,6 +40,19 @@ std::vector<double*> frictions(scene::Scene& scene) {
   return all;
 }
 
+// A rope with other values. Its damping is relative to its stiffness, so that a factor on the stiffness leaves the
+// viscosities as they are.
+std::shared_ptr<const scene::Rope> scale_rope(const scene::Rope& rope, double stiffness, double mass, double damping) {
+  const scene::RopeNumbers numbers = scene::numbers_of(rope);
+  auto scaled = std::make_shared<scene::Rope>(rope);
+  scaled->stretch = stiffness * numbers.stretch;
+  scaled->bend = stiffness * numbers.bend;
+  scaled->mass = mass * numbers.mass;
+  scaled->damping *= damping / stiffness;
+  scaled->drag *= damping;
+  return scaled;
+}
+
 void scale_materials(scene::Scene& scene, const Factors& factors) {
   const double stiffness = factors[index_of(VariedParameter::stiffness)],
                mass = factors[index_of(VariedParameter::mass)], friction = factors[index_of(VariedParameter::friction)],
@@ -51,6 +66,7 @@ void scale_materials(scene::Scene& scene, const Factors& factors) {
       *value *= damping;
     material.density *= mass;
     for (scene::Weight& weight : cloth.weights) weight.mass *= mass;
+    if (cloth.rope) cloth.rope = scale_rope(*cloth.rope, stiffness, mass, damping);
   }
   for (double* value : frictions(scene)) *value *= friction;
 }
@@ -80,11 +96,13 @@ bool changes(const scene::Scene& scene, VariedParameter axis, double factor) {
   using scene::Material;
   switch (axis) {
     case VariedParameter::stiffness:
-      return !same(&Material::stretch_weft, &Material::stretch_warp, &Material::shear, &Material::bend);
+      return !scene.ropes.empty() ||
+             !same(&Material::stretch_weft, &Material::stretch_warp, &Material::shear, &Material::bend);
     case VariedParameter::mass:
       return !scene.cloths.empty();
     case VariedParameter::damping:
-      return !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
+      return std::ranges::any_of(scene.ropes, [](const scene::Rope& rope) { return rope.damping > 0; }) ||
+             !same(&Material::stretch_viscosity, &Material::shear_viscosity, &Material::bend_viscosity,
                    &Material::bend_friction, &Material::drag);
     case VariedParameter::friction:
       varied = scene;  // a factor of 0 has set all coefficients of `varied` to 0

@@ -14,11 +14,11 @@ namespace weft::bench {
 
 /// A parameter that is varied: a factor multiplies the scene's own values.
 enum class VariedParameter : std::size_t {
-  stiffness,  ///< stretch, shear and bending of all cloths
+  stiffness,  ///< stretch, shear and bending of all cloths and ropes
   step,       ///< time.step, and time.tolerance if the scene has it
-  mass,       ///< density of all cloths, and their attached weights
-  friction,   ///< coefficients of all cloths, obstacles, characters with their parts, and pairs
-  damping,    ///< viscosities, bending friction and air drag of all cloths
+  mass,       ///< density of all cloths, mass of all ropes, and their attached weights
+  friction,   ///< coefficients of all cloths, ropes, obstacles, characters with their parts, and pairs
+  damping,    ///< viscosities, bending friction and air drag of all cloths and ropes
   mesh,       ///< number of cells along each side
 };
 inline constexpr std::size_t kVariedValues = 6;
