@@ -78,6 +78,15 @@ TEST_F(CacheFolder, IsGoneOnWithByAnotherWriter) {
   EXPECT_TRUE(same_bits(reader.snapshot(2)->states[1].positions, sample_.snapshot(0)->states[1].positions));
 }
 
+TEST_F(CacheFolder, OpenedBeforeFrame0GivesTheFramesThatFollow) {
+  const Lock lock(cache());
+  Writer writer(lock, sample_.manifest(), "");
+  const Reader reader(cache());
+  expect_error(ExitCode::asset_unreadable, "c: holds no frame yet", [&] { reader.read(0); });
+  for (int k = 0; k < 2; ++k) writer.add(*sample_.snapshot(k), sample_.report(k));
+  EXPECT_TRUE(same_bits(reader.snapshot(1)->states[0].positions, sample_.snapshot(1)->states[0].positions));
+}
+
 TEST_F(CacheFolder, FramesAreReadWhileOthersAreMissing) {
   fill(5);
   fs::remove(cache() / frame_file(1));

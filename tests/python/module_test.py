@@ -57,7 +57,7 @@ class Module(unittest.TestCase):
         run("simulate", "drape.toml", "--cache", "cache", folder=self.folder)
         cache = weft.Cache(self.folder / "cache")
         self.assertEqual(cache.frames, list(range(11)))
-        self.assertEqual((cache.fps, cache.scene.frames), (25, 11))
+        self.assertEqual((cache.fps, cache.scene.frames, cache.scene.name), (25, 11, "drape"))
         simulation = weft.Simulation(weft.load(self.folder / "drape.toml"))
         for number in cache.frames[1:]:
             frame, cached = simulation.advance(), cache[number]

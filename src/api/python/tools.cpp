@@ -69,7 +69,7 @@ class Cache {
   const std::filesystem::path& folder() const { return reader_->folder(); }
   Scene scene() const {
     return Scene::parse(with_public_errors([&] { return reader_->scene_text(); }), {},
-                        reader_->folder() / "scene.toml");
+                        reader_->folder() / (reader_->manifest().scene + ".toml"));
   }
   bool has(int number) const { return reader_->has(number); }
   /// Throws KeyError if the cache does not contain the frame.

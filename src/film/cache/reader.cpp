@@ -32,25 +32,37 @@ Reader::Reader(fs::path folder, AcceptedLooks looks) : folder_(std::move(folder)
   if (!is_cache(folder_))
     throw Error(ExitCode::asset_unreadable, "{}: expected a frame cache, a folder with a {}; weft simulate makes one",
                 folder_.string(), kManifestFile);
-  const fs::path manifest = folder_ / kManifestFile, surfaces = folder_ / kSurfacesFile;
+  const fs::path manifest = folder_ / kManifestFile;
   manifest_ = read_checked(manifest, [&] { return parse_manifest(read_file(manifest), manifest.string()); });
   std::error_code ignored;
-  if (!fs::exists(surfaces, ignored)) return;
-  surfaces_ = read_checked(surfaces, [&] { return decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0)); });
-  read_checked(surfaces, [&] { check_objects(); });
+  if (fs::exists(folder_ / kSurfacesFile, ignored)) shared_surfaces();
 }
 
-void Reader::check_objects() const {
-  const bool same = std::equal(manifest_.objects.begin(), manifest_.objects.end(), surfaces_->surfaces.begin(),
-                               surfaces_->surfaces.end(), [](const auto& object, const auto& surface) {
+const Surfaces& Reader::shared_surfaces() const {
+  const std::lock_guard lock(mutex_);
+  if (surfaces_) return *surfaces_;
+  const fs::path file = folder_ / kSurfacesFile;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
+  surfaces_ = read_checked(file, [&] {
+    Surfaces surfaces = decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0));
+    check_objects(surfaces);
+    return surfaces;
+  });
+  return *surfaces_;
+}
+
+void Reader::check_objects(const Surfaces& surfaces) const {
+  const bool same = std::equal(manifest_.objects.begin(), manifest_.objects.end(), surfaces.surfaces.begin(),
+                               surfaces.surfaces.end(), [](const auto& object, const auto& surface) {
                                  return object.name == surface->name && object.kind == surface->kind;
                                });
   if (!same) throw std::runtime_error("its objects are not those of the manifest");
   for (std::size_t i = 0; i < manifest_.objects.size(); ++i)
-    if (manifest_.objects[i].vertices != surfaces_->positions[i].size())
+    if (manifest_.objects[i].vertices != surfaces.positions[i].size())
       throw std::runtime_error(fmt::format("expected {} vertices of '{}' as in the manifest, got {}",
                                            manifest_.objects[i].vertices, manifest_.objects[i].name,
-                                           surfaces_->positions[i].size()));
+                                           surfaces.positions[i].size()));
 }
 
 void Reader::check_scene(std::uint64_t hash) const {
@@ -105,10 +117,10 @@ bool Reader::has(int frame) const {
 
 CachedFrame Reader::read(int frame) const {
   const std::string name = frame_file(frame);
-  if (!surfaces_) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
+  const Surfaces& shared = shared_surfaces();
   Label label;
   const std::string payload = read_part(name.c_str(), Kind::frame, frame, &label);
-  CachedFrame cached = read_checked(folder_ / name, [&] { return decode_frame(payload, frame, *surfaces_); });
+  CachedFrame cached = read_checked(folder_ / name, [&] { return decode_frame(payload, frame, shared); });
   cached.scene_hash = label.scene_hash;
   return cached;
 }

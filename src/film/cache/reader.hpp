@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,8 +28,7 @@ enum class AcceptedLooks { of_scene, any };
 /// defect; folder(), manifest() and has() do not throw.
 class Reader {
  public:
-  /// Reads the data that all frames share. A cache without frames is valid, but read() of this Reader then always
-  /// throws, even if frames are added later.
+  /// Reads the data that all frames share. If the cache has no frame yet, read() reads these data once frame 0 exists.
   explicit Reader(std::filesystem::path folder, AcceptedLooks looks = AcceptedLooks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -52,13 +52,15 @@ class Reader {
 
  private:
   std::string read_part(const char* name, Kind kind, std::optional<int> frame, Label* label = nullptr) const;
-  void check_objects() const;
+  const Surfaces& shared_surfaces() const;
+  void check_objects(const Surfaces& surfaces) const;
   void check_scene(std::uint64_t hash) const;
 
   std::filesystem::path folder_;
   AcceptedLooks looks_;
   Manifest manifest_;
-  std::optional<Surfaces> surfaces_;  // absent if their file did not exist yet; it is written with frame 0
+  mutable std::mutex mutex_;                  // protects surfaces_ until they are read; they do not change then
+  mutable std::optional<Surfaces> surfaces_;  // absent if their file did not exist yet; it is written with frame 0
 };
 
 /// Whether the folder contains a manifest, readable or not.
