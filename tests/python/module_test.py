@@ -255,6 +255,22 @@ class Module(unittest.TestCase):
         for field in ("file", "line", "column", "change", "key", "text"):
             self.assertEqual(getattr(error.mistakes[0], field), getattr(caught.exception.mistakes[0], field))
 
+    def test_names_of_files_need_not_be_utf_8(self):
+        folder = pathlib.Path(os.fsdecode(os.fsencode(self.folder) + b"/\xe9t\xe9"))
+        folder.mkdir()
+        (folder / "drape.toml").write_text(DRAPE)
+        self.assertEqual(weft.load(folder / "drape.toml").name, "drape")
+        wrong = folder / os.fsdecode(b"\xe9.toml")
+        wrong.write_text(DRAPE.replace("radius", "raduis"))
+        with self.assertRaises(weft.SceneError) as caught:
+            weft.load(wrong)
+        error = pickle.loads(pickle.dumps(caught.exception))
+        self.assertTrue(str(error).startswith(f"{wrong}:13:1: obstacle.ball.raduis: "), ascii(str(error)))
+        self.assertEqual(error.mistakes[0].file, str(wrong))
+        with self.assertRaisesRegex(weft.FileError, "expected a frame cache"):
+            weft.Cache(folder)
+        self.assertIn("no such file", weft.compare(folder / "a.png", folder / "b.png").problem)
+
     def test_mistakes_have_their_place(self):
         with self.assertRaises(weft.SceneError) as caught:
             weft.parse(DRAPE.replace("radius", "raduis"), name="some/drape.toml")

@@ -3,6 +3,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string_view>
+
 namespace weft::python {
 
 namespace py = pybind11;
@@ -15,6 +17,9 @@ void bind_model(py::module_& module);
 void bind_tools(py::module_& module);
 /// Drawing of frames.
 void bind_drawing(py::module_& module);
+
+/// The text as str. Bytes that are not UTF-8, such as in names of files, become surrogates, as in os.fsdecode().
+py::str text_of(std::string_view text);
 
 /// Releases the global interpreter lock (GIL) during a call, so that other threads of Python can run.
 using ReleaseGil = py::call_guard<py::gil_scoped_release>;

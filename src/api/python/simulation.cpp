@@ -124,20 +124,24 @@ const char* kind_of(const FrameObject& object) {
   return kNames[static_cast<std::size_t>(object.object->kind)];
 }
 
-using MistakeState = std::tuple<std::string, int, int, std::string, std::string, std::string>;
+// Bytes, because names of files may not be UTF-8.
+using MistakeState = std::tuple<py::bytes, int, int, py::bytes, py::bytes, py::bytes>;
 
 // Defines the exceptions. The attribute `mistakes` of SceneError lists the mistakes with their places.
 void bind_errors(py::module_& module) {
   py::class_<Mistake>(module, "Mistake", "One mistake in a scene, with its place in the file.")
-      .def_readonly("file", &Mistake::file,
-                    "Path of the scene file, as it was given; absolute if a Simulation raises the error.")
+      .def_property_readonly(
+          "file", [](const Mistake& mistake) { return text_of(mistake.file); },
+          "Path of the scene file, as it was given; absolute if a Simulation raises the error.")
       .def_readonly("line", &Mistake::line,
                     "Line, counted from 1; 0 for mistakes that are not in the text of the file.")
       .def_readonly("column", &Mistake::column, "Column, counted from 1; 0 likewise.")
       .def_readonly("change", &Mistake::change,
                     "\"key=value\" of the change that contains the mistake; empty if the mistake is in the file.")
       .def_readonly("key", &Mistake::key, "Key, such as \"cloth.band.material.thickness\"; may be empty.")
-      .def_readonly("text", &Mistake::text, "Description, such as \"expected > 0 m, got -0.001\".")
+      .def_property_readonly(
+          "text", [](const Mistake& mistake) { return text_of(mistake.text); },
+          "Description, such as \"expected > 0 m, got -0.001\".")
       // Worker processes send exceptions as pickles.
       .def(py::pickle(
           [](const Mistake& mistake) {
@@ -145,7 +149,8 @@ void bind_errors(py::module_& module) {
           },
           [](const MistakeState& state) {
             const auto& [file, line, column, change, key, text] = state;
-            return Mistake{file, line, column, change, key, text};
+            return Mistake{file.cast<std::string>(), line, column, change.cast<std::string>(), key.cast<std::string>(),
+                           text.cast<std::string>()};
           }));
   // These references are never released, because the interpreter may end before this library is unloaded.
   static const py::handle scene_error = py::exception<SceneError>(module, "SceneError", PyExc_ValueError).release();
@@ -158,7 +163,7 @@ void bind_errors(py::module_& module) {
   simulation_error.attr("__doc__") =
       "The simulation cannot continue. The text names the frame, the time and the reason.";
   static const auto set = [](const py::handle& type, const SceneError& error) {
-    py::object instance = type(error.what());
+    py::object instance = type(text_of(error.what()));
     instance.attr("mistakes") = py::cast(error.mistakes());
     PyErr_SetObject(type.ptr(), instance.ptr());
   };
@@ -170,7 +175,9 @@ void bind_errors(py::module_& module) {
     } catch (const SceneError& error) {
       set(scene_error, error);
     } catch (const SimulationError& error) {
-      PyErr_SetString(simulation_error.ptr(), error.what());
+      PyErr_SetObject(simulation_error.ptr(), text_of(error.what()).ptr());
+    } catch (const py::key_error& error) {
+      PyErr_SetObject(PyExc_KeyError, text_of(error.what()).ptr());
     }
   });
 }
@@ -191,12 +198,15 @@ void bind_scene(py::module_& module) {
       .def("with_changes", &change, py::arg("changes"),
            "This scene with further changes, such as {\"cloth.band.material.fabric\": \"silk\"}. A key replaces a "
            "key of the scene that excludes it: time.step replaces time.tolerance.")
-      .def_property_readonly("name", &Scene::name, "Name of the file without its ending.")
+      .def_property_readonly(
+          "name", [](const Scene& scene) { return text_of(scene.name()); }, "Name of the file without its ending.")
       .def_property_readonly("fps", &Scene::fps, "Frames per second.")
       .def_property_readonly("frames", &Scene::frames, "Number of frames; frame k is the state at time k / fps.")
       .def_property_readonly("cloths", &Scene::cloths, "Names of the cloths.")
       .def_property_readonly("obstacles", &Scene::obstacles, "Names of the obstacles.")
-      .def_property_readonly("text", &Scene::text, "The scene as TOML text, with every default.");
+      .def_property_readonly(
+          "text", [](const Scene& scene) { return text_of(scene.text()); },
+          "The scene as TOML text, with every default.");
   module.def("load", &load, py::arg("file"), py::arg("changes") = py::none(),
              "Read a scene file. Raises SceneError with all mistakes.");
   module.def("parse", &parse, py::arg("toml"), py::arg("changes") = py::none(), py::arg("name") = "scene.toml",
@@ -231,7 +241,11 @@ void bind_frame(py::module_& module) {
       .def_readonly("pinched_pairs", &Report::pinched_pairs)
       .def_readonly("lagging_particles", &Report::lagging_particles)
       .def_readonly("enclosed_air", &Report::enclosed_air)
-      .def_readonly("warnings", &Report::warnings);
+      .def_property_readonly("warnings", [](const Report& report) {
+        py::list warnings;
+        for (const std::string& warning : report.warnings) warnings.append(text_of(warning));
+        return warnings;
+      });
   py::class_<FrameObject>(module, "Object",
                           "A cloth or body in one frame. Arrays are read-only views; they stay valid.")
       .def_property_readonly("name", [](const FrameObject& self) { return std::string(self.object->name); })
@@ -337,6 +351,12 @@ void check_signals() {
 
 }  // namespace
 
+py::str text_of(std::string_view text) {
+  PyObject* made = PyUnicode_DecodeUTF8(text.data(), static_cast<Py_ssize_t>(text.size()), "surrogateescape");
+  if (made == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(made);
+}
+
 void bind_simulation(py::module_& module) {
   bind_errors(module);
   bind_scene(module);
@@ -369,7 +389,7 @@ void bind_simulation(py::module_& module) {
   check_signals();
   set_warning_handler([](std::string_view text) {
     const py::gil_scoped_acquire lock;
-    if (PyErr_WarnEx(PyExc_UserWarning, std::string(text).c_str(), 1) < 0) throw py::error_already_set();
+    py::module_::import("warnings").attr("warn")(text_of(text));
   });
 }
 

@@ -116,7 +116,9 @@ void bind_difference(py::module_& module) {
       .def_readonly("outcome", &Difference::outcome,
                     "\"same\", \"within\" the limits, \"differs\", \"size\", \"frame count\", \"no test\", "
                     "\"no reference\" or \"unreadable\".")
-      .def_readonly("problem", &Difference::problem, "Explanation in words, for the outcomes from \"size\" on.")
+      .def_property_readonly(
+          "problem", [](const Difference& self) { return text_of(self.problem); },
+          "Explanation in words, for the outcomes from \"size\" on.")
       .def_property_readonly("good",
                              [](const Difference& self) { return self.outcome == "same" || self.outcome == "within"; })
       .def_property_readonly("frames", [](const Difference& self) { return self.files.frames; })
@@ -167,7 +169,7 @@ void bind_tools(py::module_& module) {
       .def_property_readonly("scene", &Cache::scene)
       .def("__repr__",
            [](const Cache& self) {
-             return fmt::format("weft.Cache({})", py::repr(py::cast(self.folder().string())).cast<std::string>());
+             return fmt::format("weft.Cache({})", py::repr(text_of(self.folder().string())).cast<std::string>());
            })
       .def("__getitem__", &Cache::frame, py::arg("number"), ReleaseGil(),
            "The frame of this number. Raises KeyError if the cache does not contain it now.")
