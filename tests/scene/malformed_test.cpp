@@ -311,6 +311,8 @@ const std::vector<Malformed> kMalformed = {
     {"UnknownIntegrator", kFloor + "[time]\nintegrator = 'bdf3'\n",
      "s.toml:3:14: time.integrator: expected implicit_euler, implicit_midpoint or bdf2, got \"bdf3\"; did you mean "
      "bdf2?\n"},
+    {"FollowsAPartOfNothing", kFloor + "[[cloth]]\nname = 'a'\npin = [{ follow = '.head' }]\n",
+     "s.toml:4:19: cloth.a.pin.0.follow: expected the name of an obstacle or character, got \".head\"\n"},
     {"FollowsNothing", kFloor + "[[cloth]]\nname = 'a'\npin = [{ follow = 'flor' }]\n",
      "s.toml:4:19: cloth.a.pin.0.follow: expected the name of an obstacle or character, got \"flor\"; did you mean "
      "floor?\n"},

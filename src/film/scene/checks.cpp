@@ -153,7 +153,9 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   const std::vector<std::string> characters = names_of(scene.characters);
   std::vector<std::string> bodies = names_of(scene.obstacles);
   bodies.insert(bodies.end(), characters.begin(), characters.end());
-  check_reference(followed.body, bodies, "an obstacle or character", path + ".follow", findings);
+  // A text such as ".head" names a part but no body.
+  check_reference(followed.body.empty() ? pin.follow : followed.body, bodies, "an obstacle or character",
+                  path + ".follow", findings);
   for (const Obstacle& obstacle : scene.obstacles)
     if (obstacle.name == followed.body && is_dynamic(obstacle))
       findings.report(
