@@ -203,6 +203,7 @@ std::vector<Environment::Attached> Environment::add_cloths(const scene::Scene& s
   for (const model::Layer& layer : model.layers)
     for (const std::size_t c : layer.cloths) {
       model.cloths[c].put_on = (layer.first_frame + scene.preroll_frames()) / scene.time.fps;
+      if (scene.cloths[c].over.empty()) continue;
       for (const scene::Cloth& inner : scene.cloths)
         if (scene::worn_over(scene, scene.cloths[c].name, inner.name)) model.cloths[c].over.push_back(inner.name);
     }

@@ -33,13 +33,21 @@ bool worn_over(const Scene& scene, const std::string& outer, const std::string& 
 
 std::vector<std::size_t> layer_depths(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
-  // One pass per cloth is enough: a chain without a cycle contains each cloth at most once. check_layers() (checks.cpp)
-  // reports cycles.
-  for (std::size_t pass = 0; pass < scene.cloths.size(); ++pass)
+  // Repeats passes until nothing changes. One pass per cloth is enough: a chain without a cycle contains each cloth at
+  // most once. check_layers() (checks.cpp) reports cycles.
+  bool has_changed = true;
+  for (std::size_t pass = 0; has_changed && pass < scene.cloths.size(); ++pass) {
+    has_changed = false;
     for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-      for (std::size_t below = 0; below < scene.cloths.size(); ++below)
-        if (std::ranges::find(scene.cloths[c].over, scene.cloths[below].name) != scene.cloths[c].over.end())
-          layers[c] = std::max(layers[c], layers[below] + 1);
+      for (const std::string& name : scene.cloths[c].over) {
+        const auto below = std::ranges::find(scene.cloths, name, &Cloth::name);
+        if (below == scene.cloths.end()) continue;
+        const std::size_t depth = layers[static_cast<std::size_t>(below - scene.cloths.begin())] + 1;
+        if (depth <= layers[c]) continue;
+        layers[c] = depth;
+        has_changed = true;
+      }
+  }
   return layers;
 }
 
