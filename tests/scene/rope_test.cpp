@@ -99,6 +99,11 @@ TEST(RopeScenes, MistakesNameTheKeyAndWhatIsExpected) {
   expect("points = [[0, 0, 0], [1, 0, 0]]\nfrom = [0, 0, 0]\n", "expected either from or points, got both");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 200\n",
          "rope.line.segments: expected pieces between particles of at least 0.012 m, 1.5 diameters");
+  const std::string drawn_in = "from = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 40\nkeys = [{ time = 0, length = 1 }, ";
+  expect(drawn_in + "{ time = 1, length = 0.4 }]\n",
+         "rope.line.keys.1.length: expected at least 0.48 m, at which the shortest of 40 pieces between particles has "
+         "1.5 diameters, got 0.4");
+  EXPECT_EQ(message(drawn_in + "{ time = 1, length = 0.48 }]\n"), "");
   expect("from = [0, 0, 0]\nto = [0, 0, 1]\nlength = 2\n",
          "expected a place at least 0.032 m (4 diameters) beside `from`");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\nmaterial = \"nylom\"\n", "did you mean nylon?");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "film/scene/reader.hpp"
 #include "film/scene/ropes.hpp"
@@ -54,7 +55,8 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
   return true;
 }
 
-// Reports too many particles and too short pieces. `particles`: number of particles of all ropes so far.
+// Reports too many particles, and pieces that are too short at the start or at a key. `particles`: number of particles
+// of all ropes so far.
 void check_pieces(const Scene& scene, const Rope& rope, const std::string& path, long& particles, Findings& findings) {
   const RopeShape shape = start_shape(rope, scene.up);
   particles += static_cast<long>(shape.places.size());
@@ -69,7 +71,17 @@ void check_pieces(const Scene& scene, const Rope& rope, const std::string& path,
         fmt::format("expected pieces between particles of at least {:.4g} m, {:g} diameters, got {} of which "
                     "the shortest has {:.4g} m",
                     least, kMinRopePiece, shape.lengths.size(), piece));
+    return;
   }
+  // A change of the length changes all pieces by the same factor.
+  const double start = std::accumulate(shape.lengths.begin(), shape.lengths.end(), 0.0);
+  for (std::size_t k = 0; k < rope.keys.size(); ++k)
+    if (const double length = rope.keys[k].length; piece * length < (1 - kRoundoff) * least * start)
+      findings.report(
+          fmt::format("{}.keys.{}.length", path, k),
+          fmt::format("expected at least {:.4g} m, at which the shortest of {} pieces between particles has "
+                      "{:g} diameters, got {}; fewer segments can be shorter together",
+                      least * start / piece, shape.lengths.size(), kMinRopePiece, length));
 }
 
 }  // namespace
