@@ -303,6 +303,12 @@ TEST_F(LibraryFiles, ThatCannotBeUsedAreErrorsWithThePlaceInTheScene) {
   EXPECT_EQ(error.mistakes().at(0).file, (folder_ / "a.toml").string()) << error.what();
   EXPECT_EQ(error.mistakes().at(0).line, 7) << error.what();
   EXPECT_EQ(error.mistakes().at(0).key, "obstacle.b") << error.what();
+  const auto folder = folder_ / "film: first";
+  std::filesystem::create_directory(folder);
+  support::write_bytes(folder / "broken.obj", "f 1 2 3\n");
+  const auto same = thrown<FileError>([&] { Simulation(Scene::parse(text, {}, folder / "a.toml")); });
+  EXPECT_EQ(same.mistakes().at(0).file, (folder / "a.toml").string()) << same.what();
+  EXPECT_EQ(same.mistakes().at(0).key, "obstacle.b") << same.what();
 }
 
 // A change has no place in the file; the obstacle has.

@@ -37,14 +37,18 @@ Mistake mistake_of(std::string_view text) {
   Mistake mistake;
   mistake.text = text;
   if (end == std::string_view::npos || end == 0) return mistake;
-  std::string_view file = first_line.substr(0, end), rest = text.substr(end + 2);
-  if (std::string_view without_column = file; const auto column = take_number(without_column)) {
-    if (std::string_view without_line = without_column; const auto line = take_number(without_line)) {
-      mistake.line = *line, mistake.column = *column;
-      file = without_line;
-    }
+  mistake.file = first_line.substr(0, end);
+  // Names of folders may contain ": ". If the message has line and column, they end the name of the file.
+  for (std::size_t next = end; next != std::string_view::npos; next = first_line.find(": ", next + 2)) {
+    std::string_view file = first_line.substr(0, next);
+    const std::optional<int> column = take_number(file), line = column ? take_number(file) : std::nullopt;
+    if (!line) continue;
+    mistake.file = file;
+    mistake.line = *line, mistake.column = *column;
+    end = next;
+    break;
   }
-  mistake.file = file;
+  std::string_view rest = text.substr(end + 2);
   end = rest.find(": ");
   if (end != std::string_view::npos && end > 0 && is_key(rest.substr(0, end))) {
     mistake.key = rest.substr(0, end);
