@@ -337,6 +337,8 @@ class Module(unittest.TestCase):
         self.assertEqual(set(estimate.parts), {"time steps", "solver", "start"})
         self.assertGreater(estimate.all["position"], 0)
         self.assertFalse(estimate.chaotic)
+        of_mesh = weft.estimate_error(weft.parse(DRAPE, {"time.duration": 0.04}), mesh=True)
+        self.assertEqual((of_mesh.parts["mesh"], of_mesh.comparable), (None, False))  # 15 cells cannot be halved
 
     def test_contact_forces_carry_the_weight_of_a_sheet_at_rest(self):
         scene = weft.parse("""

@@ -37,7 +37,7 @@ Errors errors_of(const run_error::Errors& errors) {
 struct ErrorEstimate {
   Errors all;
   std::map<std::string, std::optional<Errors>> parts;  // by source of error; nullopt: not known
-  bool chaotic = false;
+  bool chaotic = false, comparable = true;
   double cpu_s = 0;
 };
 
@@ -46,7 +46,7 @@ ErrorEstimate estimate_error(const Scene& public_scene, bool with_mesh_error) {
     const scene::Scene& scene = public_scene.data().scene;
     const run_error::ErrorEstimate estimate =
         run_error::estimate_error(scene, run_error::follow(scene), {.mesh = with_mesh_error});
-    ErrorEstimate result{errors_of(estimate.all), {}, estimate.is_chaotic, estimate.cpu_s};
+    ErrorEstimate result{errors_of(estimate.all), {}, estimate.is_chaotic, !estimate.is_lower_bound(), estimate.cpu_s};
     for (const run_error::ErrorPart& part : estimate.parts)
       result.parts[std::string(name_of(part.source))] =
           part.missing.empty() ? std::optional(errors_of(part.errors)) : std::nullopt;
@@ -159,6 +159,8 @@ void bind_tools(py::module_& module) {
       .def_readonly(
           "chaotic", &ErrorEstimate::chaotic,
           "Whether a start moved by 1 um changes the run as much as its errors do; then no setting reduces them.")
+      .def_readonly("comparable", &ErrorEstimate::comparable,
+                    "False if the true error may be larger, as for `comparable` of weft run --error --stats.")
       .def_readonly("cpu_s", &ErrorEstimate::cpu_s, "CPU seconds of the comparison runs.");
   module.def("estimate_error", &estimate_error, py::arg("scene"), py::arg("mesh") = false, ReleaseGil(),
              "Simulate the scene several times and estimate its error; with `mesh`, also that of the mesh.");
