@@ -90,6 +90,24 @@ TEST(Balance, LeavesConstrainedDirectionsAndOtherPartsAsTheyAre) {
   }
 }
 
+// precondition() computes values for all blocks. They must not enter the balance of a solve for some blocks.
+TEST(Balance, OfSomeBlocksDoesNotDependOnEarlierCalls) {
+  Random random(9);
+  const LinearSystem system = system_of_parts(random);
+  const Index rows = system.matrix.rows();
+  const auto b = random.vectors(rows), motion = random.vectors(rows), drift = random.vectors(rows);
+  const std::vector<std::size_t> blocks{0, 2};
+  const auto solution = [&](bool precondition_first) {
+    ConjugateGradient cg;
+    cg.prepare(system);
+    if (precondition_first) cg.precondition(b);
+    std::vector<Vec3> x(b.size());
+    cg.solve(b, {}, 4, x, {.motion = motion, .drift = drift}, blocks);
+    return x;
+  };
+  EXPECT_EQ(solution(true), solution(false));
+}
+
 // If the motion is a translation, no work along the motion follows from no resultant: two of the conditions coincide.
 TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
   for (const bool single : {false, true}) {

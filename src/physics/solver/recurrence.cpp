@@ -124,7 +124,8 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   rank_one_.select(selected_);
   norms_sq_.resize(selected_.size());
   rz_.resize(selected_.size());
-  for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), PaddedVec3<Real>{});
+  // Terms read z_ and p_ outside of the selected blocks, too: precondition() has left values there.
+  for (auto* vector : {&x_, &z_, &p_, &q_}) std::fill(vector->begin(), vector->end(), PaddedVec3<Real>{});
   convert_to_padded<Real>(b, r_);
   product_.filter(r_);
   if (progress.iterations > 0) {
