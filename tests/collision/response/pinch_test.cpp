@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "collision/hierarchy/test_motions.hpp"
+#include "core/archive.hpp"
 #include "physics/collision/response/pinch_report.hpp"
 #include "physics/mesh/shapes.hpp"
 
@@ -263,6 +264,22 @@ TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
     EXPECT_NEAR(push.weights[0] + push.weights[1] + push.weights[2], 1, 1e-12);
   }
   EXPECT_GE(crossings, 2U) << "two sides of the box are crossed";
+}
+
+// Example: a face in an armpit, with one corner on the arm and two on the trunk.
+TEST_F(PinchedTriangle, IsRestoredAlsoIfTheFaceThatMetItJoinsTwoLimbs) {
+  const CornerPair pair = with(1);
+  limb_of_[pair.b[1]] = 1;
+  pinched_.add(pair);
+  pinched_.note_origins(broad_phase_, x_);
+  ByteWriter writer;
+  pinched_.serialize(writer);
+  PinchedPairs restored(3, body_of_, limb_of_);
+  ByteReader reader{writer.bytes};
+  ASSERT_NO_THROW(restored.serialize(reader));
+  ASSERT_EQ(restored.size(), 1U);
+  EXPECT_EQ(restored.origins().at({pair.a, 1, 0}).faces, std::vector<Triangle>{pair.b});
+  EXPECT_TRUE(restored.exempts(pair));
 }
 
 TEST_F(PinchedTriangle, IsReportedOnceWithTheObstacleThatIsNearestBesides) {

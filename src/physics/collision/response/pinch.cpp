@@ -197,10 +197,10 @@ void PinchedPairs::serialize(Archive& archive) {
     serialize_plain(archive, origin.faces);
     if constexpr (Archive::kReads) {
       const auto is_of_limb = [&, body = key.body, limb = key.limb](const Triangle& face) {
-        return std::ranges::all_of(face, [&](Index v) {
-          return v >= first_obstacle_ && v < static_cast<Index>(body_of_.size()) && body_of_[v] == body &&
-                 limb_of_[v] == limb;
-        });
+        const auto is_of_body = [&](Index v) {
+          return v >= first_obstacle_ && v < static_cast<Index>(body_of_.size()) && body_of_[v] == body;
+        };
+        return std::ranges::all_of(face, is_of_body) && belongs_to_limb(limb)(face);
       };
       const auto is_particle = [&](Index v) { return v >= 0 && v < first_obstacle_; };
       require(std::ranges::all_of(key.cloth, is_particle) && key.body > body_of_[first_obstacle_ - 1] &&

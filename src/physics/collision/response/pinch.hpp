@@ -19,14 +19,15 @@
 namespace weft::collision {
 
 /// The exempted cloth triangles, each with the limb of an obstacle from which it is exempt. (An obstacle without limbs
-/// counts as one limb.) The triangle may intersect this limb: no separating plane is required. update_exempted()
-/// removes a triangle from the set if it is apart from the limb and back on its original side of the limb. Neighbours
-/// of a triangle of the set (triangles that share a particle with it) are exempt from its limb, too, so that a limb
-/// that moves along the cloth does not drag the cloth with it. Exception: if the common particle is on its original
-/// side of the limb, the neighbour is not exempt, so that a limb that approaches does not exempt more and more of the
-/// cloth around it. update_exempted() adds a neighbour to the set if it meets the limb or is on the wrong side of it.
-/// If two limbs overlap, the cloth is exempt from the limb that first met it, and rests on the other limb. If the first
-/// limb retreats, the cloth returns to its original side of that limb.
+/// counts as one limb. A face between two limbs belongs to the limb of its first corner.) The triangle may intersect
+/// this limb: no separating plane is required. update_exempted() removes a triangle from the set if it is apart from
+/// the limb and back on its original side of the limb. Neighbours of a triangle of the set (triangles that share a
+/// particle with it) are exempt from its limb, too, so that a limb that moves along the cloth does not drag the cloth
+/// with it. Exception: if the common particle is on its original side of the limb, the neighbour is not exempt, so that
+/// a limb that approaches does not exempt more and more of the cloth around it. update_exempted() adds a neighbour to
+/// the set if it meets the limb or is on the wrong side of it. If two limbs overlap, the cloth is exempt from the limb
+/// that first met it, and rests on the other limb. If the first limb retreats, the cloth returns to its original side
+/// of that limb.
 class PinchedPairs {
  public:
   struct Key {
