@@ -307,7 +307,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
         collect_by(x_t0, [&] { candidates_.collect_more(x_t0, x_t1, c >= kTightCollections); });
       continue;
     }
-    if (const auto new_pinch = find_new_pinch(pinched, pinched_, candidates_.hierarchies()); new_pinch && !may_pinch) {
+    if (const auto new_pinch = find_new_pinch(pinched, pinched_); new_pinch && !may_pinch) {
       report.separated = false;
       report.unseparated_pair = *new_pinch;
       return report;

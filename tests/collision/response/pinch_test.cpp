@@ -296,13 +296,11 @@ TEST_F(PinchedTriangle, IsReportedOnceWithTheObstacleThatIsNearestBesides) {
 
 TEST_F(PinchedTriangle, IsFreshForAnObstacleThatDidNotPinchItsClothBefore) {
   const PinchedPairs before = pinched_;
-  EXPECT_FALSE(find_new_pinch(pinched_, before, broad_phase_));
-  pinched_.add(with(2));
-  const auto fresh = find_new_pinch(pinched_, before, broad_phase_);
-  ASSERT_TRUE(fresh.has_value());
-  EXPECT_EQ(fresh->a, scene_.triangles[0]);
-  EXPECT_EQ(fresh->b, surfaces_[2].triangles[0]);
-  EXPECT_FALSE(find_new_pinch(pinched_, pinched_, broad_phase_));
+  EXPECT_FALSE(find_new_pinch(pinched_, before));
+  const CornerPair met{scene_.triangles[0], surfaces_[2].triangles.back()};
+  pinched_.add(met);
+  EXPECT_EQ(find_new_pinch(pinched_, before), met);
+  EXPECT_FALSE(find_new_pinch(pinched_, pinched_));
 }
 
 }  // namespace

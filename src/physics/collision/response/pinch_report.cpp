@@ -58,15 +58,13 @@ std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodie
   return found;
 }
 
-std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
-                                         const BroadPhase& surfaces) {
+std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before) {
   for (const auto& [key, origin] : pinched.origins()) {
     const std::size_t cloth = pinched.body_of(key.cloth[0]), obstacle = key.body;
     const auto same = [&](const auto& other) {
       return before.body_of(other.first.cloth[0]) == cloth && other.first.body == obstacle;
     };
-    if (std::ranges::none_of(before.origins(), same))
-      return CornerPair{key.cloth, surfaces.surface(obstacle).triangles.front()};
+    if (std::ranges::none_of(before.origins(), same)) return CornerPair{key.cloth, origin.faces.front()};
   }
   return std::nullopt;
 }

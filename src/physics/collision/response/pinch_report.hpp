@@ -25,9 +25,8 @@ struct Pinch {
 std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
                                 std::span<const Vec3> x);
 
-/// A pair in `pinched` whose obstacle does not pinch that cloth in `before`, as the triangle of cloth and the first
-/// face of the obstacle; nullopt if there is no such pair.
-std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before,
-                                         const BroadPhase& surfaces);
+/// A pair in `pinched` whose obstacle does not pinch that cloth in `before`, as the triangle of cloth and the face of
+/// the obstacle that first met it; nullopt if there is no such pair.
+std::optional<CornerPair> find_new_pinch(const PinchedPairs& pinched, const PinchedPairs& before);
 
 }  // namespace weft::collision
