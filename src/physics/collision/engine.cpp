@@ -283,7 +283,9 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
   // kCollections collections, the correction fails.
   constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
+  if (!failing_.empty()) report.unseparated_pair = failing_.front();  // in case that the last collection fails
   pushed_pairs_.insert(pushed_pairs_.end(), failing_.begin(), failing_.end());
+  failing_ = {};  // enforce() overwrites the list
   PinchedPairs pinched = pinched_;
   std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
   for (int c = 0; c < kCollections; ++c) {
@@ -294,7 +296,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
-    report.unseparated_pair = pass.unseparated_pair;
+    if (!pass.separated) report.unseparated_pair = pass.unseparated_pair;
     if (!report.obstructed_pins.empty() && !may_move_pins) {
       report.separated = false;
       report.unseparated_pair = report.obstructed_pins.front().pair;

@@ -62,8 +62,8 @@ class Engine {
   /// push_apart() was called since begin_step(), and that it has not exempted. Friction still measures slip from the
   /// start of the step. In later calls in this step, pass x as x_t0. x must outlive the step.
   void continue_from(std::span<const Vec3> x);
-  /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests or
-  /// pushes apart pairs.
+  /// Pairs for which is_separated() found no separating plane. Valid until the next call of a function that tests
+  /// pairs; empty after push_apart().
   std::span<const CornerPair> failing() const { return failing_; }
   /// Whether failing() has a pair that was in none of the calls of push_apart() since begin_step().
   bool fails_anew() const;
