@@ -36,11 +36,12 @@ UntangleInput::UntangleInput(const collision::Bodies& of_bodies, std::vector<Sur
   for (const mesh::Edge& edge : edges.edges) {
     const auto [i, j] = edge.vertices;
     if (edge.triangles[1] < 0) on_border[i] = on_border[j] = 1;
-    if (!is_cloth(i)) continue;
+    if (!is_cloth(i) || i == j) continue;  // a piece of rope (a, b, b) has an edge from b to b
     neighbours[i].push_back(j);
     neighbours[j].push_back(i);
     add(i, j, false);
-    if (edge.triangles[1] >= 0) add(third(edge.triangles[0], edge), third(edge.triangles[1], edge), true);
+    const bool is_hinge = edge.triangles[1] >= 0 && edge.triangles[0] != edge.triangles[1];
+    if (is_hinge) add(third(edge.triangles[0], edge), third(edge.triangles[1], edge), true);
   }
 }
 
