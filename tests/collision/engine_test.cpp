@@ -275,6 +275,32 @@ TEST(Engine, PinchedClothGetsNoContactsWithWhatPinchesIt) {
   EXPECT_TRUE(engine.response().springs().empty());
 }
 
+// The ceiling has passed through the cloth, which is pushed down out of it. A pyramid far below, which cannot meet the
+// cloth, has moved by 1 m since candidate pairs were collected. It is on the way out, but far beyond its end.
+TEST(Engine, AnObstacleFarAwayDoesNotBlockTheWayOutOfPinchedCloth) {
+  Sheet sheet(2, 0.005, 0.01);
+  std::vector<Vec3> x = sheet.x;
+  for (const Vec3& corner : {Vec3(-1, -1, -3), Vec3(1, -1, -3), Vec3(1, 1, -3), Vec3(-1, 1, -3), Vec3(0, 0, -2)})
+    x.push_back(corner + Vec3(0.52, 0.02, 0));
+  Bodies bodies = sheet.bodies();
+  bodies.add(std::vector<Triangle>{{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, 5, {});
+  std::vector<std::uint8_t> movable = sheet.movable();
+  movable.resize(x.size(), kFixed);
+  std::vector<Vec3> pinched = x;
+  for (std::size_t v = sheet.particles() + 4; v < sheet.particles() + 8; ++v) pinched[v].z() = -0.0001;
+  Engine engine(std::move(bodies), {}, x, sheet.masses);
+  begin_step(engine, x, pinched);
+  ASSERT_FALSE(engine.is_separated(x, pinched));
+  ASSERT_TRUE(engine.push_apart(x, pinched, movable, true).separated);
+  begin_step(engine, pinched, pinched);
+  std::vector<Vec3> moved = pinched;
+  for (std::size_t v = moved.size() - 5; v < moved.size(); ++v) moved[v].x() -= 1;
+  begin_step(engine, moved, moved);
+  ASSERT_FALSE(engine.response().springs().empty());
+  const double full = numerics.contact.inertial_stiffness * sheet.masses[0] / (kEngineStep * kEngineStep);
+  for (const Contact& contact : engine.response().springs()) EXPECT_NEAR(contact.stiffness, full, 1e-9 * full);
+}
+
 // A tilted ceiling pinches the cloth on one side. When the predicted end of the next step is corrected, no further
 // pairs may be exempted.
 TEST(Engine, APredictedEndExemptsNoPairs) {

@@ -153,6 +153,11 @@ bool CandidateCache::lists_near(std::span<const Vec3> x) const {
   return parallel_all_of(x.size(), [&](std::size_t i) { return is_at_end(i, x[i], margin); });
 }
 
+bool CandidateCache::bounds_contain(std::span<const Vec3> x) const {
+  return margin_ >= 0 &&
+         parallel_all_of(x.size(), [&](std::size_t i) { return (x[i] - from_[i]).squaredNorm() <= margin_ * margin_; });
+}
+
 void CandidateCache::forget() {
   if (!BroadPhase::remembers(parameters_.broad_phase)) return;
   broad_phase_.forget();

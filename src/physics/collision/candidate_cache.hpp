@@ -79,6 +79,10 @@ class CandidateCache {
   /// although they do.
   bool lists_near(std::span<const Vec3> x) const;
 
+  /// Whether the bounds of hierarchies() contain all vertices at x, also those of clear obstacles. It may return false
+  /// although they do.
+  bool bounds_contain(std::span<const Vec3> x) const;
+
   /// Whether a vertex at x lies in the half-space that contains its obstacle and no particle; false if no such
   /// half-space is known.
   bool is_kept_clear(std::size_t vertex, const Vec3& x) const;

@@ -129,6 +129,8 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
   if (!pinched_.empty()) {
+    // The way out of pinched cloth is compared with all obstacles, also with those that are clear.
+    if (!candidates_.bounds_contain(x_t0)) collect(x_t0, x_t1);
     pinched_.update_exempted(bodies_.triangles(), candidates_.hierarchies(), x_t0, is_repeated);
     pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.detection_distance());
   }
