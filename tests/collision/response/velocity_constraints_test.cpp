@@ -160,6 +160,28 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
   }
 }
 
+// The particle sticks after three steps of rest.
+TEST(VelocityConstraints, ListNormalForceAndFrictionOfAStickingParticle) {
+  constexpr double kMu = 0.5;
+  const Vec3 force = kMass * kGravity * Vec3(0.4 * kMu, 0, 1);
+  OneParticle particle;
+  for (int step = 0; step < 4; ++step) {
+    particle.constraints.begin_step(kStep);
+    particle.wall(Vec3::UnitZ(), kDMin, Vec3::Zero(), kMu);
+    particle.x_t1[0] = Vec3(0, 0, -1e-4);
+    particle.prepare();
+    particle.revise(Vec3::Zero(), force);
+    particle.constraints.accept();
+  }
+  ASSERT_EQ(particle.prescribed().constraint.free, Mat3::Zero());
+  std::vector<Vec3> push{Vec3::Zero()}, friction = push;
+  std::vector<double> limit{0};
+  particle.constraints.add_normal_and_friction_forces(particle.x_t0, push, friction, limit);
+  EXPECT_LT((push[0] - Vec3(0, 0, force.z())).norm(), 1e-12 * force.norm());
+  EXPECT_LT((friction[0] - Vec3(force.x(), 0, 0)).norm(), 1e-12 * force.norm());
+  EXPECT_NEAR(limit[0], kMu * force.z(), 1e-12 * force.norm());
+}
+
 TEST(VelocityConstraints, AParticleBetweenTwoWallsSticksHoweverManyOtherWallsItHas) {
   constexpr double kMu = 0.5;
   OneParticle particle;

@@ -227,6 +227,7 @@ bool VelocityConstraints::revise(TouchingParticle& particle, const Vec3& x_end, 
   const double size = force.norm();
   const Vec3 rest = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
   memory.push = force - rest;
+  particle.force_across = rest;
   memory.normal_force = size * pushing.multiplier_sum();
   const double push = memory.push.norm();
   const Vec3 held_at = project(particle, push > 0 ? Vec3(u - probe_distance() / push * memory.push) : u, false, next);
@@ -353,8 +354,14 @@ void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3
 void VelocityConstraints::add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
                                                          std::span<Vec3> friction, std::span<double> limit) const {
   for (const TouchingParticle& particle : touching_particles_) {
-    if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Index i = particle.particle;
+    if (particle.memory.state == State::sticking) {
+      push[i] += particle.memory.push;
+      friction[i] += particle.force_across;
+      limit[i] += walls_[main_wall(particle)].static_friction * particle.memory.normal_force;
+      continue;
+    }
+    if (particle.memory.state != State::sliding || particle.friction_normal_force == 0) continue;
     const Wall& wall = walls_[main_wall(particle)];
     push[i] += particle.friction_normal_force * wall.normal;
     friction[i] += this->friction(particle, x_end[i]).force;

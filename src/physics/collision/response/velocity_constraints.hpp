@@ -93,8 +93,9 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds, for the sliding particles, the normal forces that limit friction to `push`, friction to
-  /// `friction`, and the maximum static friction to `limit` [N].
+  /// Adds normal forces to `push`, friction to `friction`, and the maximum static friction to `limit` [N]. For sliding
+  /// particles, these are the normal force that limits friction, and friction at x_end; for sticking ones, both parts
+  /// of the force that the walls exerted in the last solve before revise().
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
                                       std::span<double> limit) const;
   /// As add_forces; also adds −∂f/∂x to the matrix, positive semidefinite as in ContactSet::linearise(). `end_rate`:
@@ -139,6 +140,7 @@ class VelocityConstraints {
     ActiveWalls held;
     Vec3 x_t0 = Vec3::Zero();
     Vec3 u_held = Vec3::Zero();             // displacement prescribed in the constrained directions [m]
+    Vec3 force_across = Vec3::Zero();       // force of the walls across their normals in the last solve [N]
     double friction_normal_force = 0;       // normal force that limits friction in this solve [N]
     Vec3 relative_friction = Vec3::Zero();  // −friction / maximum friction at the expected end x_t1
     int constraint_changes = 0;             // number of changes of its constraint in this step
