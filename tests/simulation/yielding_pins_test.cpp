@@ -252,6 +252,35 @@ TEST(LaggingPin, IsNotSaidToBeAtItsTargetWhenItIsReleased) {
   }
 }
 
+// A particle lags behind a pin until that pin is released; then a second pin has it. A second pin with a strength is a
+// spring, which does not lag.
+TEST(LaggingPin, LeavesItsParticlesToTheNextPin) {
+  for (const bool is_soft : {false, true}) {
+    const std::string next =
+        std::string("[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\n") + (is_soft ? "strength = 10\n" : "");
+    const model::Model model =
+        environment::Environment(support::scene_of_text(hanging(1, "release = 0.01", next))).model;
+    const ClothSystem cloth(model);
+    YieldingPins pins(model, {0}, cloth.masses());
+    std::vector<Vec3> x = model.cloths[0].start;
+    pins.begin_step(0, 0.01, x);
+    const Index particle = pins.held().front().constraint.particle;
+    pins.release_particle(particle, "'box' near (0, 0, 0) m");
+    pins.begin_step(0, 0.01, x);
+    pins.accept();
+    EXPECT_EQ(pins.take_lag_report().particles, 1);
+    x[static_cast<std::size_t>(particle)].z() -= 0.1;
+    pins.begin_step(0.01, 0.01, x);
+    pins.accept();
+    const YieldingPins::LagReport report = pins.take_lag_report();
+    EXPECT_EQ(report.particles, is_soft ? 0 : 1);
+    ASSERT_EQ(report.messages.size(), is_soft ? 0u : 1u);
+    if (!is_soft) {
+      EXPECT_EQ(report.messages[0].find("cloth.sheet.pin.1: takes over particles"), 0u) << report.messages[0];
+    }
+  }
+}
+
 // The upper row is held. A pull that fades over 0.2 m draws the particles below it to their targets, where the rigid
 // motion of the row would take them. At the end of a fast swing, these particles are closer to their targets than
 // without the pull, and closest near the row. Particles farther below are not pulled.

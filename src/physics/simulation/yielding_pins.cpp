@@ -79,8 +79,10 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   std::ranges::fill(lagging_particles_, std::size_t{0});
   for (const integrator::HeldParticle& target : targets_) {
     const auto i = static_cast<std::size_t>(target.constraint.particle);
-    lags_[i] |= released_[i];
-    lagging_particles_[pin_of(target.constraint.particle)] += lags_[i];
+    const std::size_t pin = pin_of(target.constraint.particle);
+    // A particle that lags until its pin is released may then belong to a pin with a strength, whose spring pulls it.
+    lags_[i] = !pins_.info(pin).strength && (lags_[i] != 0 || released_[i] != 0);
+    lagging_particles_[pin] += lags_[i];
   }
   for (std::size_t k = 0; k < targets_.size(); ++k) {
     const integrator::HeldParticle& target = targets_[k];
@@ -142,8 +144,12 @@ void YieldingPins::accept() {
     ++count;
     const std::size_t pin = pin_of(particle);
     if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
-    lag_report_.messages.push_back(fmt::format("{}: yields to {}, and lags behind until the way is free",
-                                               name_of(model_, pins_.info(pin)), obstructions_[pin]));
+    const auto obstruction = obstructions_.find(pin);
+    lag_report_.messages.push_back(
+        name_of(model_, pins_.info(pin)) +
+        (obstruction == obstructions_.end()
+             ? ": takes over particles that lag behind another pin, and pulls them to their places"
+             : fmt::format(": yields to {}, and lags behind until the way is free", obstruction->second)));
   }
   lag_report_.particles = std::max(lag_report_.particles, count);
   std::swap(lagged_, lags_);

@@ -45,7 +45,8 @@ class YieldingPins {
   /// Lagging pins of the steps of a frame. take_lag_report() also begins the next frame.
   struct LagReport {
     int particles = 0;                  ///< largest number of particles that lagged in one step
-    std::vector<std::string> messages;  ///< one text per pin that began to lag or is at its target again
+    std::vector<std::string> messages;  ///< one text per pin that began to lag, also in place of a released pin, or
+                                        ///< that is at its target again
   };
   LagReport take_lag_report();
 
