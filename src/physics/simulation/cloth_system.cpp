@@ -438,14 +438,13 @@ double ClothSystem::max_strain(std::span<const Vec3> x) const {
   return largest;
 }
 
-ClothSystem::Overstretch ClothSystem::overstretch(std::span<const Vec3> x) const {
-  Overstretch largest;
+std::vector<ClothSystem::Overstretch> ClothSystem::overstretch(std::span<const Vec3> x) const {
+  std::vector<Overstretch> of_cloths;
   for (const auto& [cloth, limit] : limits_) {
     const forces::StretchLimit::Worst worst = limit->worst(x);
-    if (const double ratio = worst.extension / limit->limit(); ratio > largest.ratio)
-      largest = {ratio, cloth, worst.extension, worst.place};
+    of_cloths.push_back({cloth, worst.extension / limit->limit(), worst.extension, worst.place});
   }
-  return largest;
+  return of_cloths;
 }
 
 std::vector<float> ClothSystem::strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const {

@@ -138,14 +138,15 @@ class ClothSystem {
   double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
   /// Largest |length / rest length − 1| of weft, warp and ropes.
   double max_strain(std::span<const Vec3> x) const;
-  /// The place with the largest extension of threads, relative to the limit of their cloth.
+  /// The place of a cloth with the largest extension of threads.
   struct Overstretch {
-    double ratio = 0;       ///< extension / limit; 0 if no cloth has a limit
-    std::size_t cloth = 0;  ///< number of the cloth
-    double extension = 0;   ///< length / rest length − 1
-    Vec3 place = Vec3::Zero();
+    std::size_t cloth;  ///< number of the cloth
+    double ratio;       ///< extension / limit of the cloth; 0 if no thread is extended
+    double extension;   ///< length / rest length − 1
+    Vec3 place;
   };
-  Overstretch overstretch(std::span<const Vec3> x) const;
+  /// One per cloth that has a limit of extension, in the order of the model.
+  std::vector<Overstretch> overstretch(std::span<const Vec3> x) const;
   /// Largest |strain| of weft and warp next to each particle of one cloth.
   std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;
 

@@ -257,24 +257,28 @@ void StepLoop::accept(double h, FrameReport& report) {
   report.solver_error += solver_error_;
 }
 
-// Measures the stretch at the end of the accepted step; the start of the step is in `next_`. Warns if the largest ratio
-// of stretch to limit rises above kMaxStretchRatio in this step, for the first time in the frame. If the same cloth was
-// reported before, warns only at kReportAgainRatio times the last reported ratio: otherwise a tight waist on a moving
-// character would be reported many times.
+// Measures the stretch at the end of the accepted step; the start of the step is in `next_`. Warns of each cloth whose
+// ratio of stretch to limit rises above kMaxStretchRatio in this step. If the same cloth was reported before, warns
+// only at kReportAgainRatio times the last reported ratio: otherwise a tight waist on a moving character would be
+// reported many times.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
-  const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());
-  const bool begins = report.stretch_ratio <= kMaxStretchRatio && most.ratio > kMaxStretchRatio;
-  report.stretch_ratio = std::max(report.stretch_ratio, most.ratio);
-  if (!begins || cloth_.overstretch(next_.particles()).ratio > kMaxStretchRatio) return;
-  double& reported = reported_overstretch_[most.cloth];
-  if (most.ratio < kReportAgainRatio * reported) return;
-  reported = most.ratio;
-  report.warnings.push_back(
-      fmt::format("frame {}: '{}' is stretched by {:.0f} %, which its threads do not allow (max_stretch {:g}), near "
-                  "({:.4g}, {:.4g}, {:.4g}) m",
-                  report.frame, model_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.ratio,
-                  most.place.x(), most.place.y(), most.place.z()));
+  const std::vector<ClothSystem::Overstretch> at_end = cloth_.overstretch(progress_.now.particles());
+  std::vector<ClothSystem::Overstretch> at_start;  // computed only if needed
+  for (std::size_t k = 0; k < at_end.size(); ++k) {
+    const ClothSystem::Overstretch& most = at_end[k];
+    report.stretch_ratio = std::max(report.stretch_ratio, most.ratio);
+    double& reported = reported_overstretch_[most.cloth];
+    if (most.ratio <= kMaxStretchRatio || most.ratio < kReportAgainRatio * reported) continue;
+    if (at_start.empty()) at_start = cloth_.overstretch(next_.particles());
+    if (at_start[k].ratio > kMaxStretchRatio) continue;
+    reported = most.ratio;
+    report.warnings.push_back(
+        fmt::format("frame {}: '{}' is stretched by {:.0f} %, which its threads do not allow (max_stretch {:g}), near "
+                    "({:.4g}, {:.4g}, {:.4g}) m",
+                    report.frame, model_.cloths[most.cloth].name, 100 * most.extension, most.extension / most.ratio,
+                    most.place.x(), most.place.y(), most.place.z()));
+  }
 }
 
 template <class Archive>
