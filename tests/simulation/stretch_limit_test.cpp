@@ -124,6 +124,14 @@ TEST(StretchLimitInAScene, WarnsOnceIfItCannotBeKept) {
   EXPECT_EQ(seen_warnings.size(), 1U);
 }
 
+// The sheet starts at 1.3 times its length along the warp, three times its limit.
+TEST(StretchLimitInAScene, IsMeasuredAtTheStart) {
+  scene::Scene scene = testing::sheet_alone(0.5, 5, 1);
+  scene.cloths[0].material.max_stretch = 0.1;
+  scene.cloths[0].start_scale = {1, 1.3};
+  EXPECT_NEAR(production::SceneSimulation(scene).initial_report().stretch_ratio, 3, 1e-9);
+}
+
 // The first sheet stays stretched by 15 % while the second one is pulled down.
 TEST(StretchLimitInAScene, WarnsOfEachCloth) {
   std::vector<std::string> seen_warnings;

@@ -123,7 +123,10 @@ Simulation::Impl::Impl(model::Model of) : model(std::move(of)), frame(-model.tim
   start_report.frame = frame;
   start_report.time = time();
   measure_energies(start_report);
-  start_report.max_strain = steps->cloth().max_strain(steps->progress().now.particles());
+  const std::span<const Vec3> start = steps->progress().now.particles();
+  start_report.max_strain = steps->cloth().max_strain(start);
+  for (const ClothSystem::Overstretch& most : steps->cloth().overstretch(start))
+    start_report.stretch_ratio = std::max(start_report.stretch_ratio, most.ratio);
   measure(start_report);
   const std::span<const double> masses = steps->cloth().masses();
   energy_bound.emplace(model, std::accumulate(masses.begin(), masses.end(), 0.0), start_report);

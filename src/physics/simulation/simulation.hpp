@@ -82,9 +82,10 @@ class Simulation {
   /// volume although the model gives it an amount of air.
   FrameReport advance();
 
-  /// The report of frame 0. If the model has a preroll: until run_preroll() simulates a frame, the
-  /// report has the energies and distances at the start of the preroll; if run_preroll() stops
-  /// early, it is the report of the last frame that run_preroll() has simulated.
+  /// The report of frame 0. If the model has a preroll: until run_preroll() simulates a frame, this is the report of
+  /// the start of the preroll; if run_preroll() stops early, it is that of the last frame that run_preroll() has
+  /// simulated. The report of a start has energies, enclosed air and strains, but no distances and no attachments that
+  /// hold: contacts are searched and attachments tied in the first step.
   FrameReport initial_report() const;
 
   /// Simulates the preroll up to frame 0; without this call, advance() begins with the preroll. Calls `proceed` before
