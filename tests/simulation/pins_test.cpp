@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "physics/mesh/shapes.hpp"
 #include "support/scene_runs.hpp"
@@ -112,14 +114,48 @@ TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
     }
 }
 
-// In a run, the pinned particles follow the body.
+// The body is squeezed flat along y, to a sheet of which the triangles below the pin are lines; or it begins so.
+TEST_F(PinsOnACharacter, StayAtTrianglesThatCollapse) {
+  for (const bool begins_flat : {false, true}) {
+    model::Model model = environment::Environment(scene_of(kRigid)).model;
+    std::vector<Vec3> whole(model.bodies[0].mesh.positions.size());
+    for (std::size_t v = 0; v < whole.size(); ++v) whole[v] = model.vertex(0, v, 0).position;
+    std::vector<Vec3> flat = whole;
+    for (Vec3& x : flat) x.y() = 0;
+    model.bodies[0].mover = std::make_shared<const model::Mover>(
+        motion::KeyFrames(motion::Interpolation::linear, 0, 0.05, {begins_flat ? flat : whole, flat}, false));
+    const Pins pins(model, {0});
+    std::vector<integrator::HeldParticle> held;
+    for (const double t : {0.0, 0.02, 0.05}) {
+      pins.held_at(t, model, held);
+      ASSERT_EQ(held.size(), 9u);
+      for (const integrator::HeldParticle& particle : held) {
+        const Vec3& start = model.cloths[0].start[particle.constraint.particle];
+        EXPECT_LT((particle.x_end - start).norm(), begins_flat || t == 0 ? 1e-12 : 0.2) << t;
+        EXPECT_TRUE(particle.v_end.allFinite()) << t;
+      }
+    }
+  }
+}
+
+// In a run, the pinned particles follow the body, and the cloth follows them. Tested in the frames at which there is a
+// key frame, where the vertices are exact.
 TEST_F(PinsOnACharacter, CarryCloth) {
-  const scene::Scene scene = scene_of(kRigid, "[contact]\nobstacles = false\n");
-  const std::vector<Vec3> last = support::run_scene(scene, {.counts_intersections = false}).back().cloths[0];
-  const Pinned pinned(scene);
-  for (const auto& held : pinned.at(scene.time.duration)) {
-    EXPECT_EQ(last[held.constraint.particle], held.x_end);
-    EXPECT_GT((held.x_end - pinned.start(held)).norm(), 0.1);
+  const auto frames = support::run_scene(scene_of(kRigid, "[contact]\nobstacles = false\n"),
+                                         {.counts_intersections = false, .keep_positions = true});
+  ASSERT_EQ(frames.size(), 11u);
+  const std::vector<Vec3>& start = frames[0].cloths[0];
+  for (const std::size_t frame : {std::size_t{5}, std::size_t{10}}) {
+    const double t = 0.04 * static_cast<double>(frame);
+    const std::vector<Vec3>& x = frames[frame].cloths[0];
+    for (std::size_t i = 54; i < 63; ++i) {  // the upper row
+      const Vec3 in_body = start[i] - kRigid(Vec3::Zero(), 0);
+      EXPECT_LT((x[i] - kRigid(in_body, t)).norm(), 1e-6) << i << ", frame " << frame;  // tolerance as above
+      EXPECT_GT((x[i] - start[i]).norm(), 0.05);
+    }
+    // The sheet is 0.3 m long, and its threads lock at 10 %.
+    for (std::size_t i = 0; i < 54; ++i)
+      EXPECT_LT((x[i] - x[54 + i % 9]).norm(), 1.15 * 0.3) << i << ", frame " << frame;
   }
 }
 

@@ -13,23 +13,27 @@ struct MovingPoint {
   Vec3 x, v;
 };
 
-/// Unit vector along u and its rate of change, if u changes at u_rate.
-MovingPoint unit(const Vec3& u, const Vec3& u_rate) {
+/// Unit vector along u and its rate of change, if u changes at u_rate. Zero if u is not longer than `negligible`.
+MovingPoint unit(const Vec3& u, const Vec3& u_rate, double negligible) {
   const double length = u.norm();
+  if (!(length > negligible)) return {Vec3::Zero(), Vec3::Zero()};
   const Vec3 along = u / length;
   return {along, (u_rate - along.dot(u_rate) * along) / length};
 }
 
-/// Orthonormal axes of a triangle and their rates of change: its first side, its normal, and their vector product.
+/// Orthonormal axes of a triangle and their rates of change: its first side, its normal, and their vector product. An
+/// axis that a collapsed triangle does not define is zero.
 struct TriangleAxes {
   Mat3 axes, rates;
 
   TriangleAxes(const MovingPoint& a, const MovingPoint& b, const MovingPoint& c) {
     const Vec3 p = b.x - a.x, q = c.x - a.x, p_rate = b.v - a.v, q_rate = c.v - a.v;
-    const MovingPoint side = unit(p, p_rate), normal = unit(p.cross(q), p_rate.cross(q) + p.cross(q_rate));
+    const MovingPoint side = unit(p, p_rate, 0),
+                      normal = unit(p.cross(q), p_rate.cross(q) + p.cross(q_rate), kRoundoff * p.norm() * q.norm());
     axes << side.x, normal.x, side.x.cross(normal.x);
     rates << side.v, normal.v, side.v.cross(normal.x) + side.x.cross(normal.v);
   }
+  bool has_collapsed() const { return axes.col(1).isZero(0); }
 };
 
 }  // namespace
@@ -114,9 +118,15 @@ std::vector<Pins::Anchor> Pins::make_anchors(const model::Model& model, std::siz
     vertices.push_back({model.vertex(body, v, t).position, Vec3::Zero()});
     x.push_back(vertices.back().x);
   }
+  // A collapsed triangle cannot carry a point beside it. Its neighbours have the same points, up to rounding.
+  std::vector<mesh::Triangle> triangles = surface.topology.triangles;
+  std::erase_if(triangles, [&](const mesh::Triangle& t) {
+    return TriangleAxes(vertices[at(t[0])], vertices[at(t[1])], vertices[at(t[2])]).has_collapsed();
+  });
+  if (triangles.empty()) triangles = surface.topology.triangles;
   std::vector<Anchor> anchors;
   for (const Vec3& place : places) {
-    const collision::SurfacePoint nearest = collision::nearest_point(place, surface.topology.triangles, x);
+    const collision::SurfacePoint nearest = collision::nearest_point(place, triangles, x);
     Anchor& anchor = anchors.emplace_back();
     Vec3 nearest_point = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
