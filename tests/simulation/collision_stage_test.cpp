@@ -118,7 +118,8 @@ TEST_F(CollisionStages, TellAContinuationThatLeadsBackToItsStart) {
 }
 
 // In a step of 0.1 s, the blade makes half a turn, so its vertices would move straight through its middle. The block is
-// within reach of the turning blade, out of its reach, or not yet released.
+// within reach of the turning blade, out of its reach, or not yet released. Forces move a block in the whole step in
+// which it is released.
 TEST(TurningObstacle, IsSeenByBodiesThatForcesMove) {
   const auto turns_too_far = [](double y, double release) {
     scene::Scene scene;
@@ -139,6 +140,7 @@ TEST(TurningObstacle, IsSeenByBodiesThatForcesMove) {
   EXPECT_TRUE(turns_too_far(0.1, 0));
   EXPECT_FALSE(turns_too_far(0.5, 0));
   EXPECT_FALSE(turns_too_far(0.1, 1));
+  EXPECT_TRUE(turns_too_far(0.1, 0.05));
 }
 
 }  // namespace

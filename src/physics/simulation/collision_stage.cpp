@@ -240,10 +240,15 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
   return engine_.begin_step(now.x, next.x, movable_, h, motions_, is_repeated);
 }
 
+// Whether forces move a colliding body in the whole step that ends at t_end [s]; see any_frame_is_released().
+bool CollisionStage::is_moved_by_forces(std::size_t body, double t_end) const {
+  return is_dynamic(body) && model::is_later(t_end, model_.bodies[bodies_[body]].dynamics->release);
+}
+
 bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemState& now) const {
   const double max_sagitta = numerics.contact.verlet_margin * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (radii_[b] == 0 || (is_dynamic(b) && t >= model_.bodies[bodies_[b]].dynamics->release)) continue;
+    if (radii_[b] == 0 || is_moved_by_forces(b, t + h)) continue;
     // Samples of the angular velocity at the start, middle and end of the step are enough: it
     // changes little in a step, except that a body stops at its last key.
     double angle = 0;
@@ -307,10 +312,7 @@ bool CollisionStage::solved_surface_comes_near(std::size_t body, double t, doubl
   };
   const std::span<const collision::Surface> surfaces = engine_.bodies().surfaces();
   for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    if (s >= model_.cloths.size()) {
-      const model::Dynamics* moved = model_.bodies[bodies_[s - model_.cloths.size()]].dynamics.get();
-      if (moved == nullptr || t < moved->release) continue;
-    }
+    if (s >= model_.cloths.size() && !is_moved_by_forces(s - model_.cloths.size(), t + h)) continue;
     if (std::ranges::any_of(surfaces[s].triangles, meets)) return true;
   }
   return false;

@@ -161,6 +161,7 @@ class CollisionStage {
   std::vector<double> masses_of_all(const ClothSystem& cloth) const;
   const std::vector<Vec3>& append_bodies(SystemState& start) const;
   bool is_dynamic(std::size_t body) const { return model_.bodies[bodies_[body]].dynamics != nullptr; }
+  bool is_moved_by_forces(std::size_t body, double t_end) const;
   void place_bodies(double t, SystemState& state) const;
   bool solved_surface_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
