@@ -136,6 +136,16 @@ double sagitta(double radius, double angle) {
   return radius * angle * angle / 8;
 }
 
+// Angle by which a body turns from t to t + h at its largest angular velocity [rad]. Samples at the start, middle and
+// end of the step are enough: the angular velocity changes little in a step, except that a body stops at its last key.
+template <class PoseAt>
+double max_turn(double t, double h, const PoseAt& pose_at) {
+  double angle = 0;
+  for (const double fraction : {0.0, 0.5, 1.0})
+    angle = std::max(angle, h * pose_at(t + fraction * h).angular_velocity.norm());
+  return angle;
+}
+
 }  // namespace
 
 bool CollisionStage::is_needed(const model::Model& model) {
@@ -249,14 +259,30 @@ bool CollisionStage::obstacle_turns_too_far(double t, double h, const SystemStat
   const double max_sagitta = numerics.contact.verlet_margin * engine_.detection_distance();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || is_moved_by_forces(b, t + h)) continue;
-    // Samples of the angular velocity at the start, middle and end of the step are enough: it
-    // changes little in a step, except that a body stops at its last key.
-    double angle = 0;
-    for (const double fraction : {0.0, 0.5, 1.0})
-      angle = std::max(angle, h * model_.pose(bodies_[b], t + fraction * h).angular_velocity.norm());
-    if (sagitta(radii_[b], angle) > max_sagitta && solved_surface_comes_near(b, t, h, angle, now)) return true;
+    const double angle = max_turn(t, h, [&](double instant) { return model_.pose(bodies_[b], instant); });
+    const double of_origin = origin_sagitta(b, t, h);
+    if (sagitta(radii_[b], angle) + of_origin > max_sagitta &&
+        solved_surface_comes_near(b, t, h, angle, of_origin, now))
+      return true;
   }
   return false;
+}
+
+// Upper bound of the distance of the path of a body's origin from its chord, from t to t + h, as far as the bodies that
+// it follows turn [m].
+double CollisionStage::origin_sagitta(std::size_t body, double t, double h) const {
+  double sum = 0;
+  Vec3 origin = model_.pose(bodies_[body], t).position;
+  const model::Parent* parent = &model_.bodies[bodies_[body]].parent;
+  while (parent->is_any()) {
+    const auto pose_at = [&](double instant) { return model_.pose(*parent, instant); };
+    const Vec3 centre = pose_at(t).position;
+    sum += sagitta((origin - centre).norm(), max_turn(t, h, pose_at));
+    if (parent->part) break;  // a part of a character follows nothing
+    origin = centre;
+    parent = &model_.bodies[parent->body].parent;
+  }
+  return sum;
 }
 
 bool CollisionStage::bodies_are_constant(double t0, double t1, SystemState& now, SystemState& next) const {
@@ -287,8 +313,8 @@ bool CollisionStage::obstacles_move_little(const SystemState& now, const SystemS
 
 // Whether the obstacle `body`, which turns by `angle` [rad] from t to t + h, may come near cloth or
 // a body that forces move: whether the box that it sweeps, enlarged by the detection distance,
-// overlaps the box that a triangle of them sweeps at unchanged velocity.
-bool CollisionStage::solved_surface_comes_near(std::size_t body, double t, double h, double angle,
+// overlaps the box that a triangle of them sweeps at unchanged velocity. `of_origin`: its origin_sagitta() [m].
+bool CollisionStage::solved_surface_comes_near(std::size_t body, double t, double h, double angle, double of_origin,
                                                const SystemState& now) const {
   constexpr double kMaxPieceAngle = 0.25;  // [rad]
   const int pieces = 1 + static_cast<int>(std::min(angle, 100.0) / kMaxPieceAngle);
@@ -298,8 +324,8 @@ bool CollisionStage::solved_surface_comes_near(std::size_t body, double t, doubl
     for (int corner = 0; corner < 8; ++corner)
       box.extend(Vec3(pose.position + pose.rotation * boxes_[body].corner(static_cast<Box3::CornerType>(corner))));
   }
-  const double margin =
-      engine_.detection_distance() + std::min(1.0, sagitta(1, angle / pieces)) * boxes_[body].diagonal().norm();
+  const double margin = engine_.detection_distance() +
+                        std::min(1.0, sagitta(1, angle / pieces)) * boxes_[body].diagonal().norm() + of_origin;
   box.min().array() -= margin;
   box.max().array() += margin;
   std::vector<Vec3> end(now.x.begin(), now.x.begin() + rigid_.end());

@@ -67,8 +67,9 @@ class CollisionStage {
                   SystemState& next, bool is_repeated = false);
 
   /// The search for contacts assumes that vertices move on straight lines. Returns whether an obstacle near cloth, or
-  /// near a body that forces move, turns so far between t and t + h [s] that its vertices may deviate from such lines
-  /// by more than `numerics.contact.verlet_margin` detection distances.
+  /// near a body that forces move, turns so far between t and t + h [s], about its origin or with an object that it
+  /// follows, that its vertices may deviate from such lines by more than `numerics.contact.verlet_margin` detection
+  /// distances.
   bool obstacle_turns_too_far(double t, double h, const SystemState& now) const;
 
   /// Whether all key-framed bodies have the same positions at t0 and t1 [s], the times of `now` and `next`. Bodies that
@@ -163,7 +164,9 @@ class CollisionStage {
   bool is_dynamic(std::size_t body) const { return model_.bodies[bodies_[body]].dynamics != nullptr; }
   bool is_moved_by_forces(std::size_t body, double t_end) const;
   void place_bodies(double t, SystemState& state) const;
-  bool solved_surface_comes_near(std::size_t body, double t, double h, double angle, const SystemState& now) const;
+  double origin_sagitta(std::size_t body, double t, double h) const;
+  bool solved_surface_comes_near(std::size_t body, double t, double h, double angle, double of_origin,
+                                 const SystemState& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
   std::string describe(const collision::CornerPair& pair, const SystemState& state) const;
   std::string describe(const collision::Pinch& pinch) const;
