@@ -239,7 +239,8 @@ struct Numerics {
   } bodies;
 
   /// Bounds of energy without a source. Gains in a run are relative to EnergyBound::energy_in_play(): the kinetic and
-  /// elastic energy at the start, plus the ranges that the potential energy and the work of pins have covered so far.
+  /// elastic energy at the start, plus the ranges that the potential energy, of gravity and enclosed air, and the work
+  /// of pins have covered so far.
   struct Energy {
     /// If the gain exceeds this value, the run fails. Exception: if cloth can touch something and
     /// the method is not the midpoint rule, the run only warns, because the method damps contacts.

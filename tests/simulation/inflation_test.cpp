@@ -7,8 +7,11 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/error.hpp"
+#include "film/environment/environment.hpp"
 #include "film/production/scene_simulation.hpp"
 #include "physics/mesh/shapes.hpp"
+#include "physics/simulation/energy_bound.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -167,6 +170,21 @@ TEST_F(Balloon, LosesNothingOfWhatKeysLeaveAlone) {
   EXPECT_EQ(none.hash, zero.hash);
   production::SceneSimulation simulation(zero);
   EXPECT_TRUE(simulation.advance().enclosed.empty());
+}
+
+// Compressed air has set the cloth in motion. An error of 0.5 J is 4 % of the 14 J that the air has given.
+TEST(EnergyOfAir, IsASourceOfMotion) {
+  scene::Scene scene = testing::sheet_alone(0.3, 3, 1);
+  scene.time.integrator = scene::Integrator::implicit_midpoint;
+  const model::Model model = environment::Environment(scene).model;
+  FrameReport start, later;
+  start.air_energy = 17;
+  later.frame = 1;
+  later.air_energy = 3;
+  later.kinetic_energy = 14.5;
+  EXPECT_TRUE(EnergyBound(model, 0.02, start).check(later).empty());
+  later.kinetic_energy = 20;
+  EXPECT_THROW(EnergyBound(model, 0.02, start).check(later), Error);
 }
 
 }  // namespace

@@ -45,6 +45,11 @@ bool is_driven_by_pins_alone(const model::Model& model) {
   return model.physics.air_density == 0 || (wind == Vec3::Zero() && model.physics.gusts.speed == 0);
 }
 
+// Of gravity and enclosed air [J].
+double potential_energy(const FrameReport& report) {
+  return report.potential_energy + report.air_energy;
+}
+
 double mechanical_energy(const FrameReport& report) {
   return report.kinetic_energy + report.potential_energy + report.elastic_energy + report.air_energy;
 }
@@ -60,12 +65,12 @@ EnergyBound::EnergyBound(const model::Model& model, double mass, const FrameRepo
       start_energy_(mechanical_energy(start)),
       start_kinetic_(start.kinetic_energy),
       start_elastic_(start.elastic_energy),
-      potential_low_(start.potential_energy),
-      potential_high_(start.potential_energy) {}
+      potential_low_(potential_energy(start)),
+      potential_high_(potential_energy(start)) {}
 
 std::vector<std::string> EnergyBound::check(const FrameReport& energies) {
-  potential_low_ = std::min(potential_low_, energies.potential_energy);
-  potential_high_ = std::max(potential_high_, energies.potential_energy);
+  potential_low_ = std::min(potential_low_, potential_energy(energies));
+  potential_high_ = std::max(potential_high_, potential_energy(energies));
   pin_work_ += energies.pin_work;
   pin_work_low_ = std::min(pin_work_low_, pin_work_);
   pin_work_high_ = std::max(pin_work_high_, pin_work_);
@@ -90,8 +95,9 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
   const bool refused = is_above(numerics.energy.failing_gain) && !damped_contact_;
   if (!refused && (warned_ || !is_above(numerics.energy.doubtful_gain))) return {};
   const std::string text = fmt::format(
-      "frame {}: the cloth has {:.3g} J more than at the start{}, which nothing gave it (start, gravity and pins give "
-      "it {:.3g} J in all), so the motion may be wrong; try a smaller time.step or solver.newton_tolerance{}",
+      "frame {}: the cloth has {:.3g} J more than at the start{}, which nothing gave it (start, gravity, enclosed "
+      "air and pins give it {:.3g} J in all), so the motion may be wrong; try a smaller time.step or "
+      "solver.newton_tolerance{}",
       energies.frame, gain,
       pin_work_high_ > pin_work_low_ ? fmt::format(", besides {:.3g} J from its pins", pin_work_) : "", in_play,
       integrator_ == integrator::Method::implicit_midpoint

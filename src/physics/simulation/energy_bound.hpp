@@ -51,7 +51,7 @@ class EnergyBound {
   double negligible_energy_;               // added to each bound: mass times Numerics::Energy::negligible [J]
   double start_energy_;                    // mechanical energy at the start [J]
   double start_kinetic_, start_elastic_;   // at the start [J]
-  double potential_low_, potential_high_;  // lowest and highest so far [J]
+  double potential_low_, potential_high_;  // lowest and highest energy of gravity and enclosed air so far [J]
   // Work of pins since the start, with its lowest and highest value [J].
   double pin_work_ = 0, pin_work_low_ = 0, pin_work_high_ = 0;
   double solver_work_ = 0;  // sum over frames of |work of the solver's residual| [J]
