@@ -129,6 +129,7 @@ TEST(Compare, DefaultsPassSingleSamplesOfAnEdge) {
   EXPECT_DOUBLE_EQ(counted_pixels(figures, {}), 27 / 40.0);
   EXPECT_EQ(verdict(figures, {}), Verdict::within);
   EXPECT_EQ(verdict(figures, {.pixel_budget = 1e-4}), Verdict::differs) << "a budget that is given counts all";
+  EXPECT_EQ(verdict(figures, {.pixel_budget = Limits::kPixelBudget}), Verdict::differs) << "the default value too";
 }
 
 TEST(Compare, DefaultsCatchAnEdgeThatMoves) {
@@ -163,10 +164,10 @@ TEST(Compare, SpotsThatComeOrGoCountInFull) {
 TEST(Compare, OnlyTheDefaultMeanIsWiderInSmallPictures) {
   Figures figures;
   figures.width = 160, figures.height = 90;
-  EXPECT_DOUBLE_EQ(for_size({}, figures).flip, 4 * Limits{}.flip);
-  EXPECT_EQ(for_size({.flip = 1e-3}, figures).flip, 1e-3);
+  EXPECT_DOUBLE_EQ(*for_size({}, figures).flip, 4 * Limits::kFlip);
+  for (const double given : {1e-3, Limits::kFlip}) EXPECT_EQ(for_size({.flip = given}, figures).flip, given);
   figures.width = 1280, figures.height = 720;
-  EXPECT_EQ(for_size({}, figures).flip, Limits{}.flip);
+  EXPECT_EQ(for_size({}, figures).flip, Limits::kFlip);
 }
 
 // The noise is as large as the measured differences between CPU types in four pictures.
@@ -208,7 +209,7 @@ TEST(Compare, SpillIsNearAChangedFrameAndLessThanAThirdOfIt) {
 }
 
 TEST(Compare, SpillExceedsOnlyLimitsOfMeansAndByLessThanTwice) {
-  const double limit = with_encoder_noise({}).flip;
+  const double limit = *with_encoder_noise({}).flip;
   EXPECT_TRUE(is_spill_of(mild(1.99 * limit), 1));
   EXPECT_FALSE(is_spill_of(mild(2.01 * limit), 1));
   Figures spotted = mild(0.025), scattered = spotted;
@@ -219,7 +220,7 @@ TEST(Compare, SpillExceedsOnlyLimitsOfMeansAndByLessThanTwice) {
 }
 
 TEST(Compare, SpillIsMeasuredByTheLimitsOfTheVerdict) {
-  Figures frame = mild(1.5 * 4 * Limits{}.flip), changed = mild(1);  // in small pictures, the limit is 4 times as large
+  Figures frame = mild(1.5 * 4 * Limits::kFlip), changed = mild(1);  // in small pictures, the limit is 4 times as large
   for (Figures* figures : {&frame, &changed}) figures->width = 160, figures->height = 90, figures->pixels = 160 * 90;
   frame.pixels_over = frame.pixels_at_edges = 20;  // at edges, they count as half a pixel
   EXPECT_EQ(verdict(frame, {}), Verdict::differs);

@@ -48,10 +48,8 @@ TEST_F(EncoderNoiseTest, LosslessVideosAreComparedAsPictures) {
 }
 
 TEST(EncoderNoise, LimitsThatAreGivenStay) {
-  Limits limits;
-  limits.flip = 0.001;
-  EXPECT_EQ(with_encoder_noise(limits).flip, 0.001);
-  EXPECT_GT(with_encoder_noise(limits).spot, limits.spot);
+  for (const double given : {0.001, Limits::kFlip}) EXPECT_EQ(with_encoder_noise({.flip = given}).flip, given);
+  EXPECT_GT(with_encoder_noise({.flip = 0.001}).spot, Limits::kSpot);
 }
 
 }  // namespace

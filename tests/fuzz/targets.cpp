@@ -191,7 +191,7 @@ void read_limits(Bytes bytes) {
   may_refuse({ExitCode::asset_unreadable}, [&] {
     const compare::Limits limits = cli::DiffLimits({}, MemoryFile(bytes).path()).of("front/a.png").limits;
     require(limits.pixel_tolerance >= 0 && limits.pixel_tolerance <= 255, "a tolerance is in levels");
-    require(limits.flip >= 0 && limits.flip <= 1, "a limit is a share");
+    require(!limits.flip || (*limits.flip >= 0 && *limits.flip <= 1), "a limit is a share");
   });
 }
 

@@ -127,25 +127,26 @@ void bind_difference(py::module_& module) {
       .def_property_readonly("pixels_changed", figure(&Figures::pixels_changed))
       .def_property_readonly("pixels_over", figure(&Figures::pixels_over))
       .def_property_readonly("pixels_at_edges", figure(&Figures::pixels_at_edges),
-                             "Number of pixels_over at edges; with the default pixel_budget, each counts as 1/40.")
+                             "Number of pixels_over at edges; without a pixel_budget, each counts as 1/40.")
       .def_property_readonly("largest", figure(&Figures::largest), "Largest difference of a channel, out of 255.")
       .def_property_readonly("ssim", figure(&Figures::ssim), "Mean structural similarity, 1 where equal.")
       .def_property_readonly("flip", figure(&Figures::flip), "Mean of the FLIP map, 0 where equal.")
       .def_property_readonly("spot", figure(&Figures::spot), "Largest value of the FLIP map.");
   const auto compare = [](const std::filesystem::path& reference, const std::filesystem::path& test,
-                          int pixel_tolerance, double pixel_budget, double flip, double spot,
-                          const std::optional<std::filesystem::path>& mask) {
-    using Limit = std::pair<const char*, double>;
+                          int pixel_tolerance, std::optional<double> pixel_budget, std::optional<double> flip,
+                          std::optional<double> spot, const std::optional<std::filesystem::path>& mask) {
+    using Limit = std::pair<const char*, std::optional<double>>;
     for (const auto& [name, limit] : {Limit("pixel_tolerance", pixel_tolerance), Limit("pixel_budget", pixel_budget),
                                       Limit("flip", flip), Limit("spot", spot)})
-      if (!(limit >= 0)) throw std::invalid_argument(fmt::format("{}: expected 0 or more, got {:g}", name, limit));
+      if (limit && !(*limit >= 0))
+        throw std::invalid_argument(fmt::format("{}: expected 0 or more, got {:g}", name, *limit));
     return compare_files(reference, test, {pixel_tolerance, pixel_budget, flip, spot}, mask.value_or(""));
   };
-  const compare::Limits limits;
-  module.def("compare", compare, py::arg("reference"), py::arg("test"), py::kw_only(),
-             py::arg("pixel_tolerance") = limits.pixel_tolerance, py::arg("pixel_budget") = limits.pixel_budget,
-             py::arg("flip") = limits.flip, py::arg("spot") = limits.spot, py::arg("mask") = py::none(), ReleaseGil(),
-             "Compare two pictures or videos as `weft diff` does.");
+  module.def(
+      "compare", compare, py::arg("reference"), py::arg("test"), py::kw_only(),
+      py::arg("pixel_tolerance") = compare::Limits{}.pixel_tolerance, py::arg("pixel_budget") = py::none(),
+      py::arg("flip") = py::none(), py::arg("spot") = py::none(), py::arg("mask") = py::none(), ReleaseGil(),
+      "Compare two pictures or videos as `weft diff` does. A limit that is None has the default of `weft diff`.");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fnmatch.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
@@ -46,7 +47,7 @@ std::function<void(Rules&)> change(const std::filesystem::path& file, const std:
       refuse(file, node.source(), "mask: " + mask.string() + " does not exist");
     return [mask](Rules& rules) { rules.mask = mask; };
   }
-  const std::vector<std::pair<std::string, double compare::Limits::*>> shares{
+  const std::vector<std::pair<std::string, std::optional<double> compare::Limits::*>> shares{
       {"pixel_budget", &compare::Limits::pixel_budget},
       {"max_flip", &compare::Limits::flip},
       {"max_spot", &compare::Limits::spot}};

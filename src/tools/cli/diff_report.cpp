@@ -24,12 +24,15 @@ std::string describe_figures(const FileComparison& result, const compare::Limits
   std::string of_pixels;
   if (counted < static_cast<double>(f.pixels_over))
     of_pixels = fmt::format(", {} of them at edges, counted as {:.3g}", f.pixels_at_edges, counted);
-  if (counted > allowed) of_pixels += fmt::format(" (limit {:.3g}: {:g} of all pixels)", allowed, limits.pixel_budget);
+  if (counted > allowed)
+    of_pixels += fmt::format(" (limit {:.3g}: {:g} of all pixels)", allowed,
+                             limits.pixel_budget.value_or(compare::Limits::kPixelBudget));
   return fmt::format(
       "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
       "SSIM {:.5f}",
       f.pixels_changed, f.pixels, f.pixels_over, limits.pixel_tolerance, of_pixels, f.largest, f.largest_x, f.largest_y,
-      f.flip, limit(f.flip, compare::for_size(limits, f).flip), f.spot, limit(f.spot, limits.spot), f.ssim);
+      f.flip, limit(f.flip, *compare::for_size(limits, f).flip), f.spot,
+      limit(f.spot, limits.spot.value_or(compare::Limits::kSpot)), f.ssim);
 }
 
 }  // namespace
@@ -111,9 +114,9 @@ Json describe_json(const FileComparison& result, const compare::Limits& limits, 
 
 Json describe_json(const compare::Limits& limits) {
   return {{"pixel_tolerance", limits.pixel_tolerance},
-          {"pixel_budget", limits.pixel_budget},
-          {"flip", limits.flip},
-          {"spot", limits.spot}};
+          {"pixel_budget", limits.pixel_budget.value_or(compare::Limits::kPixelBudget)},
+          {"flip", limits.flip.value_or(compare::Limits::kFlip)},
+          {"spot", limits.spot.value_or(compare::Limits::kSpot)}};
 }
 
 std::string junit_xml(const std::vector<FileComparison>& results, const std::vector<std::string>& descriptions) {

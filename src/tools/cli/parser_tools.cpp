@@ -147,17 +147,17 @@ void Parser::add_diff() {
   add_value(command, "--pixel-tolerance", "N",
             fmt::format("Levels, out of 255, by which a pixel may differ [{}]", limit),
             [&limit](const std::string& text) { limit = parse_integer("--pixel-tolerance", text, 0, 255); });
-  const auto add_fraction = [&](const char* name, double& most, const char* what) {
-    add_value(command, name, "X", fmt::format("{} [{}]", what, most),
+  const auto add_fraction = [&](const char* name, std::optional<double>& most, double usual, const char* what) {
+    add_value(command, name, "X", fmt::format("{} [{}]", what, usual),
               [name, &most](const std::string& text) { most = parse_fraction(name, text); });
   };
   add_fraction(
-      "--pixel-budget", diff.limits.pixel_budget,
+      "--pixel-budget", diff.limits.pixel_budget, compare::Limits::kPixelBudget,
       "Fraction of pixels that may differ by more than --pixel-tolerance; with the default, a pixel at an edge "
       "counts a fortieth");
-  add_fraction("--max-flip", diff.limits.flip,
+  add_fraction("--max-flip", diff.limits.flip, compare::Limits::kFlip,
                "Maximum mean of FLIP, 0 (looks the same) to 1; the default grows below 640x360 pixels");
-  add_fraction("--max-spot", diff.limits.spot, "Maximum of FLIP at any pixel");
+  add_fraction("--max-spot", diff.limits.spot, compare::Limits::kSpot, "Maximum of FLIP at any pixel");
   add_value(command, "--heatmap", "FILE.png|DIR",
             "Also write a picture of the differences; for a video, of its worst frame",
             [this](const std::string& text) { diff.heatmap = text; });

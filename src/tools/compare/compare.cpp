@@ -53,14 +53,11 @@ image::Image masked(const image::Image& reference, image::Image test, const Mask
   return test;
 }
 
-bool has_default_budget(const Limits& limits) {
-  return limits.pixel_budget == Limits{}.pixel_budget;
-}
-
 // `factor` multiplies the limits on the number of pixels and on mean FLIP, but not `Limits::spot`.
 bool is_within(const Figures& figures, const Limits& limits, double factor) {
   return counted_pixels(figures, limits) <= factor * allowed_pixels(figures, limits) &&
-         figures.flip <= factor * for_size(limits, figures).flip && figures.spot <= limits.spot;
+         figures.flip <= factor * *for_size(limits, figures).flip &&
+         figures.spot <= limits.spot.value_or(Limits::kSpot);
 }
 
 // Sets `flip` and `spot` of the figures from the FLIP map.
@@ -101,17 +98,16 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
 }
 
 Limits with_encoder_noise(Limits limits) {
-  constexpr Limits kDefault;
-  if (limits.pixel_budget == kDefault.pixel_budget) limits.pixel_budget = 0.027;
-  if (limits.flip == kDefault.flip) limits.flip = 0.022;
-  if (limits.spot == kDefault.spot) limits.spot = 0.4;
+  if (!limits.pixel_budget) limits.pixel_budget = 0.027;
+  if (!limits.flip) limits.flip = 0.022;
+  if (!limits.spot) limits.spot = 0.4;
   return limits;
 }
 
 Limits for_size(Limits limits, const Figures& figures) {
   constexpr double kArea = 640 * 360;
   const double area = std::max(1.0, static_cast<double>(figures.width) * figures.height);
-  if (limits.flip == Limits{}.flip) limits.flip *= std::sqrt(std::max(1.0, kArea / area));
+  if (!limits.flip) limits.flip = Limits::kFlip * std::sqrt(std::max(1.0, kArea / area));
   return limits;
 }
 
@@ -120,11 +116,12 @@ double counted_pixels(const Figures& figures, const Limits& limits) {
   // differed between CPU types: 21 of 57,600 pixels (README.md in this folder, Decisions).
   constexpr double kEdgePixelWeight = 1.0 / 40;
   const auto over = static_cast<double>(figures.pixels_over), at_edges = static_cast<double>(figures.pixels_at_edges);
-  return has_default_budget(limits) ? (over - at_edges) + kEdgePixelWeight * at_edges : over;
+  return limits.pixel_budget ? over : (over - at_edges) + kEdgePixelWeight * at_edges;
 }
 
 double allowed_pixels(const Figures& figures, const Limits& limits) {
-  return std::max(has_default_budget(limits) ? 1.0 : 0.0, limits.pixel_budget * static_cast<double>(figures.pixels));
+  const auto pixels = static_cast<double>(figures.pixels);
+  return limits.pixel_budget ? *limits.pixel_budget * pixels : std::max(1.0, Limits::kPixelBudget * pixels);
 }
 
 Verdict verdict(const Figures& figures, const Limits& limits) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "film/image/image.hpp"
@@ -14,21 +15,23 @@ namespace weft::compare {
 /// types: single pixels at the edges of cloth, shadows and printed patterns (README.md in this
 /// folder, Decisions). The defaults reject differences that a viewer sees if the images alternate.
 struct Limits {
+  static constexpr double kPixelBudget = 2e-5, kFlip = 5e-4, kSpot = 0.3;  ///< defaults of the limits below
+
   int pixel_tolerance = 4;  ///< largest tolerated difference of a channel [levels of 255]
-  /// Fraction of the pixels that may differ by more than pixel_tolerance. The default value has two more rules: a pixel
-  /// at an edge (`Figures::pixels_at_edges`) counts as 1/40 of a pixel, and at least one pixel may differ.
-  double pixel_budget = 2e-5;
+  /// Fraction of the pixels that may differ by more than pixel_tolerance. If it is not given, two more rules hold: a
+  /// pixel at an edge (`Figures::pixels_at_edges`) counts as 1/40 of a pixel, and at least one pixel may differ.
+  std::optional<double> pixel_budget = {};
   /// Limit on the mean of the FLIP map. It detects small differences of many pixels: the default corresponds to a
   /// difference of one level at 2 % of the pixels. `for_size` raises the default for small pictures.
-  double flip = 5e-4;
+  std::optional<double> flip = {};
   /// Limit on the largest value of the FLIP map. It detects spots with fewer pixels than the budget
   /// allows: a spot of 2x2 pixels that differs by 64 levels, or one of 3x3 pixels by 32 levels. If
   /// one of the four samples of a pixel falls on the wrong side of an edge, the FLIP value of this
   /// pixel is up to 0.25, which the default tolerates.
-  double spot = 0.3;
+  std::optional<double> spot = {};
 };
 
-/// For lossy videos: widens those limits that have their default values, since the encoder
+/// For lossy videos: sets wider values of those limits that are not given, since the encoder
 /// amplifies small differences where it divides gradients into coding blocks. Measured between
 /// H.264 videos at crf 18 from two CPU types: up to 1.35 % of the pixels over the tolerance, mean
 /// FLIP 0.011, largest FLIP 0.28. The wider limits are twice the first two values, and 0.4 for the
@@ -71,9 +74,8 @@ struct Comparison {
 Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance,
                    const Mask* mask = nullptr);
 
-/// If `limits.flip` has its default value and the picture has fewer than 640x360 pixels, multiplies
-/// this limit by √(640 · 360 / number of pixels), since edges cover a larger fraction of a small
-/// picture.
+/// Sets `flip` to its default if it is not given. If the picture has fewer than 640x360 pixels, the default is
+/// multiplied by √(640 · 360 / number of pixels), since edges cover a larger fraction of a small picture.
 Limits for_size(Limits limits, const Figures& figures);
 
 /// Number of pixels that count against the budget; fractional if edge pixels count as 1/40.

@@ -276,8 +276,8 @@ def compare(
     test: _Path,
     *,
     pixel_tolerance: int = ...,
-    pixel_budget: float = ...,
-    flip: float = ...,
-    spot: float = ...,
+    pixel_budget: Optional[float] = None,
+    flip: Optional[float] = None,
+    spot: Optional[float] = None,
     mask: Optional[_Path] = None,
 ) -> Difference: ...
