@@ -37,6 +37,8 @@ TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
     EXPECT_TRUE(support::read_bytes(folder_ / ("my " + name + ".toml")).starts_with("#:schema ./weft.schema.json\n"));
   }
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
+  for (const Arguments& command : {Arguments{"schema"}, {"schema", "--pattern"}})
+    EXPECT_TRUE(run_weft(command, folder_).out.ends_with("}\n")) << "no empty line at the end";
   support::write_bytes(folder_ / "weft.schema.json", "{}\n");  // like the schema of an older version
   EXPECT_EQ(run_weft({"new", "my drape"}, folder_).exit_code, 6) << "it is there already";
   EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), "{}\n");

@@ -50,7 +50,7 @@ LoadResult load_text(std::string_view text, const std::filesystem::path& name,
 LoadResult load_batches(std::string_view text, const std::filesystem::path& name,
                         const std::vector<std::vector<std::string>>& batches);
 
-/// The JSON schema (Draft 2020-12) of a format, generated from its rule table.
+/// The JSON schema (Draft 2020-12) of a format, generated from its rule table. Ends with a line feed.
 std::string json_schema(const Table& table = scene_rules(), const std::string& title = "Weft scene");
 
 /// The checked scene as TOML, with all defaults, but without keys whose default means "none".

@@ -96,7 +96,7 @@ ExitCode make_new(const NewOptions& options) {
     files.emplace_back(is_folder ? scene / fs::path(file.name).lexically_relative(options.kind) : scene, file.text);
   }
   const fs::path schema = (is_folder ? scene : scene.parent_path()) / "weft.schema.json";
-  if (options.overwrite || !fs::exists(schema)) files.emplace_back(schema, scene::json_schema() + "\n");
+  if (options.overwrite || !fs::exists(schema)) files.emplace_back(schema, scene::json_schema());
   PathLedger paths;
   for (const auto& [file, text] : files) paths.writes("NAME", file);
   const std::string name = scene.string();

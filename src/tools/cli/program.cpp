@@ -42,8 +42,8 @@ struct Dispatch {
   ExitCode operator()(const NewOptions& options) const { return make_new(options); }
   ExitCode operator()(const WatchOptions& options) const { return watch(options); }
   ExitCode operator()(const SchemaOptions& options) const {
-    return print_all(
-        (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");
+    return print_all(options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern")
+                                     : scene::json_schema());
   }
   ExitCode operator()(const PrintText& text) const { return print_all(text.text); }
   template <class ToolOptions>
