@@ -123,6 +123,24 @@ TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) 
   EXPECT_EQ(nothing_left.err, "note: p/{frame:05}.png is complete already: frames 0:21\n");
 }
 
+TEST_F(Completeness, RenderResumesBesideTheReportsAndTheKeptFramesOfACommandBefore) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  Arguments pictures{"render", "c", "-o", kPicturesInP, "--stats", "s.json", "--log-json", "s.log", "--frames", ":1"};
+  expect_well(pictures);
+  pictures.back() = ":2";
+  pictures.emplace_back("--resume");
+  expect_well(pictures);
+  EXPECT_NE(support::read_bytes(folder_ / "s.json").find("\"frame\": 1,"), std::string::npos);
+  fs::remove(folder_ / "p/00001.png");
+  support::write_bytes(folder_ / "s.json", "{\"of\": \"others\"}\n");
+  EXPECT_EQ(weft(pictures).exit_code, 6);
+  const Arguments video{"render", "c", "-o", "a.mp4", "--frames", ":2", "--resume"};
+  expect_well(video);
+  fs::rename(folder_ / "a.mp4", folder_ / "a.partial.mp4");  // as if the disk was full at the end
+  expect_well(video);
+  EXPECT_FALSE(fs::exists(folder_ / "a.partial.mp4"));
+}
+
 TEST_F(Completeness, ResumeOfACompleteOutputSaysWhichReportsAreMissing) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   const Arguments run{"run", "s.toml", "-o", "a.mp4", "--resume"}, render{"render", "c", "-o", "b.mp4", "--resume"};

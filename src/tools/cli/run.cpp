@@ -130,12 +130,8 @@ FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
 }
 
 void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& options) {
-  const auto not_own = [&](std::vector<fs::path> files) {
-    std::erase_if(files, [&](const fs::path& file) { return plan.drawn.own.contains(file); });
-    return files;
-  };
   if (plan.draws()) {
-    paths.writes("-o", plan.target.text, not_own(plan.target.files(plan.wanted)));
+    paths.writes("-o", plan.target.text, plan.target.files(plan.wanted));
     if (plan.target.kind == Kind::video) paths.writes("-o", video::partial_name(plan.target.file(0)));
     paths.writes_content("-o, for the effective scene,", plan.effective_scene_file(), plan.scene_text);
   }
@@ -143,7 +139,7 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
     std::vector<fs::path> files;
     for (const std::string& object : plan.objects)
       for (fs::path& file : mesh_files(options.meshes, object).names(plan.wanted)) files.push_back(std::move(file));
-    paths.writes("--meshes", options.meshes, not_own(std::move(files)));
+    paths.writes("--meshes", options.meshes, files);
   }
   if (!options.stats.empty()) paths.writes("--stats", options.stats);
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
@@ -464,11 +460,16 @@ ExitCode render(const RenderOptions& options) {
       note_missing_reports(plan, options);
       return ExitCode::ok;
     }
+    // The earlier command has left its reports and, if the disk was full, the frames of its video.
+    const fs::path kept = video::partial_name(plan.target.file(plan.wanted.begin));
+    for (const fs::path& file : {options.stats, fs::path(options.log_json), kept})
+      if (is_output_of(file, plan.scene.scene)) plan.drawn.own.insert(file);
   }
   PathLedger paths;
   paths.reads_folder(options.common.scene, "the cache");
   add_outputs(paths, plan, options);
-  paths.check_absent(options.common.overwrite);
+  paths.check_absent(options.common.overwrite, paths.outputs(),
+                     [&](const fs::path& file) { return plan.drawn.own.contains(file); });
   paths.check_writable();
   session.begin(plan);
   FilmParts parts;
