@@ -219,6 +219,26 @@ TEST_F(Completeness, RenderDoesNotTakeAThumbnailWithAnotherCameraForAPictureOfTh
   expect_well(render);
 }
 
+// A computed camera of a cache that lacks frames is another one than that of the film.
+TEST_F(Completeness, PicturesWithTheCameraOfSomeFramesDoNotBecomeAFilmWithOthers) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  const Arguments part{"render", "c", "-o", kPicturesInP, "--frames", ":2", "--resume"};
+  const Outcome drawn = weft(part);
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_TRUE(contains(drawn.err, "warning: c: the camera is computed from frames 0:8 of 0:21")) << drawn.err;
+  expect_well(part);
+  expect_well({"thumbnail", "c", "--frame", "2", "-o", "t/00002.png"});
+  expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
+  const Outcome refused = weft(part);
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "p/00000.png: exists already")) << refused.err;
+  EXPECT_EQ(weft({"render", "c", "-o", "t/{frame:05}.png", "--frames", "2:3", "--resume"}).exit_code, 6);
+  expect_well({"render", "c", "-o", kPicturesInP, "--frames", "2:4"});
+  const Outcome joined = run_weft({"join", "p", "-o", "a.mp4", "--frames", ":4"}, folder_);
+  EXPECT_EQ(joined.exit_code, 2) << joined.err;
+  EXPECT_TRUE(contains(joined.err, "its camera_frames is '', that of p/00000.png is '0:8'")) << joined.err;
+}
+
 // The picture of the start shows the scene before untangling and preroll, frame 0 the scene after them.
 TEST_F(Completeness, RenderDoesNotTakeAPictureOfTheStartForFrame0) {
   expect_well({"simulate", "s.toml", "--cache", "c"});

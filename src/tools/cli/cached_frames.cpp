@@ -72,17 +72,26 @@ void check_frame_before(const cache::Reader& reader, const FrameRange& frames) {
               reader.folder().string(), frames.begin, missing.text());
 }
 
-void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
+std::string show_frames(const cache::Reader& reader, render::CameraPath& camera) {
   const cache::Reader any(reader.folder(), cache::AcceptedLooks::any);
+  std::vector<int> shown;
   for (const int frame : any.frames()) {
     try {
       const cache::CachedFrame cached = any.read(frame);
-      if (cached.scene_hash == any.manifest().scene_hash) camera.add_frame(*cached.snapshot);
+      if (cached.scene_hash != any.manifest().scene_hash) continue;
+      camera.add_frame(*cached.snapshot);
+      shown.push_back(frame);
     } catch (const Error& error) {
       if (error.code() != ExitCode::asset_unreadable) throw;
       log::warn(fmt::format("{}; the camera is computed without this frame", error.what()));
     }
   }
+  const int all = any.manifest().frame_count;
+  if (shown.empty() || static_cast<int>(shown.size()) == all) return "";
+  std::string frames = frames_text(shown);
+  log::warn(fmt::format("{}: the camera is computed from frames {} of 0:{}; with more frames, it may stand elsewhere",
+                        reader.folder().string(), frames, all));
+  return frames;
 }
 
 }  // namespace weft::cli

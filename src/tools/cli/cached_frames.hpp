@@ -1,6 +1,8 @@
 // Selects the frames of a cache that a command uses.
 #pragma once
 
+#include <string>
+
 #include "film/cache/reader.hpp"
 #include "film/render/camera_path.hpp"
 #include "tools/cli/frame_range.hpp"
@@ -19,7 +21,8 @@ FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& sele
 void check_frame_before(const cache::Reader& reader, const FrameRange& frames);
 
 /// Passes to `camera` all frames of the cache that have the scene's current looks (colours, cameras, lights). Skips
-/// missing frames, and broken ones with a warning.
-void show_frames(const cache::Reader& reader, render::CameraPath& camera);
+/// missing frames, and broken ones with a warning. If these are not all frames of the scene, warns and returns their
+/// numbers (frames_text()), since the camera of all frames may be another one; otherwise returns an empty text.
+std::string show_frames(const cache::Reader& reader, render::CameraPath& camera);
 
 }  // namespace weft::cli

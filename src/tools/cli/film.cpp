@@ -63,9 +63,7 @@ class Film {
   void make_frames() noexcept {
     try {
       const std::unique_ptr<FrameSource> source = open_source();
-      const bool found_beforehand = camera_ && source->show_all(*camera_);
-      if (found_beforehand) camera_->compute_cameras();
-      if (camera_ && !found_beforehand) {
+      if (camera_) {
         make_then_push(*source);
       } else {
         make_frames(*source, false);

@@ -30,8 +30,8 @@ struct FilmParts {
   std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< empty: nothing
                                                                                                     ///< is written
   Store* store = nullptr;  ///< keeps simulated frames
-  /// Set if the camera path must be computed from all frames. If FrameSource::show_all() returns false, drawing waits
-  /// until the last frame is made, and the frames to draw come from the store.
+  /// Set if the camera path must be computed from all frames. Drawing then waits until the last frame is made, and the
+  /// frames to draw come from the store.
   std::optional<render::CameraPath> camera = std::nullopt;
   std::filesystem::path meshes;      ///< folder for meshes; empty: none are written
   std::set<int> drawn = {};          ///< wanted frames that an earlier run has drawn already; they are not drawn again

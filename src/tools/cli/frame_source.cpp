@@ -5,7 +5,6 @@
 
 #include "core/error.hpp"
 #include "core/log.hpp"
-#include "tools/cli/cached_frames.hpp"
 #include "tools/cli/enclosed.hpp"
 
 namespace weft::cli {
@@ -88,11 +87,6 @@ void SceneSource::run_preroll() {
     return !stop_;
   });
   if (!whole) throw Error(ExitCode::interrupted, "interrupted before frame 0");
-}
-
-bool CacheSource::show_all(render::CameraPath& camera) const {
-  show_frames(reader_, camera);
-  return true;
 }
 
 MadeFrame CacheSource::next() {

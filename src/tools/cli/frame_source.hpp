@@ -8,7 +8,6 @@
 #include "core/progress.hpp"
 #include "film/cache/reader.hpp"
 #include "film/production/scene_simulation.hpp"
-#include "film/render/camera_path.hpp"
 #include "film/scene/scene.hpp"
 #include "tools/cli/frame_range.hpp"
 #include "tools/cli/store.hpp"
@@ -21,9 +20,6 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Makes or reads the next frame. Throws if it cannot.
   virtual MadeFrame next() = 0;
-  /// If the frames come from a cache, passes all its frames with the current looks to the camera, also those that
-  /// next() does not yield, and returns true. Otherwise returns false.
-  virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
   /// Returns a frame that next() does not yield, such as one before the first; null if it is not available.
   virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
@@ -61,7 +57,6 @@ class CacheSource : public FrameSource {
       : reader_(reader), next_(frames.begin), step_(frames.step) {}
 
   MadeFrame next() override;
-  bool show_all(render::CameraPath& camera) const override;
   std::vector<frame::ObjectInfo> objects() const override { return reader_.manifest().objects; }
   frame::SnapshotPtr earlier(int frame) const override {
     return reader_.has(frame) ? reader_.snapshot(frame) : nullptr;

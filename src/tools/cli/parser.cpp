@@ -92,9 +92,10 @@ void Parser::add_render() {
       "  weft render band.cache -o band.mp4\n"
       "  weft render band.cache --frames 50:100 --camera side --size 1920x1080 -o 'side/{frame:05}.png'\n"
       "  weft render band.cache -o 'band/{frame:05}.png' --resume\n"
-      "\nSeveral processes may draw from one cache at once, also while weft simulate writes it. If requested frames\n"
-      "are missing or broken, the command draws nothing and ends with exit code 9. With --resume, an incomplete\n"
-      "video is drawn again from its first frame.");
+      "\nSeveral processes may draw from one cache at once, also while weft simulate writes it. A computed camera,\n"
+      "such as that of a scene without cameras, is that of the film only if the cache has all frames. If requested\n"
+      "frames are missing or broken, the command draws nothing and ends with exit code 9. With --resume, an\n"
+      "incomplete video is drawn again from its first frame.");
 }
 
 void Parser::add_thumbnail() {

@@ -38,6 +38,8 @@ struct FilmPlan {
   FrameRange wanted;          ///< subset of `made` that is drawn, or written as meshes
   int simulated = 0;          ///< number of simulated frames, including those before frame 0; 0 if frames are only read
   bool finds_camera = false;  ///< whether the camera path must be computed from all frames before drawing begins
+  std::optional<render::CameraPath> camera = {};  ///< computed from frames of a cache
+  std::string camera_frames = {};                 ///< numbers of these frames; empty: all frames of the scene
   OutputTarget target;
   render::Settings settings;
   std::vector<std::string> objects;  ///< names of all objects
@@ -54,6 +56,13 @@ struct FilmPlan {
   void make_all(const scene::Scene& of) {
     made = {0, of.frame_count(), 1};
     simulated = of.preroll_frames() + made.count();
+  }
+
+  /// Metadata of the pictures. `gl`: description of OpenGL.
+  Metadata metadata(const std::string& gl) const {
+    Metadata entries = describe_pictures(scene, settings, gl);
+    if (!camera_frames.empty()) entries["camera_frames"] = camera_frames;
+    return entries;
   }
 
   /// Path of the effective scene (checked, with all defaults), beside the output.
@@ -120,9 +129,12 @@ FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
   if (!options.common.camera.empty()) check_camera(plan.scene.cameras, options.common.camera);
   plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options.common);
   plan.wanted = plan.made = cached_frames(reader, options.frames, options.partial);
-  plan.finds_camera = render::CameraPath::is_computed(*reader.snapshot(plan.wanted.begin), plan.settings.camera);
   take_output(plan, options);
   const frame::SnapshotPtr first = reader.snapshot(plan.wanted.begin);
+  if (render::CameraPath::is_computed(*first, plan.settings.camera)) {
+    plan.camera_frames = show_frames(reader, plan.camera.emplace(plan.settings.camera, plan.settings.aspect()));
+    plan.camera->compute_cameras();
+  }
   plan.blurs = plan.settings.motion_blur.value_or(first->stage->motion_blur) > 0;
   if (plan.needs_motion()) check_frame_before(reader, plan.wanted);
   for (const frame::ObjectInfo& object : plan.scene.objects) plan.objects.push_back(object.name);
@@ -212,11 +224,14 @@ void Session::begin(const FilmPlan& plan) {
 
 void Session::make(const FilmPlan& plan, FilmParts parts) {
   if (plan.draws()) {
-    parts.open_painter = [&] { return make_gl_painter(plan.settings); };
+    parts.open_painter = [&] {
+      std::unique_ptr<FramePainter> painter = make_gl_painter(plan.settings);
+      if (plan.camera) painter->set_camera_path(*plan.camera);
+      return painter;
+    };
     parts.open_writer = [&](const std::string& gl) {
       return make_writer({plan.target, plan.wanted, plan.settings.width, plan.settings.height, plan.scene.fps,
-                          options_.depth, options_.video.codec, options_.video.crf,
-                          describe_pictures(plan.scene, plan.settings, gl)});
+                          options_.depth, options_.video.codec, options_.video.crf, plan.metadata(gl)});
     };
   }
   if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());
@@ -398,7 +413,7 @@ ExitCode run(const RunOptions& options) {
   paths.register_output_folder("-o, for its working cache,", cache);
   const bool overwrite = options.common.overwrite;
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
-      is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
+      is_whole(plan.target, plan.wanted, plan.settings, plan.metadata(""), options.meshes, plan.objects)) {
     if (fs::exists(cache)) cache::Lock(cache).remove();  // an earlier run was killed while it removed this cache
     log::info(fmt::format("note: {} is complete already: frames {}", plan.target.text, plan.wanted.text()));
     note_missing_reports(plan, options);
@@ -450,7 +465,7 @@ ExitCode render(const RenderOptions& options) {
   const cache::Reader reader(options.common.scene);
   FilmPlan plan = plan_of(reader, options);
   if (options.resume) {
-    plan.drawn = find_drawn(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects);
+    plan.drawn = find_drawn(plan.target, plan.wanted, plan.settings, plan.metadata(""), options.meshes, plan.objects);
     const auto count = static_cast<int>(plan.drawn.frames.size());
     const bool whole = count == plan.wanted.count();
     if (count > 0)

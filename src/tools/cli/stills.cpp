@@ -24,7 +24,10 @@ class SceneStills : public Stills {
 
   void add_inputs(PathLedger& paths) const override { cli::add_inputs(paths, input_); }
   int cost(int last) const override { return input_.preroll_frames() + last + 1; }
-  bool has_film_camera() const override { return !camera_ || frame_ == frames_.back(); }
+  std::string camera_frames() const override {
+    if (!camera_ || frame_ == frames_.back()) return "";
+    return frames_text({frames_.begin(), frames_.begin() + frame_ + 1});
+  }
 
   frame::SnapshotPtr at(int frame, Progress& progress) override {
     if (!simulation_) start(progress);
@@ -74,17 +77,18 @@ class CacheStills : public Stills {
 
   void add_inputs(PathLedger& paths) const override { paths.reads_folder(reader_.folder(), "the cache"); }
   int cost(int) const override { return 0; }
-  bool has_film_camera() const override { return true; }
+  std::string camera_frames() const override { return camera_frames_; }
   frame::SnapshotPtr at(int frame, Progress&) override {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
     frame::SnapshotPtr snapshot = reader_.snapshot(frame);
     if (!camera_ && render::CameraPath::is_computed(*snapshot, settings_.camera))
-      show_frames(reader_, camera_.emplace(settings_.camera, settings_.aspect()));
+      camera_frames_ = show_frames(reader_, camera_.emplace(settings_.camera, settings_.aspect()));
     return snapshot;
   }
 
  private:
   const cache::Reader reader_;
+  std::string camera_frames_;
 };
 
 }  // namespace

@@ -37,8 +37,9 @@ class Stills {
   /// The camera path. A computed path uses the frames of the cache that have the current looks or,
   /// for a scene, the frames simulated so far. Call it after at() for all frames to draw.
   render::CameraPath camera();
-  /// Whether camera() uses all frames that the camera of the film uses.
-  virtual bool has_film_camera() const = 0;
+  /// Numbers of the frames that a computed camera() uses (frames_text()); empty if it uses all frames of the scene, as
+  /// the camera of the film does, or if the scene places the camera.
+  virtual std::string camera_frames() const = 0;
   /// Whether a stop signal has arrived.
   bool is_stopped() const { return signals_.requested(); }
   /// Replaces the picture size in settings(). Call it before the first frame.

@@ -75,12 +75,12 @@ void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
 }
 
 /// Metadata of a picture of `snapshot`. For a film with motion blur, they contain the shutter angle 0, since the
-/// thumbnail has no motion blur. For a computed camera, they state that it depends only on the frames up to this one.
+/// thumbnail has no motion blur. If a computed camera does not use all frames of the scene, they state which it uses.
 Metadata describe_thumbnail(const Stills& stills, const frame::FrameSnapshot& snapshot, const FramePainter& painter) {
   render::Settings settings = stills.settings();
   if (snapshot.stage && snapshot.stage->motion_blur > 0) settings.motion_blur = 0;
   Metadata about = describe_pictures(stills.scene(), settings, painter.description());
-  if (!stills.has_film_camera()) about["camera_frames"] = "until this one";
+  if (const std::string frames = stills.camera_frames(); !frames.empty()) about["camera_frames"] = frames;
   return describe_still(about, snapshot.frame, snapshot.time);
 }
 

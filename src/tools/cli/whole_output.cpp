@@ -7,7 +7,6 @@
 #include "film/image/exr.hpp"
 #include "film/image/png.hpp"
 #include "film/video/decoder.hpp"
-#include "tools/cli/stages.hpp"
 
 namespace weft::cli {
 namespace {
@@ -88,8 +87,7 @@ std::vector<fs::path> meshes_of(const FrameRange& frames, const fs::path& folder
 }  // namespace
 
 Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
-                 const cache::Manifest& scene, const fs::path& meshes, const std::vector<std::string>& objects) {
-  const Metadata expected = describe_pictures(scene, settings, "");
+                 const Metadata& expected, const fs::path& meshes, const std::vector<std::string>& objects) {
   Drawn drawn;
   const auto look_at = [&](const FrameRange& part) {
     const State state = state_of(target, part, settings, expected);
@@ -109,8 +107,8 @@ Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const ren
 }
 
 bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
-              const cache::Manifest& scene, const fs::path& meshes, const std::vector<std::string>& objects) {
-  const Drawn drawn = find_drawn(target, frames, settings, scene, meshes, objects);
+              const Metadata& expected, const fs::path& meshes, const std::vector<std::string>& objects) {
+  const Drawn drawn = find_drawn(target, frames, settings, expected, meshes, objects);
   return static_cast<int>(drawn.frames.size()) == frames.count();
 }
 

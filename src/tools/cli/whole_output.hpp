@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-#include "film/cache/manifest.hpp"
 #include "film/render/renderer.hpp"
 #include "tools/cli/output_target.hpp"
+#include "tools/cli/stages.hpp"
 
 namespace weft::cli {
 
-/// Whether the video or pictures contain all these frames of this scene with these settings, and all meshes exist.
+/// Whether the video or pictures contain all these frames with these settings and with the metadata `expected`, where
+/// the OpenGL implementation may differ, and all meshes exist.
 bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
-              const cache::Manifest& scene, const std::filesystem::path& meshes,
-              const std::vector<std::string>& objects);
+              const Metadata& expected, const std::filesystem::path& meshes, const std::vector<std::string>& objects);
 
 /// What an earlier run has drawn of the same film.
 struct Drawn {
@@ -25,7 +25,7 @@ struct Drawn {
 
 /// Finds complete pictures of the film. For a video, Drawn::frames is empty unless the video is complete.
 Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
-                 const cache::Manifest& scene, const std::filesystem::path& meshes,
+                 const Metadata& expected, const std::filesystem::path& meshes,
                  const std::vector<std::string>& objects);
 
 }  // namespace weft::cli
