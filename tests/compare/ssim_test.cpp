@@ -66,6 +66,19 @@ TEST(Ssim, FlatImagesDifferByTheirMeansAlone) {
   EXPECT_NEAR(structural_similarity(plain(20, 20, 100, 100, 100), plain(20, 20, 120, 120, 120)), expected, 1e-12);
 }
 
+// Windows are centred on columns 5 to 34, of which each mask selects one half.
+TEST(Ssim, OfAMaskIsTheMeanOfItsPixels) {
+  const image::Image a = textured(40, 30, 3), b = with_noise(a, 200, 60, 2);
+  Plane<std::uint8_t> left(40, 30), right(40, 30), border(40, 30);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 40; ++x) (x < 20 ? left : right).row(y)[x] = 1;
+  border.row(0)[7] = 1;
+  const double of_left = structural_similarity(a, b, &left), of_right = structural_similarity(a, b, &right);
+  EXPECT_NE(of_left, of_right);
+  EXPECT_NEAR(structural_similarity(a, b), (of_left + of_right) / 2, 1e-12);
+  EXPECT_NEAR(structural_similarity(a, a, &border), 1, 1e-12);
+}
+
 // No window fits into the image; the result is still a valid SSIM.
 TEST(Ssim, ImagesSmallerThanAWindowAreCompared) {
   EXPECT_NEAR(structural_similarity(textured(7, 5, 1), textured(7, 5, 1)), 1, 1e-12);

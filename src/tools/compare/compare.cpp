@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 #include "core/error.hpp"
 #include "film/image/color.hpp"
@@ -60,12 +61,6 @@ bool is_within(const Figures& figures, const Limits& limits, double factor) {
          figures.spot <= limits.spot.value_or(Limits::kSpot);
 }
 
-// Sets `flip` and `spot` of the figures from the FLIP map.
-void read_flip(Comparison& result) {
-  result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
-  result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
-}
-
 }  // namespace
 
 Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance, const Mask* mask) {
@@ -74,26 +69,27 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
     throw Error(ExitCode::internal, "expected two images of one size to compare, got {}x{} and {}x{}", reference.width,
                 reference.height, test.width, test.height);
   }
-  if (mask != nullptr) {
-    Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
-    result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
-    if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
-    // FLIP filters the images, so a difference inside the mask near its border also changes the FLIP map outside of it.
-    for (std::size_t i = 0; i < mask->values.size(); ++i)
-      if (mask->values[i] == 0) result.flip.values[i] = 0;
-    read_flip(result);
-    return result;
-  }
+  std::optional<image::Image> inside;
+  if (mask != nullptr) inside = masked(reference, test, *mask);
+  const image::Image& shown = inside ? *inside : test;
   Comparison result;
-  result.figures = count_pixels(reference, test, pixel_tolerance);
+  result.figures = count_pixels(reference, shown, pixel_tolerance);
+  if (mask != nullptr)
+    result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
+  if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
   if (result.figures.pixels_changed == 0) {
     result.flip = Plane<float>(reference.width, reference.height);
     return result;
   }
-  if (result.figures.pixels_over > 0) result.figures.pixels_at_edges = count_at_edges(reference, test, pixel_tolerance);
-  result.figures.ssim = structural_similarity(reference, test);
-  result.flip = flip_map(reference, test);
-  read_flip(result);
+  if (result.figures.pixels_over > 0)
+    result.figures.pixels_at_edges = count_at_edges(reference, shown, pixel_tolerance);
+  result.figures.ssim = structural_similarity(reference, shown, mask);
+  result.flip = flip_map(reference, shown);
+  // FLIP filters the images, so a difference inside the mask near its border also changes the FLIP map outside of it.
+  for (std::size_t i = 0; mask != nullptr && i < mask->values.size(); ++i)
+    if (mask->values[i] == 0) result.flip.values[i] = 0;
+  result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
+  result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
   return result;
 }
 

@@ -50,7 +50,7 @@ struct Figures {
   std::int64_t pixels_at_edges = 0;  ///< those of pixels_over that `count_at_edges` (edges.hpp) counts
   int largest = 0;                   ///< largest difference of any channel of any pixel [levels of 255]
   int largest_x = 0, largest_y = 0;  ///< first pixel with this difference, row by row from the top left
-  double ssim = 1;                   ///< mean structural similarity, 1 if equal
+  double ssim = 1;                   ///< mean structural similarity of the compared pixels, 1 if equal
   double flip = 0;                   ///< mean of the FLIP map over the compared pixels, 0 if equal
   double spot = 0;                   ///< largest value of the FLIP map
 

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "tools/compare/plane.hpp"
-
 namespace weft::compare {
 namespace {
 
@@ -41,16 +39,33 @@ Plane<double> product(const Plane<double>& a, const Plane<double>& b) {
 
 }  // namespace
 
-double structural_similarity(const image::Image& reference, const image::Image& test) {
+double structural_similarity(const image::Image& reference, const image::Image& test, const Plane<std::uint8_t>* mask) {
   const std::vector<double> weights = window();
   const auto mean = [&](const Plane<double>& plane) { return convolve<double>(plane, weights, weights); };
   const Plane<double> a = luma(reference), b = luma(test);
   const Plane<double> mean_a = mean(a), mean_b = mean(b);
   const Plane<double> mean_aa = mean(product(a, a)), mean_bb = mean(product(b, b)), mean_ab = mean(product(a, b));
 
-  const auto row_sum = [&](int y, int margin_x) {
+  // If a side is shorter than the window, no window fits inside, so all pixels along this side are
+  // used.
+  int margin_x = a.width > 2 * kRadius ? kRadius : 0, margin_y = a.height > 2 * kRadius ? kRadius : 0;
+  const auto is_used = [&](int x, int y) { return mask == nullptr || mask->row(y)[x] != 0; };
+  const auto count_windows = [&] {
+    std::int64_t count = 0;
+    for (int y = margin_y; y < a.height - margin_y; ++y)
+      for (int x = margin_x; x < a.width - margin_x; ++x) count += is_used(x, y) ? 1 : 0;
+    return count;
+  };
+  std::int64_t windows = count_windows();
+  if (windows == 0) {  // the mask selects only pixels at the border
+    margin_x = margin_y = 0;
+    windows = count_windows();
+  }
+
+  const auto row_sum = [&](int y) {
     double sum = 0;
     for (int x = margin_x; x < a.width - margin_x; ++x) {
+      if (!is_used(x, y)) continue;
       const double ma = mean_a.row(y)[x], mb = mean_b.row(y)[x];
       const double var_a = mean_aa.row(y)[x] - ma * ma, var_b = mean_bb.row(y)[x] - mb * mb;
       const double cov = mean_ab.row(y)[x] - ma * mb;
@@ -58,17 +73,13 @@ double structural_similarity(const image::Image& reference, const image::Image& 
     }
     return sum;
   };
-  // If a side is shorter than the window, no window fits inside, so all pixels along this side are
-  // used.
-  const int margin_x = a.width > 2 * kRadius ? kRadius : 0, margin_y = a.height > 2 * kRadius ? kRadius : 0;
-  const int rows = a.height - 2 * margin_y, columns = a.width - 2 * margin_x;
-  const double sum =
-      parallel_sum(static_cast<std::size_t>(rows), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-        double part = 0;
-        for (std::size_t y = begin; y < end; ++y) part += row_sum(static_cast<int>(y) + margin_y, margin_x);
-        return part;
-      });
-  return sum / (static_cast<double>(rows) * columns);
+  const auto rows = static_cast<std::size_t>(a.height - 2 * margin_y);
+  const double sum = parallel_sum(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+    double part = 0;
+    for (std::size_t y = begin; y < end; ++y) part += row_sum(static_cast<int>(y) + margin_y);
+    return part;
+  });
+  return sum / static_cast<double>(windows);
 }
 
 }  // namespace weft::compare
