@@ -80,6 +80,9 @@ TEST_F(References, PicturesTellTheClassOfTheirMachine) {
   EXPECT_EQ(machine_class_of(folder_ / "a.png"), "mesa-22.3-256bit");
   EXPECT_EQ(machine_class_of(folder_ / "b.png"), "");
   EXPECT_EQ(machine_class_of(folder_ / "none.png"), "");
+  EXPECT_EQ(machine_class_of(folder_, {"b.png", "none.png", "a.png"}), "mesa-22.3-256bit") << "b.png is of others";
+  EXPECT_EQ(machine_class_of(folder_, {"b.png"}), "");
+  EXPECT_EQ(machine_class_of(folder_, {}), "");
 }
 
 TEST_F(References, AllPicturesAndVideosBelowAFolderCountButHiddenOnes) {

@@ -32,8 +32,7 @@ bool is_blank(const std::string& text) {
 void report_unmatched_references(const fs::path& references, const fs::path& test,
                                  const std::vector<std::string>& names) {
   if (!fs::is_directory(references)) return;
-  const std::string machine = compare::machine_class_of(test / names.front());
-  for (const std::string& name : compare::reference_names(references, machine))
+  for (const std::string& name : compare::reference_names(references, compare::machine_class_of(test, names)))
     if (!std::binary_search(names.begin(), names.end(), name))
       log::info(fmt::format("note: {} has no counterpart in {}; it stays", name, test.string()));
 }

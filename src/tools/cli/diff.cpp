@@ -61,8 +61,8 @@ struct Pair {
 
 std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
-  // Assumes that one machine drew all pictures of the folder: takes the machine class of the first picture.
-  const std::string machine = names.empty() ? "" : compare::machine_class_of(options.test / names.front());
+  // Assumes that one machine drew all pictures of the folder.
+  const std::string machine = compare::machine_class_of(options.test, names);
   const std::vector<std::string> references = compare::reference_names(options.reference, machine);
   names.insert(names.end(), references.begin(), references.end());
   std::sort(names.begin(), names.end());

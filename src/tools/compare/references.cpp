@@ -39,16 +39,17 @@ std::string machine_class(const std::string& gl) {
 
 std::string machine_class_of(const fs::path& file) {
   try {
-    image::Metadata metadata;
-    if (is_video(file)) {
-      metadata = video::Decoder(file).metadata();
-    } else {
-      image::read_png(file, &metadata);
-    }
+    image::Metadata metadata = is_video(file) ? video::Decoder(file).metadata() : image::read_png_metadata(file);
     return machine_class(metadata["gl"]);
   } catch (const Error&) {
     return "";  // the comparison of the file reports the reason
   }
+}
+
+std::string machine_class_of(const fs::path& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (std::string machine = machine_class_of(folder / name); !machine.empty()) return machine;
+  return "";
 }
 
 std::optional<fs::path> find_reference(const fs::path& folder, const std::string& name, const std::string& machine) {

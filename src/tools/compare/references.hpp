@@ -24,6 +24,9 @@ std::string machine_class(const std::string& gl);
 /// Class of the machine that drew a picture or video. Empty if the metadata of the file name no
 /// version of Mesa, or if the file cannot be read.
 std::string machine_class_of(const std::filesystem::path& file);
+/// Class of the machine that drew the files `names` of a folder: that of the first file that has one. Empty if none
+/// has.
+std::string machine_class_of(const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 /// The reference of this name for the machine class `machine`; none if no file has this name, or only heat maps have it
 /// (is_heat_map()).
