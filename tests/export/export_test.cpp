@@ -189,6 +189,22 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
   EXPECT_NE(support::read_bytes(file("cloth.mtl")).find("laid turned"), std::string::npos);
 }
 
+// Weft draws such a picture opaque, and the colour of the surface around it.
+TEST_F(Exported, PictureWhoseAlphaIsIgnoredStaysOpaqueIfItOccursOnce) {
+  frame::Surface printed = *surfaces_[0];
+  frame::Paint& paint = printed.appearance.paint;
+  paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {0, 0, 255, 128}});
+  paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
+  surfaces_[0] = std::make_shared<frame::Surface>(printed);
+  write(Format::obj, {3});
+  const image::Picture picture = image::read_picture(file("cloth.png"));
+  ASSERT_EQ(std::pair(picture.width, picture.height), std::pair(3, 3));
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_EQ(picture.rgba[16 + c], c == 2 ? 255 : 0) << "the pixel in the middle";
+    EXPECT_NEAR(picture.rgba[c], 255 * printed.appearance.color[static_cast<int>(c)], 0.51);
+  }
+}
+
 // MTL files also name a picture that is repeated and not rotated; its alpha cuts holes.
 TEST_F(Exported, MaterialFilesNameThePicture) {
   frame::Surface lace = *surfaces_[0];

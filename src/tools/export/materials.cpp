@@ -38,17 +38,18 @@ std::uint8_t byte_of(double fraction) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(fraction, 0.0, 1.0)));
 }
 
-// Combines a texel with the surface's colour in linear space, as the renderer does. `output`: receives red, green, blue
-// and alpha.
+// Combines a texel with the surface's colour in linear space, as the renderer does (Appearance::paint). `texel`: null
+// in the rim. `output`: receives red, green, blue and alpha.
 void blend_texel(const PictureFile& picture, const std::uint8_t* texel, std::uint8_t* output) {
-  const double opacity = texel[3] / 255.0;
+  const bool is_opaque = picture.alpha == Alpha::ignored, has_rim = picture.rim_u || picture.rim_v;
+  const bool covers = picture.alpha == Alpha::over_color || (is_opaque && has_rim);
+  const double opacity = texel == nullptr ? 0 : is_opaque ? 1 : texel[3] / 255.0;
   for (int c = 0; c < 3; ++c) {
-    const double light = linear_of_bytes()[texel[c]];
-    const double shown = picture.alpha == Alpha::over_color ? picture.color[c] * (1 - opacity) + light * opacity
-                                                            : picture.color[c] * light;
+    const double light = texel == nullptr ? 0 : linear_of_bytes()[texel[c]];
+    const double shown = covers ? picture.color[c] * (1 - opacity) + light * opacity : picture.color[c] * light;
     output[c] = byte_of(image::srgb_from_linear(shown));
   }
-  output[3] = picture.alpha == Alpha::cutout ? texel[3] : 255;
+  output[3] = picture.alpha == Alpha::cutout ? byte_of(opacity) : 255;
 }
 
 bool is_same(const PictureFile& a, const PictureFile& b) {
@@ -89,8 +90,6 @@ Material material_of(const frame::Surface& surface, const frame::Appearance& loo
   const bool has_places = !surface.uv.empty() || !surface.paint_uv.empty();
   if (!paint.texture || !has_places) return made;
   PictureFile picture{.name = {}, .texture = paint.texture, .color = made.color, .alpha = paint.alpha};
-  const bool once = paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once;
-  if (once && picture.alpha == Alpha::ignored) picture.alpha = Alpha::over_color;
   made.wrap_u = paint.wrap_u;
   made.wrap_v = paint.wrap_v;
   made.cutout = picture.alpha == Alpha::cutout;
@@ -115,14 +114,13 @@ std::string PictureFile::png() const {
   const int rim_x = rim_u ? 1 : 0, rim_y = rim_v ? 1 : 0;
   image::Picture output{texture->width + 2 * rim_x, texture->height + 2 * rim_y, {}};
   output.rgba.resize(4 * static_cast<std::size_t>(output.width) * static_cast<std::size_t>(output.height));
-  constexpr std::array<std::uint8_t, 4> kNothing{};
   for (int y = 0; y < output.height; ++y)
     for (int x = 0; x < output.width; ++x) {
       const int from_x = x - rim_x, from_y = y - rim_y;
       const bool inside = from_x >= 0 && from_y >= 0 && from_x < texture->width && from_y < texture->height;
       const std::size_t from = inside ? 4 * (static_cast<std::size_t>(from_y) * texture->width + from_x) : 0;
       const std::size_t to = 4 * (static_cast<std::size_t>(y) * output.width + x);
-      blend_texel(*this, inside ? &texture->rgba[from] : kNothing.data(), &output.rgba[to]);
+      blend_texel(*this, inside ? &texture->rgba[from] : nullptr, &output.rgba[to]);
     }
   if (alpha == Alpha::cutout) return image::png_bytes(output);
   image::Image opaque(output.width, output.height);

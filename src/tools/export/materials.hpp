@@ -13,7 +13,8 @@ namespace weft::exporter {
 
 /// A picture beside or inside the exported files. The export formats cannot combine a picture with
 /// a colour as Weft does, so png() puts the surface's colour into the pixels: each pixel is the
-/// product of picture and colour. With Alpha::over_color, transparent pixels have the colour alone.
+/// product of picture and colour. If the picture covers the colour (Appearance::paint), transparent pixels and the rim
+/// have the colour alone.
 struct PictureFile {
   std::string name;  ///< file name
   std::shared_ptr<const frame::Texture> texture;
