@@ -112,7 +112,6 @@ class Farm {
     if (!options_.program.empty()) paths.reads(options_.program, "the program");
     plan_.jobs = read_sweep(options_.sweep, paths);
     check_sweep_folder(options_.sweep, paths, false);
-    paths.check_writable();
     if (!options_.program.empty()) program_.emplace(options_.program);
     std::map<std::string, int> states;
     if (!options_.dry_run && !active_jobs(folder_, states).empty())
