@@ -223,6 +223,9 @@ TEST_F(Helpers, TwoDashesEndTheOptions) {
   fs::copy(folder_ / "s.toml", folder_ / "-s.toml");
   EXPECT_EQ(run_weft({"check", "--", "-s.toml"}, folder_).exit_code, 0);
   EXPECT_EQ(run_weft({"check", "./-s.toml"}, folder_).exit_code, 0);
+  const Outcome watched = run_weft(
+      {"watch", "--frame", "0", "--size", "64x36", "--quality", "draft", "--times", "1", "--", "-s.toml"}, folder_);
+  EXPECT_EQ(watched.exit_code, 0) << watched.err;
   const Outcome outcome = run_weft({"check", "-s.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("unknown option -s.toml; for a file of this name, write ./-s.toml, or put it after --"),

@@ -92,11 +92,12 @@ class Sweep {
   }
 
   std::vector<std::string> command(const Job& job) const {
-    std::vector<std::string> words{own_program().string(), "run", options_.scene.string()};
+    std::vector<std::string> words{own_program().string(), "run"};
     for (const std::string& text : job.overrides()) words.insert(words.end(), {"--set", text});
     words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
     words.insert(words.end(), {"-o", job.video().string(), "--stats", job.stats().string(), "--progress", "none"});
-    words.emplace_back(options_.overwrite ? "--overwrite" : "--resume");
+    // The name of the scene may begin with a dash.
+    words.insert(words.end(), {options_.overwrite ? "--overwrite" : "--resume", "--", options_.scene.string()});
     return words;
   }
 

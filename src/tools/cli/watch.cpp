@@ -85,14 +85,11 @@ class Watch {
   /// Draws in a child process, which reports its own errors. Kills the child if a file changes or a stop is requested.
   /// Returns the exit code of the child, or ExitCode::interrupted if it was killed here.
   ExitCode draw() const {
-    std::vector<std::string> words{own_program().string(),
-                                   options_.film ? "run" : "thumbnail",
-                                   options_.scene.string(),
-                                   "--overwrite",
-                                   "--progress",
-                                   "none"};
+    std::vector<std::string> words{own_program().string(), options_.film ? "run" : "thumbnail", "--overwrite",
+                                   "--progress", "none"};
     words.insert(words.end(), passed_on_.begin(), passed_on_.end());
     for (const std::string& text : options_.overrides) words.insert(words.end(), {"--set", text});
+    words.insert(words.end(), {"--", options_.scene.string()});  // its name may begin with a dash
     const pid_t process = start_process(words, "");
     bool is_killed = false;
     int status = 0;
