@@ -229,6 +229,33 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
 }
 
+// In a sharp corner, triangles of both layers connect the same vertices, and no flip separates them.
+TEST_F(SewingText, TwoLayersAreSewnAroundSharpCorners) {
+  const auto sewn_layers = [&](const std::string& path, int seams, double spacing) {
+    std::string text;
+    for (const std::string side : {"front", "back"})
+      text += fmt::format("[[panel]]\nname = '{0}'\nside = '{0}'\npath = '{1}'\n", side, path);
+    for (int k = 1; k <= seams; ++k) text += fmt::format("[[seam]]\na = 'front.{0}'\nb = 'back.{0}'\n", k);
+    return sew_text(text, spacing).sheet;
+  };
+  std::string star;
+  for (int k = 0; k < 10; ++k) {
+    const double angle = (0.5 + 0.2 * k) * std::numbers::pi, radius = k % 2 == 0 ? 0.3 : 0.115;
+    star += fmt::format("{} {} {} ", k == 0 ? "M" : "L", radius * std::cos(angle), radius * std::sin(angle));
+  }
+  for (const double spacing : {0.03, 0.02}) {
+    const mesh::Sheet cushion = sewn_layers(star + "Z", 10, spacing);
+    EXPECT_EQ(euler_characteristic(cushion), 2) << "a sphere, at " << spacing;
+    EXPECT_EQ(openings(cushion), 0U) << spacing;
+    const mesh::Sheet pennant = sewn_layers("M 0 0 L 0.5 0.09 L 0 0.18 Z", 2, spacing);
+    EXPECT_EQ(euler_characteristic(pennant), 1) << "a disk, at " << spacing;
+    EXPECT_EQ(openings(pennant), 1U) << spacing;
+    double area = 0;
+    for (std::size_t t = 0; t < pennant.triangles.size(); ++t) area += mesh::rest_area(pennant, t);
+    EXPECT_NEAR(area, 0.5 * 0.18, 1e-12) << spacing;
+  }
+}
+
 // The drawn half is that on the wearer's left. Its fold line is oblique, so that the reflection must do more than
 // change the sign of x.
 TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {

@@ -40,8 +40,9 @@ class Sewing {
       refuse("expected a wearer, as panels start around parts of a body; got none");
     count_segments();
     mesh_panels();
+    number_points();
     join_seams();
-    flip_shared_edges();
+    separate_shared_edges();
     number_vertices();
     make_triangles();
     if (wearer_ != nullptr)
@@ -95,10 +96,16 @@ class Sewing {
       if (count < 3)
         refuse(fmt::format("panel {}: expected an edge_length that leaves it three sides, got {} m", panel.name,
                            spacing_));
-      first_point_.push_back(point_count_);
       meshes_.push_back(mesh_of(panel, segments_[p], spacing_));
       if (meshes_.back().triangles.empty()) refuse(fmt::format("panel {}: expected an area, got none", panel.name));
-      point_count_ += static_cast<Index>(meshes_.back().points.size());
+    }
+  }
+  void number_points() {
+    first_point_.clear();
+    point_count_ = 0;
+    for (const FlatMesh& mesh : meshes_) {
+      first_point_.push_back(point_count_);
+      point_count_ += static_cast<Index>(mesh.points.size());
     }
   }
 
@@ -127,6 +134,7 @@ class Sewing {
   // direction in which the fronts of both panels face outward.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
+    garment_.seams.clear();
     for (const Seam& seam : pattern_.seams) {
       if (seam.is_closure()) continue;
       const auto [p, e] = pattern_.find(seam.a);
@@ -148,19 +156,27 @@ class Sewing {
     }
   }
 
-  /// Flips inner edges of a panel that connect the same two vertices as an edge of another panel. Such edges occur if
-  /// two panels are sewn together around a corner, and a triangle cuts off the corner in both. Of two such edges, flips
-  /// the edge of the panel with the higher index.
-  void flip_shared_edges() {
-    constexpr int kMaxFlipRounds = 8;  // rarely, edges remain; check_surface() then refuses the pattern
-    for (int round = 0; round < kMaxFlipRounds; ++round) {
+  /// Removes inner edges of a panel that connect the same two vertices as an edge of another panel, or a vertex with
+  /// itself. Such edges occur if two panels, or two edges of one panel, are sewn together around a corner, and a
+  /// triangle cuts off the corner. Flips them if possible; otherwise, as in sharp corners, splits them at their middle.
+  /// Of two such edges, changes the edge of the panel with the higher index.
+  void separate_shared_edges() {
+    constexpr int kMaxRounds = 16;  // rarely, edges remain; check_surface() then refuses the pattern
+    for (int round = 0; round < kMaxRounds; ++round) {
       std::map<JoinedEdge, int> triangles_at;
       for (std::size_t p = 0; p < meshes_.size(); ++p)
         for (const mesh::Triangle& t : meshes_[p].triangles)
           for (std::size_t k = 0; k < 3; ++k) ++triangles_at[joined_edge(p, t[k], t[(k + 1) % 3])];
-      bool turned = false;
-      for (std::size_t p = meshes_.size(); p-- > 0;) turned = flip_shared_edges_of_panel(p, triangles_at) || turned;
-      if (!turned) return;
+      const auto change_edges = [&](bool split) {
+        bool changed = false;
+        for (std::size_t p = meshes_.size(); p-- > 0;)
+          changed = change_shared_edges_of_panel(p, split, triangles_at) || changed;
+        return changed;
+      };
+      if (change_edges(false)) continue;
+      if (!change_edges(true)) return;
+      number_points();  // splitting adds points
+      join_seams();
     }
   }
   using JoinedEdge = std::array<Index, 2>;
@@ -168,23 +184,25 @@ class Sewing {
     const Index u = sewn_together_.root(first_point_[panel] + a), v = sewn_together_.root(first_point_[panel] + b);
     return {std::min(u, v), std::max(u, v)};
   }
-  // `triangles_at`: number of triangles at each edge of the garment. Returns whether any edge was flipped.
-  bool flip_shared_edges_of_panel(std::size_t panel, std::map<JoinedEdge, int>& triangles_at) {
+  // Splits edges, or flips them. `triangles_at`: number of triangles at each edge of the garment. Returns whether any
+  // edge was changed.
+  bool change_shared_edges_of_panel(std::size_t panel, bool split, std::map<JoinedEdge, int>& triangles_at) {
     std::vector<mesh::Triangle>& triangles = meshes_[panel].triangles;
-    const std::vector<Vec2>& points = meshes_[panel].points;
+    std::vector<Vec2>& points = meshes_[panel].points;
     const double min_area = kMinFlippedArea * spacing_ * spacing_;
     const auto area = [&](Index a, Index b, Index c) {
       return polygon_area(std::array{points[at(a)], points[at(b)], points[at(c)]});
     };
-    bool turned = false;
+    bool any = false;
     const mesh::EdgeSet table = mesh::collect_edges(triangles);
     std::vector<char> changed(triangles.size(), 0);
     for (const mesh::Edge& edge : table.edges) {
       if (edge.triangles[1] < 0) continue;
       const Index a = edge.vertices[0], b = edge.vertices[1];
-      int& count = triangles_at[joined_edge(panel, a, b)];
+      const JoinedEdge joined = joined_edge(panel, a, b);
+      int& count = triangles_at[joined];
       const std::size_t first = at(edge.triangles[0]), second = at(edge.triangles[1]);
-      if (count <= 2 || changed[first] || changed[second]) continue;
+      if ((count <= 2 && joined[0] != joined[1]) || changed[first] || changed[second]) continue;
       const auto opposite = [&](const mesh::Triangle& t) {
         return *std::ranges::find_if(t, [&](Index v) { return v != a && v != b; });
       };
@@ -193,14 +211,25 @@ class Sewing {
       const mesh::Triangle& one = triangles[first];
       const std::size_t k = at(static_cast<Index>(std::ranges::find(one, opposite(one)) - one.begin()));
       const Index left = one[k], from = one[(k + 1) % 3], to = one[(k + 2) % 3], right = opposite(triangles[second]);
-      int& other_count = triangles_at[joined_edge(panel, left, right)];
-      if (other_count > 0 || !(area(from, right, left) > min_area) || !(area(right, to, left) > min_area)) continue;
-      triangles[first] = {from, right, left}, triangles[second] = {right, to, left};
+      if (split) {
+        const auto middle = static_cast<Index>(points.size());
+        points.push_back(0.5 * (points[at(from)] + points[at(to)]));
+        triangles[first] = {from, middle, left}, triangles[second] = {middle, from, right};
+        triangles.push_back({middle, to, left}), triangles.push_back({to, middle, right});
+      } else {
+        const JoinedEdge other = joined_edge(panel, left, right);
+        int& other_count = triangles_at[other];
+        if (other_count > 0 || other[0] == other[1] || !(area(from, right, left) > min_area) ||
+            !(area(right, to, left) > min_area))
+          continue;
+        triangles[first] = {from, right, left}, triangles[second] = {right, to, left};
+        other_count += 2;
+      }
       changed[first] = changed[second] = 1;
-      count -= 2, other_count += 2;
-      turned = true;
+      count -= 2;
+      any = true;
     }
-    return turned;
+    return any;
   }
 
   void number_vertices() {
