@@ -206,6 +206,11 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_EQ(openings(open.sheet), 1U) << spacing;
     EXPECT_EQ(euler_characteristic(open.sheet), 1) << "a disk, at " << spacing;
   }
+  // Buttons of a cushion cover: none is at the ends of its opening, which are sewn.
+  const mesh::Sheet cover = sew_text(panels + seams + "buttons = 3\n", 0.02).sheet;
+  ASSERT_EQ(cover.ties.size(), 3U);
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(std::abs(cover.rest[cover.ties[k].a].z()), k == 1 ? 0 : 0.1, 1e-3) << "quarters of 0.4 m";
   // A round pillow has one seam, along edges without ends. A zip there ties corresponding places of both edges.
   std::string round = panels + "[[seam]]\na = 'front.rim'\nb = 'back.rim'\n";
   for (std::size_t at = round.find(path); at != std::string::npos; at = round.find(path))

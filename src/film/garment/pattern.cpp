@@ -358,9 +358,9 @@ const scene::Table& pattern_rules() {
           .need(Need::required)
           .plain(Type::text, "b", &Seam::b, "the other edge, of any panel")
           .need(Need::required)
-          .whole_number(
-              "buttons", &Seam::buttons, within(0, 1000),
-              "number of buttons that hold the edges together, evenly from end to end; 0: a zip, or a sewn seam")
+          .whole_number("buttons", &Seam::buttons, within(0, 1000),
+                        "number of buttons that hold the edges together, evenly from end to end, none at an end that "
+                        "is sewn; 0: a zip, or a sewn seam")
           .number("open", &Seam::open, within(-1e6, 1e6), "s", "time of the scene from which the closure is open")
           .by_default("never")
           .number("closed", &Seam::closed, within(-1e6, 1e6), "s",
