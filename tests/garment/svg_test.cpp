@@ -141,6 +141,20 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   refused("odd", "text: expected edge: and a name of letters");
 }
 
+// A long edge is near everywhere, also between the points at which other edges end.
+TEST_F(Drawings, TextsNameTheNearestEdgeHoweverLongItIs) {
+  std::string lower;  // the lower edge of a binding 20 mm wide, in 40 pieces
+  for (int k = 0; k < 40; ++k) lower += "h-40 ";
+  support::write_bytes(
+      folder_ / "d.svg",
+      "<svg width='2000mm' viewBox='0 0 2000 2000'><g id='p'><path d='M0 0H1600V20" + lower +
+          "Z'/><text x='1250' y='2'>edge: upper</text><text x='1250' y='18'>edge: lower</text></g></svg>");
+  const std::vector<std::string> names = load_svg_panel(folder_ / "d.svg", "p").names;
+  ASSERT_EQ(names.size(), 43U);
+  EXPECT_EQ(names[0], "upper");
+  for (std::size_t k = 2; k < 42; ++k) EXPECT_EQ(names[k], "lower") << k;
+}
+
 // Illustrator places texts by a transform, without x and y.
 TEST_F(Drawings, TextsWithoutCoordinatesStandAtTheirOrigin) {
   const auto load_with = [&](const std::string& texts) {

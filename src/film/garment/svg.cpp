@@ -419,10 +419,16 @@ void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node
   }
 }
 
+// Distance of a point from a curve, which is taken as 16 straight lines.
 double distance(const Curve& curve, const Vec2& from) {
-  constexpr int kPoints = 16;
+  constexpr int kPieces = 16;
   double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= kPoints; ++i) nearest = std::min(nearest, (curve.at(double(i) / kPoints) - from).norm());
+  for (int i = 0; i < kPieces; ++i) {
+    const Vec2 start = curve.at(double(i) / kPieces), side = curve.at(double(i + 1) / kPieces) - start;
+    const double length_sq = side.squaredNorm();
+    const double fraction = length_sq > 0 ? std::clamp((from - start).dot(side) / length_sq, 0.0, 1.0) : 0;
+    nearest = std::min(nearest, (start + fraction * side - from).norm());
+  }
   return nearest;
 }
 
