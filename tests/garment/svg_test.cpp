@@ -155,6 +155,20 @@ TEST_F(Drawings, TextsNameTheNearestEdgeHoweverLongItIs) {
   for (std::size_t k = 2; k < 42; ++k) EXPECT_EQ(names[k], "lower") << k;
 }
 
+// Coordinates of elements may have units, which do not depend on the viewBox: a unit of the drawing is a pixel.
+TEST_F(Drawings, ElementsMayStateUnits) {
+  const std::string head = "<svg width='96mm' viewBox='0 0 96 96'>";  // a pixel is drawn 1 mm long
+  expect_corners(head + "<rect id='p' x='1in' y='2px' width='2.54cm' height='72pt'/></svg>",
+                 {{0.096, -0.002}, {0.192, -0.002}, {0.192, -0.098}, {0.096, -0.098}});
+  support::write_bytes(folder_ / "d.svg",
+                       head + "<g id='p'><rect width='20' height='30'/><text x='20px' y='15px'>edge: side</text>" +
+                           "<text x='10 12 14' y='30'>origin</text></g></svg>");
+  const DrawnPanel panel = load_svg_panel(folder_ / "d.svg", "p");
+  EXPECT_EQ(panel.names, (std::vector<std::string>{"1", "side", "3", "4"}));
+  EXPECT_LT((panel.outline[0].start() - Vec2(-0.01, 0.03)).norm(), 1e-12);
+  expect_refused(head + "<rect id='p' width='50%' height='1'/></svg>", "numbers");
+}
+
 // Illustrator places texts by a transform, without x and y.
 TEST_F(Drawings, TextsWithoutCoordinatesStandAtTheirOrigin) {
   const auto load_with = [&](const std::string& texts) {

@@ -151,12 +151,12 @@ std::optional<std::vector<double>> parse_numbers(std::string_view text) {
   }
 }
 
-// Converts a length such as "210mm" to metres. Returns nothing for lengths ≤ 0, percentages, units relative to a font,
-// and invalid text.
+// Converts a length such as "210mm" to metres. Returns nothing for percentages, units relative to a font, and invalid
+// text.
 std::optional<double> parse_length(std::string_view text) {
   double value = 0;
   const auto [end, error] = parse_number(text, value);
-  if (error != std::errc() || !(value > 0) || !std::isfinite(value)) return std::nullopt;
+  if (error != std::errc() || !std::isfinite(value)) return std::nullopt;
   const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
   if (unit.empty() || unit == "px") return value * kMetresPerPixel;
   if (unit == "mm") return value * 1e-3;
@@ -165,6 +165,23 @@ std::optional<double> parse_length(std::string_view text) {
   if (unit == "pt") return value * 0.0254 / 72;
   if (unit == "pc") return value * 0.0254 / 6;
   return std::nullopt;
+}
+
+// The size of a sheet [m]. Returns nothing if it is ≤ 0 or no length.
+std::optional<double> parse_size(std::string_view text) {
+  const std::optional<double> length = parse_length(text);
+  return length && *length > 0 ? length : std::nullopt;
+}
+
+// A coordinate or a length of an element, in units of the element, which are CSS pixels; 0 if the text is empty. Of a
+// list, such as the places of all letters of a text, returns the first. Returns nothing if it is no length.
+std::optional<double> parse_coordinate(std::string_view text) {
+  constexpr std::string_view kSeparators = " \t\r\n,";
+  const std::size_t start = text.find_first_not_of(kSeparators);
+  if (start == std::string_view::npos) return 0;
+  const auto length = parse_length(text.substr(start, text.find_first_of(kSeparators, start) - start));
+  if (!length) return std::nullopt;
+  return *length / kMetresPerPixel;
 }
 
 using Numbers = std::optional<std::vector<double>>;
@@ -176,7 +193,7 @@ void check_view_box(const Drawing& drawing, const pugi::xml_node& node, const Nu
 // Size of one unit of the drawing [m].
 double metres_per_unit(const Drawing& drawing) {
   const pugi::xml_node root = drawing.root();
-  const auto width = parse_length(root.attribute("width").value());
+  const auto width = parse_size(root.attribute("width").value());
   const auto box = parse_numbers(root.attribute("viewBox").value());
   if (!root.attribute("viewBox")) {
     // Before version 0.92, Inkscape drew 90 units per inch.
@@ -189,7 +206,7 @@ double metres_per_unit(const Drawing& drawing) {
   double unit = *width / (*box)[2];
   // If the height is also given, the smaller of the two units applies, as in browsers. Refuses files whose
   // preserveAspectRatio demands otherwise.
-  if (const auto height = parse_length(root.attribute("height").value())) {
+  if (const auto height = parse_size(root.attribute("height").value())) {
     constexpr double kMaxDifference = 1e-3;  // relative difference of both units due to rounded sizes
     const double up = *height / (*box)[3];
     const std::string_view ratio = root.attribute("preserveAspectRatio").value();
@@ -249,14 +266,12 @@ Affine parse_transform(const Drawing& drawing, const pugi::xml_node& node) {
 
 // The map from coordinates inside a nested svg element to those of its parent.
 Affine place_nested(const Drawing& drawing, const pugi::xml_node& node) {
-  const auto x = parse_numbers(node.attribute("x").value()), y = parse_numbers(node.attribute("y").value());
-  const auto width = parse_length(node.attribute("width").value()),
-             height = parse_length(node.attribute("height").value());
+  const auto x = parse_coordinate(node.attribute("x").value()), y = parse_coordinate(node.attribute("y").value());
+  const auto width = parse_size(node.attribute("width").value()), height = parse_size(node.attribute("height").value());
   const std::string_view ratio = node.attribute("preserveAspectRatio").as_string("xMidYMid meet");
-  if (!x || !y || x->size() > 1 || y->size() > 1)
-    drawing.refuse(node, "expected x and y as numbers, got something else");
+  if (!x || !y) drawing.refuse(node, "expected x and y as numbers, got something else");
   Affine t = Affine::Identity();
-  t.translate(Vec2(x->empty() ? 0 : x->front(), y->empty() ? 0 : y->front()));
+  t.translate(Vec2(*x, *y));
   if (!node.attribute("viewBox")) return t;
   const auto box = parse_numbers(node.attribute("viewBox").value());
   check_view_box(drawing, node, box);
@@ -274,19 +289,17 @@ std::vector<Outline> outlines_of(const Drawing& drawing, const pugi::xml_node& n
   if (kind == "polygon") {
     data = fmt::format("M {} Z", node.attribute("points").value());
   } else if (kind == "rect") {
-    const auto number = [&](const char* key) { return parse_numbers(node.attribute(key).value()); };
+    const auto number = [&](const char* key) { return parse_coordinate(node.attribute(key).value()); };
     const auto x = number("x"), y = number("y"), width = number("width"), height = number("height");
-    if (!x || !y || x->size() > 1 || y->size() > 1 || !width || width->size() != 1 || !height || height->size() != 1)
+    if (!x || !y || !width || !height || *width == 0 || *height == 0)
       drawing.refuse(node, "expected x, y, width and height as numbers, got something else");
     const auto round_x = number("rx"), round_y = number("ry");
-    if (!round_x || !round_y || round_x->size() > 1 || round_y->size() > 1)
-      drawing.refuse(node, "expected rx and ry as numbers, got something else");
+    if (!round_x || !round_y) drawing.refuse(node, "expected rx and ry as numbers, got something else");
     // If only one radius is given, it applies to both axes. Radii are limited to half the size.
-    const auto& rx_or_ry = round_x->empty() ? *round_y : *round_x;
-    const auto& ry_or_rx = round_y->empty() ? *round_x : *round_y;
-    const double left = x->empty() ? 0 : (*x)[0], top = y->empty() ? 0 : (*y)[0], w = (*width)[0], h = (*height)[0];
-    const double rx = rx_or_ry.empty() ? 0 : std::min(rx_or_ry[0], 0.5 * w);
-    const double ry = ry_or_rx.empty() ? 0 : std::min(ry_or_rx[0], 0.5 * h);
+    const auto& rx_or_ry = node.attribute("rx") ? round_x : round_y;
+    const auto& ry_or_rx = node.attribute("ry") ? round_y : round_x;
+    const double left = *x, top = *y, w = *width, h = *height;
+    const double rx = std::min(*rx_or_ry, 0.5 * w), ry = std::min(*ry_or_rx, 0.5 * h);
     if (rx > 0 && ry > 0)
       data = fmt::format(
           "M {0} {1} h {2} a {4} {5} 0 0 1 {4} {5} v {3} a {4} {5} 0 0 1 -{4} {5} "
@@ -373,13 +386,13 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   if (first != "origin" && !first.starts_with("edge:")) return;
   const auto coordinate = [&](const char* key) {
     const pugi::xml_attribute own = node.attribute(key);
-    return parse_numbers((own ? own : node.child("tspan").attribute(key)).value());
+    return parse_coordinate((own ? own : node.child("tspan").attribute(key)).value());
   };
   const auto x = coordinate("x"), y = coordinate("y");
   if (!x || !y || node.child("textPath"))
     drawing.refuse(node, "expected x and y where a label stands, got something else");
   // An absent coordinate is 0 (SVG 1.1, section 10.4). Illustrator writes texts with a transform, but without x and y.
-  const Vec2 place = sheet.to_metres(node) * Vec2(x->empty() ? 0 : x->front(), y->empty() ? 0 : y->front());
+  const Vec2 place = sheet.to_metres(node) * Vec2(*x, *y);
   if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got infinite or undefined ones");
   if (first == "origin") {
     group.origin = place;
