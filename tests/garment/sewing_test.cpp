@@ -328,6 +328,8 @@ TEST_F(SewingText, MistakesAreAllNamedWithTheirPlaces) {
   expect_mistake("[[panel]]\nname = 'a'\n", "panel.a: expected an outline");
   expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0L0 1Z'\nedges = 'x y'\n", "expected 3 names");
   expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0L0 1L 1 1Z'\n", "does not cross itself");
+  // The arc is one edge, though it is read as two curves.
+  expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0A.5 .5 0 0 1 1 1L.5 -.5Z'\n", "of the edges 1 and 3");
   expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0L1 1L0.5 1.2L0 1Z'\nedges = 'a b a b c'\n", "side by side");
   expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0 L 900 0 L 0 900 Z'\n", "at most 100 m");
   expect_mistake("[[panel]]\nname = 'a'\npth = 'M0 0'\n", "did you mean path?");

@@ -275,11 +275,11 @@ void derive_edges(Panel& panel, const std::string& path, Findings& findings, std
     return findings.report(key, fmt::format("expected a panel of at most {} m, got one of {:.4g} m", kMaxPanelSize,
                                             (high - low).maxCoeff()));
   if (const auto crossing = self_crossing(points))
-    return findings.report(key,
-                           fmt::format("expected an outline that does not cross itself, got a crossing near "
-                                       "({:.4g}, {:.4g}) m, of curves {} and {}",
-                                       points[crossing->first].x(), points[crossing->first].y(),
-                                       crossing->first / kPointsPerCurve + 1, crossing->second / kPointsPerCurve + 1));
+    return findings.report(
+        key, fmt::format("expected an outline that does not cross itself, got a crossing near "
+                         "({:.4g}, {:.4g}) m, of the edges {} and {}",
+                         points[crossing->first].x(), points[crossing->first].y(),
+                         names[crossing->first / kPointsPerCurve], names[crossing->second / kPointsPerCurve]));
   if (polygon_area(points) < 0) {
     std::ranges::reverse(outline);
     std::ranges::reverse(names);
