@@ -231,10 +231,10 @@ void cut_non_manifold_edges(LoadedMesh& loaded, const std::vector<Joint>& joints
     const Vec3 middle = (positions[at(t[0])] + positions[at(t[1])] + positions[at(t[2])]) / 3;
     for (const Index v : t) toward[at(v)] += (middle - positions[at(v)]) / use_count[at(v)];
   }
-  for (const auto& [vertex, largest] : kept_copies)
-    for (std::size_t v = 0; v < from.size(); ++v)
-      if (use_count[v] > 0 && from[v] == vertex && static_cast<Index>(v) != largest.second)
-        positions[v] += kCutGap * toward[v];
+  for (std::size_t v = 0; v < from.size(); ++v)
+    if (const auto kept_copy = kept_copies.find(from[v]);
+        use_count[v] > 0 && kept_copy != kept_copies.end() && static_cast<Index>(v) != kept_copy->second.second)
+      positions[v] += kCutGap * toward[v];
   for (const Index piece : small_pieces) mended.left_out += areas[piece] / whole;
   mended.pieces = small_pieces.size();
   triangles = std::move(cut_triangles);
