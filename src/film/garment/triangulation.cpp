@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "physics/mesh/polygon.hpp"
 
@@ -225,10 +226,18 @@ double polygon_area(std::span<const Vec2> outline) {
 
 std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const Vec2> outline) {
   const std::size_t n = outline.size();
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j + 1 == n) continue;
-      const Vec2 &a = outline[i], &b = outline[i + 1], &c = outline[j], &d = outline[(j + 1) % n];
+  const auto end = [&](std::size_t i) -> const Vec2& { return outline[(i + 1) % n]; };
+  const auto left = [&](std::size_t i) { return std::min(outline[i].x(), end(i).x()); };
+  const auto right = [&](std::size_t i) { return std::max(outline[i].x(), end(i).x()); };
+  // Only sides whose ranges along x overlap can cross. In this order, those of a side follow it one after the other.
+  std::vector<std::size_t> sides(n);
+  std::iota(sides.begin(), sides.end(), std::size_t{0});
+  std::ranges::stable_sort(sides, {}, left);
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t m = k + 1; m < n && left(sides[m]) <= right(sides[k]); ++m) {
+      const auto [i, j] = std::minmax(sides[k], sides[m]);
+      if (j - i == 1 || (i == 0 && j + 1 == n)) continue;
+      const Vec2 &a = outline[i], &b = end(i), &c = outline[j], &d = end(j);
       // Skips sides whose bounding boxes do not overlap. Without this, collinear sides would always seem to cross,
       // because the orientations below are 0.
       if ((a.cwiseMax(b) - c.cwiseMin(d)).minCoeff() < 0 || (c.cwiseMax(d) - a.cwiseMin(b)).minCoeff() < 0) continue;
