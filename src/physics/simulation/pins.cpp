@@ -120,8 +120,9 @@ std::vector<Pins::Anchor> Pins::make_anchors(const model::Model& model, std::siz
   }
   // A collapsed triangle cannot carry a point beside it. Its neighbours have the same points, up to rounding.
   std::vector<mesh::Triangle> triangles = surface.topology.triangles;
-  std::erase_if(triangles, [&](const mesh::Triangle& t) {
-    return TriangleAxes(vertices[at(t[0])], vertices[at(t[1])], vertices[at(t[2])]).has_collapsed();
+  std::erase_if(triangles, [&](const mesh::Triangle& corners) {
+    const auto& [a, b, c] = corners;
+    return TriangleAxes(vertices[at(a)], vertices[at(b)], vertices[at(c)]).has_collapsed();
   });
   if (triangles.empty()) triangles = surface.topology.triangles;
   std::vector<Anchor> anchors;
