@@ -158,6 +158,7 @@ TEST(Options, OfSpeedAreListsAndForSpeedAlone) {
   EXPECT_EQ(speed.frames.begin, 3);
   EXPECT_FALSE(speed.drawing);
   EXPECT_EQ(bench({"--draw", "preview"}).drawing, render::Quality::preview);
+  EXPECT_EQ(bench({"--peer", "p"}).peer, "p");
   for (const char* wrong : {"0", "-1", "1;2", "nan", "1e9"})
     EXPECT_EQ(refusal({"bench", "speed", "--sizes", wrong}),
               std::string("--sizes: expected numbers from 0.01 to 100, got ") + wrong);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <map>
+#include <regex>
 #include <sstream>
 
 #include "cli/subprocess.hpp"
@@ -11,6 +12,7 @@
 #include "core/parallel.hpp"
 #include "lab/bench/html.hpp"
 #include "lab/bench/speed_report.hpp"
+#include "physics/mesh/ply.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
@@ -218,7 +220,20 @@ TEST(SpeedReport, StagesOfARunAddUpToIt) {
   set_thread_count(0);
 }
 
-class BenchSpeed : public support::TestFolder {};
+class BenchSpeed : public support::TestFolder {
+ protected:
+  // Writes a shell script that can be started.
+  void write_peer(const std::string& commands) const {
+    support::write_bytes(folder_ / "peer", "#!/bin/sh\n" + commands);
+    std::filesystem::permissions(folder_ / "peer", std::filesystem::perms::owner_all);
+  }
+  cli::Outcome run_beside_peer() const {
+    return cli::run_weft({"bench", "speed", "--sizes", "0.1", "--threads", "1", "--steps", "1", "--frames", "1:2",
+                          "--set", "time.step=0.02", "--peer", "peer", "-o", "b"},
+                         folder_);
+  }
+  std::string read_report() const { return support::read_bytes(folder_ / "b" / "speed_sphere_drape.md"); }
+};
 
 TEST_F(BenchSpeed, WritesReportTableAndPlot) {
   const cli::Outcome outcome = cli::run_weft(
@@ -277,6 +292,48 @@ TEST_F(BenchSpeed, ARunThatFailsIsARow) {
   EXPECT_TRUE(contains(csv, "c.obj")) << csv;
 }
 
+TEST_F(BenchSpeed, ComparesCostAndPairsWithAPeer) {
+  // The peer prints a cost and copies meshes, in which the sheet crosses the floor in frame 0 and not in frame 1.
+  for (const int frame : {0, 1}) {
+    const auto write = [&](const std::string& name, const std::vector<Vec3>& positions) {
+      mesh::write_ply(folder_ / "meshes" / fmt::format("{}_{:05}.ply", name, frame), positions,
+                      std::vector<std::array<Index, 3>>{{0, 1, 2}});
+    };
+    write("floor", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    write("sphere", {{0, 0, 9}, {1, 0, 9}, {0, 1, 9}});
+    write("sheet", {{0.25, 0.25, frame - 0.5}, {0.25, 0.25, 1}, {0.5, 0.25, 1}});
+  }
+  write_peer(
+      "echo \"$@\" >> calls\n"
+      "for last; do :; done\n"
+      "case \"$*\" in *--meshes*) cp meshes/* \"$last\";; esac\n"
+      "echo '36 particles: 12.5 CPU ms a frame, 9 (median)'\n");
+  const cli::Outcome outcome = run_beside_peer();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(contains(read_report(), "## Beside peer\n\nFrames 1 to 1 ")) << read_report();
+  const std::regex row(R"(\n\| 36 \| [0-9.]+ \| 12\.5 \| [0-9.]+ \| 0, 0 \| 1, 0 \|\n)");
+  EXPECT_TRUE(std::regex_search(read_report(), row)) << read_report();
+  const std::string calls = support::read_bytes(folder_ / "calls");
+  const std::regex timed(
+      R"(\S+/sphere_drape\.toml --end 2 --set time\.step=0\.02 --set cloth\.0\.particles=\[6,6\]\n)");
+  EXPECT_EQ(std::distance(std::sregex_iterator(calls.begin(), calls.end(), timed), std::sregex_iterator()), 3) << calls;
+  EXPECT_EQ(std::ranges::count(calls, '\n'), 4) << "one more writes meshes: " << calls;
+  const std::filesystem::directory_iterator left(folder_ / "b");
+  EXPECT_EQ(std::distance(begin(left), end(left)), 3) << "report, table and plot";
+}
+
+TEST_F(BenchSpeed, APeerThatFailsIsARow) {
+  write_peer("echo 12.5 ms\n");
+  EXPECT_EQ(run_beside_peer().exit_code, 5);
+  EXPECT_TRUE(contains(read_report(), "expected its cost, such as \"12.3 CPU ms a frame\", got \"12.5 ms\""))
+      << read_report();
+  EXPECT_FALSE(contains(read_report(), "## Beside")) << read_report();
+  std::filesystem::remove_all(folder_ / "b");
+  write_peer("exit 3\n");
+  EXPECT_EQ(run_beside_peer().exit_code, 5);
+  EXPECT_TRUE(contains(read_report(), "/peer ended with exit code 3 |")) << read_report();
+}
+
 TEST_F(BenchSpeed, MistakesShowBeforeAnythingIsMeasured) {
   cli::Outcome outcome = cli::run_weft({"bench", "speed", "--sizes", "0.1,50", "-o", "b"}, folder_);
   EXPECT_EQ(outcome.exit_code, 3);
@@ -287,6 +344,9 @@ TEST_F(BenchSpeed, MistakesShowBeforeAnythingIsMeasured) {
   outcome = cli::run_weft({"bench", "speed", "--set", "time.duration=0", "-o", "b"}, folder_);
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_TRUE(contains(outcome.err, "expected at least one frame after frame 0")) << outcome.err;
+  outcome = cli::run_weft({"bench", "speed", "--peer", "none", "-o", "b"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_TRUE(contains(outcome.err, "--peer: expected a program that can be started")) << outcome.err;
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 

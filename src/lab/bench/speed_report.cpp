@@ -239,12 +239,24 @@ Table bound_table(const std::vector<SpeedRun>& runs) {
   return table;
 }
 
-std::string failures_text(const std::vector<SpeedRun>& runs) {
+Table peer_table(const std::vector<PeerRun>& runs) {
+  const auto pairs = [](const FramePairs& of) { return fmt::format("{}, {}", grouped(of.worst), grouped(of.last)); };
+  Table table{{"particles", "Weft ms", "peer ms", "Weft / peer", "pairs of Weft", "pairs of the peer"}};
+  for (const PeerRun& run : runs)
+    if (!run.failed())
+      table.push_back({grouped(run.particles), milliseconds(run.weft_ms), milliseconds(run.peer_ms),
+                       fmt::format("{:.2f}", run.weft_ms / run.peer_ms), pairs(run.weft_pairs), pairs(run.peer_pairs)});
+  return table;
+}
+
+std::string failures_text(const SpeedReport& report) {
   Table table{{"size", "threads", "step", "why"}};
-  for (const SpeedRun& run : runs)
+  for (const SpeedRun& run : report.runs)
     if (run.failed())
       table.push_back({fmt::format("{:g}", run.setting.size), std::to_string(run.setting.threads),
                        fmt::format("{:g}", run.setting.step), run.failure});
+  for (const PeerRun& run : report.peer_runs)
+    if (run.failed()) table.push_back({fmt::format("{:g}", run.size), "1", "1", run.failure});
   return table.size() > 1 ? fmt::format("## Runs that failed\n\n{}\n", markdown(table)) : std::string();
 }
 
@@ -396,6 +408,11 @@ std::string speed_markdown(const SpeedReport& report, const std::string& plot) {
                       "since the row above.",
                       least_threads(report.runs)),
           sizes_table(sizes));
+  section("Beside " + report.peer,
+          fmt::format("Frames 1 to {} on one thread. CPU ms: mean over the frames, median over runs in turns. Pairs of "
+                      "triangles that intersect, by exact predicates: in the frame with the most, in the last one.",
+                      report.frames.end - 1),
+          peer_table(report.peer_runs));
   const Table threads = threads_table(report.runs);
   if (threads.size() > sizes.size() + 1)
     section("Threads", "Wall ms by stage, CPU ms of all threads, and a hash of the positions of the last frame.",
@@ -418,7 +435,7 @@ std::string speed_markdown(const SpeedReport& report, const std::string& plot) {
           "the speed at which so many threads read as many bytes as a linear iteration moves, again and again; and "
           "the wall ms that they take. Contacts and what elements know of themselves are not counted.",
           bound_table(report.runs));
-  return text + failures_text(report.runs);
+  return text + failures_text(report);
 }
 
 }  // namespace weft::bench

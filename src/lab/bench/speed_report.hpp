@@ -1,6 +1,7 @@
 // Tables, plots and a conclusion about the cost of runs.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,10 +11,29 @@
 
 namespace weft::bench {
 
+/// Numbers of intersecting pairs of triangles.
+struct FramePairs {
+  std::int64_t worst = 0, last = 0;  ///< in the frame with the most pairs, in the last frame
+};
+
+/// Weft and a peer (another program) on one thread, at one size of the scene.
+struct PeerRun {
+  double size = 1;           ///< see SpeedSetting::size
+  std::string failure = {};  ///< why there is no comparison; empty if there is one
+  std::int64_t particles = 0;
+  double weft_ms = 0, peer_ms = 0;  ///< CPU time of a frame: mean over the frames, median over the turns [ms]
+  FramePairs weft_pairs = {}, peer_pairs = {};
+
+  bool failed() const { return !failure.empty(); }
+};
+
 struct SpeedReport {
   std::string title, machine;  ///< `title` names the scene, `machine` the processor
   SpeedFrames frames;
   std::vector<SpeedRun> runs;
+  std::string peer = {};  ///< name of the peer
+  /// In order of size. The compared frames are 1 to frames.end - 1. Empty: there is no peer.
+  std::vector<PeerRun> peer_runs = {};
 };
 
 /// One row per run, for other programs. Times are in milliseconds per frame. The field of an unknown value is empty.

@@ -17,6 +17,7 @@
 #include "lab/bench/scene_stability_report.hpp"
 #include "lab/bench/speed_report.hpp"
 #include "lab/bench/stability.hpp"
+#include "tools/cli/bench_peer.hpp"
 #include "tools/cli/commands.hpp"
 #include "tools/cli/path_ledger.hpp"
 #include "tools/cli/scene_input.hpp"
@@ -214,6 +215,7 @@ bench::SpeedFrames speed_frames(const BenchOptions& options, const scene::Scene&
 /// A planned run of `bench speed`.
 struct PlannedRun {
   bench::SpeedSetting setting;
+  std::vector<std::string> overrides;  ///< that apply the setting, besides those of --set
   scene::Scene scene;
 };
 
@@ -225,24 +227,41 @@ std::vector<PlannedRun> plan_speed(const BenchOptions& options, const scene::Sce
   std::vector<PlannedRun> runs;
   for (const bench::SpeedSetting& setting :
        bench::speed_settings(fixed_size ? std::vector<double>{1} : options.sizes,
-                             options.threads.empty() ? all_cores : options.threads, options.steps))
-    runs.push_back(
-        {setting, scene_of(options, bench::kSphereDrape, "sphere_drape.toml", bench::overrides_of(scene, setting))});
+                             options.threads.empty() ? all_cores : options.threads, options.steps)) {
+    const std::vector<std::string> overrides = bench::overrides_of(scene, setting);
+    runs.push_back({setting, overrides, scene_of(options, bench::kSphereDrape, "sphere_drape.toml", overrides)});
+  }
   return runs;
 }
 
-bench::SpeedRun run_alone(const PlannedRun& planned, const bench::SpeedFrames& frames, const BenchOptions& options,
-                          const std::atomic<bool>& stop) {
-  const auto open_drawing = [&]() -> bench::Drawing {
+/// The runs to compare with the peer: each size once, on one thread.
+std::vector<PlannedRun> plan_peer_runs(const BenchOptions& options, const std::vector<PlannedRun>& planned) {
+  std::vector<PlannedRun> runs;
+  for (const PlannedRun& run : planned) {
+    if (options.peer.empty() || run.setting.step != 1) continue;
+    if (!runs.empty() && runs.back().setting.size == run.setting.size) continue;
+    runs.push_back(run);
+    runs.back().setting.threads = 1;
+  }
+  return runs;
+}
+
+/// Opens the drawing of a run; empty without --draw.
+std::function<bench::Drawing()> drawing_of(const PlannedRun& planned, const BenchOptions& options) {
+  if (!options.drawing) return {};
+  return [&planned, quality = *options.drawing]() -> bench::Drawing {
     SceneOptions drawing;
-    drawing.quality = *options.drawing;
+    drawing.quality = quality;
     drawing.threads = planned.setting.threads;
     const std::shared_ptr<FramePainter> painter = make_gl_painter(render_settings(planned.scene, drawing));
     return [painter](const frame::FrameSnapshot& snapshot) { painter->draw(snapshot, nullptr); };
   };
+}
+
+bench::SpeedRun run_alone(const PlannedRun& planned, const bench::SpeedFrames& frames,
+                          const std::function<bench::Drawing()>& open_drawing, const std::atomic<bool>& stop) {
   const auto work = [&] {
-    bench::SpeedRun run = bench::run_for_speed(planned.scene, planned.setting, frames,
-                                               options.drawing ? open_drawing : std::function<bench::Drawing()>());
+    bench::SpeedRun run = bench::run_for_speed(planned.scene, planned.setting, frames, open_drawing);
     ByteWriter writer;
     serialize(writer, run);
     return writer.bytes;
@@ -268,40 +287,119 @@ std::string describe(const bench::SpeedRun& run) {
                      1e3 * run.all().cpu_s / run.frames);
 }
 
+/// Timed runs of each program at each size. The programs take turns, so that both are measured while the machine is
+/// equally fast. One more run of each writes meshes.
+constexpr int kPeerTurns = 3, kPeerRuns = 2 * (kPeerTurns + 1);
+
+double median_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+/// Compares Weft with the peer in frames 1 to `end` - 1. `folder`: for the scene and the meshes.
+bench::PeerRun compare_with_peer(const PlannedRun& planned, const BenchOptions& options, int end,
+                                 const std::filesystem::path& folder, const std::atomic<bool>& stop) {
+  const std::filesystem::path scene = options.scene.empty() ? folder / "sphere_drape.toml" : options.scene;
+  const std::filesystem::path meshes = folder / "meshes";
+  std::vector<std::string> arguments{scene.string(), "--end", std::to_string(end)};
+  for (const auto* overrides : {&options.overrides, &planned.overrides})
+    for (const std::string& change : *overrides) {
+      arguments.emplace_back("--set");
+      arguments.push_back(change);
+    }
+  bench::PeerRun result{.size = planned.setting.size};
+  const auto run_weft = [&](const std::function<bench::Drawing()>& open_drawing) {
+    const bench::SpeedRun run = run_alone(planned, {1, end}, open_drawing, stop);
+    if (run.failed()) throw std::runtime_error("weft: " + run.failure);
+    result.particles = run.particles;
+    return 1e3 * run.all().cpu_s / run.frames;
+  };
+  const auto count_pairs_after = [&](const auto& run) {
+    std::filesystem::remove_all(meshes);
+    std::filesystem::create_directories(meshes);
+    run();
+    return count_pairs(meshes, planned.scene, end, stop);
+  };
+  try {
+    if (options.scene.empty()) write_file(scene, bench::kSphereDrape);
+    std::vector<double> weft_ms, peer_ms;
+    for (int turn = 0; turn < kPeerTurns; ++turn) {
+      weft_ms.push_back(run_weft({}));
+      peer_ms.push_back(run_peer(options.peer, arguments, stop));
+    }
+    result.weft_ms = median_of(weft_ms);
+    result.peer_ms = median_of(peer_ms);
+    const bench::Drawing write_frame = [&](const frame::FrameSnapshot& snapshot) { write_meshes(meshes, snapshot); };
+    result.weft_pairs = count_pairs_after([&] { run_weft([&] { return write_frame; }); });
+    arguments.emplace_back("--meshes");
+    arguments.push_back(meshes.string());
+    result.peer_pairs = count_pairs_after([&] { run_peer(options.peer, arguments, stop); });
+  } catch (const std::exception& error) {
+    if (stop) throw;
+    result.failure = error.what();
+  }
+  return result;
+}
+
+std::string describe(const bench::PeerRun& run) {
+  if (run.failed()) return fmt::format("size {:g} beside the peer: {}", run.size, run.failure);
+  return fmt::format("size {:g}: {} particles, {:.4g} CPU ms a frame beside {:.4g} of the peer", run.size,
+                     run.particles, run.weft_ms, run.peer_ms);
+}
+
 ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& folder) {
+  if (!options.peer.empty()) check_peer(options.peer);
   const scene::Scene scene = scene_of(options, bench::kSphereDrape, "sphere_drape.toml");
-  bench::SpeedReport report{
-      title_of(scene), fmt::format("{}, {} cores", cpu_model(), thread_count()), speed_frames(options, scene), {}};
-  const std::vector<PlannedRun> planned = plan_speed(options, scene);
+  bench::SpeedReport report{title_of(scene),
+                            fmt::format("{}, {} cores", cpu_model(), thread_count()),
+                            speed_frames(options, scene),
+                            {},
+                            options.peer.filename().string()};
+  const std::vector<PlannedRun> planned = plan_speed(options, scene), with_peer = plan_peer_runs(options, planned);
   const std::string name = "speed_" + scene.name, plot = name + ".svg";
   PathLedger paths;
   if (!options.scene.empty()) add_inputs(paths, scene);
+  if (!options.peer.empty()) paths.reads(options.peer, "the peer");
   check_outputs(paths, options, folder, {name + ".md", name + ".csv", plot});
   const StopSignals signals("the finished measurements are written");
   RunProgress progress("speed");
   double all_work = 0, done = 0;
   for (const PlannedRun& run : planned) all_work += bench::expected_work(run.setting);
-  for (const PlannedRun& run : planned) {
-    try {
-      report.runs.push_back(run_alone(run, report.frames, options, signals.requested()));
-    } catch (const Error&) {
-      break;  // interrupted
+  for (const PlannedRun& run : with_peer) all_work += kPeerRuns * bench::expected_work(run.setting);
+  try {
+    for (const PlannedRun& run : planned) {
+      report.runs.push_back(run_alone(run, report.frames, drawing_of(run, options), signals.requested()));
+      // Writes the table after each run, so that an interruption loses no results.
+      write_file(folder / (name + ".csv"), bench::csv(bench::speed_table(report.runs)));
+      done += bench::expected_work(run.setting);
+      progress(done / all_work, describe(report.runs.back()));
     }
-    // Writes the table after each run, so that an interruption loses no results.
-    write_file(folder / (name + ".csv"), bench::csv(bench::speed_table(report.runs)));
-    done += bench::expected_work(run.setting);
-    progress(done / all_work, describe(report.runs.back()));
+    if (!with_peer.empty()) {
+      const TemporaryName work(folder / (name + "_peer"), TemporaryName::Kind::folder);
+      for (const PlannedRun& run : with_peer) {
+        report.peer_runs.push_back(
+            compare_with_peer(run, options, report.frames.end, work.path(), signals.requested()));
+        done += kPeerRuns * bench::expected_work(run.setting);
+        progress(done / all_work, describe(report.peer_runs.back()));
+      }
+    }
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::interrupted) throw;
   }
-  const bool whole = report.runs.size() == planned.size();
+  const std::size_t all = planned.size() + with_peer.size(), finished = report.runs.size() + report.peer_runs.size();
   if (!report.runs.empty()) {
     write_file(folder / plot, bench::speed_svg(report));
     write_file(folder / (name + ".md"), bench::speed_markdown(report, plot));
     print("{}written to {}\n", bench::conclusion(report.runs), (folder / (name + ".md")).string());
   }
-  if (!whole) log::info(fmt::format("weft: interrupted after {} of {} runs", report.runs.size(), planned.size()));
-  if (!whole) return ExitCode::interrupted;
-  const bool any = std::ranges::any_of(report.runs, [](const bench::SpeedRun& run) { return !run.failed(); });
-  return any ? ExitCode::ok : ExitCode::simulation_failed;
+  if (finished < all) {
+    log::info(fmt::format("weft: interrupted after {} of {} runs", finished, all));
+    return ExitCode::interrupted;
+  }
+  const auto all_failed = [](const auto& runs) {
+    return !runs.empty() && std::ranges::all_of(runs, [](const auto& run) { return run.failed(); });
+  };
+  return all_failed(report.runs) || all_failed(report.peer_runs) ? ExitCode::simulation_failed : ExitCode::ok;
 }
 
 ExitCode bench_fabrics(const BenchOptions& options, const std::filesystem::path& folder) {

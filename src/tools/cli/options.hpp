@@ -157,6 +157,7 @@ struct BenchOptions {
   std::vector<int> threads;                ///< empty: 1, and all cores
   FrameSelection frames;                   ///< for speed: the measured frames
   std::optional<render::Quality> drawing;  ///< for speed: also draw the frames, with this quality
+  std::filesystem::path peer;              ///< for speed: program to compare with; empty: none
   bench::AccuracyPlan plan;                ///< for accuracy
   std::filesystem::path output;            ///< folder; empty: output/bench
   bool overwrite = false;

@@ -130,6 +130,9 @@ void Parser::add_bench() {
   });
   of_speed("--draw", "draft|preview|final", "For speed: also draw each frame, in this quality",
            [this](const std::string& text) { bench.drawing = parse_choice("--draw", text, kQualities); });
+  of_speed("--peer", "PROGRAM",
+           "For speed: also compare CPU time and intersecting pairs with a peer, such as bench_bullet",
+           [this](const std::string& text) { bench.peer = text; });
   command.footer(
       "\nExamples:\n"
       "  weft bench stability -o stability\n"

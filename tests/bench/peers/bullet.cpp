@@ -1,6 +1,7 @@
 // bench_bullet: for comparison, simulates a scene of one cloth, a sphere and a floor with Bullet's soft body. Prints
-// the cost of a frame, and writes meshes for weft_judge. Mesh, masses, obstacles and friction are those of the scene.
-// The material is Bullet's, with rigid threads and soft bending, as usual for its soft bodies.
+// the cost of a frame, and writes meshes for weft_judge. `weft bench speed --peer` runs it beside Weft. Mesh, masses,
+// obstacles and friction are those of the scene. The material is Bullet's, with rigid threads and soft bending, as
+// usual for its soft bodies.
 #include <BulletSoftBody/btSoftBody.h>
 #include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
@@ -156,7 +157,7 @@ void run(const Request& request) {
     if (touched) after_contact.push_back(ms);
     write_meshes(request, *start.snapshot(), *world.cloth, k);
   }
-  std::printf("%zu particles, %d frames of %d steps: %.1f CPU ms a frame, %.1f (median) after first contact; %.0f MB\n",
+  std::printf("%zu particles, %d frames of %d steps: %.2f CPU ms a frame, %.1f (median) after first contact; %.0f MB\n",
               start.particles(), request.end - 1, request.steps, all / std::max(1, request.end - 1),
               middle_of(after_contact), 1e-6 * static_cast<double>(peak_memory_bytes()));
 }
