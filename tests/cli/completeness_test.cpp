@@ -141,6 +141,20 @@ TEST_F(Completeness, RenderResumesBesideTheReportsAndTheKeptFramesOfACommandBefo
   EXPECT_FALSE(fs::exists(folder_ / "a.partial.mp4"));
 }
 
+TEST_F(Completeness, ResumeDoesNotTakeAVideoInAnotherCodecForTheFilm) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":2"});
+  Arguments render{"render", "c", "-o", "a.mkv", "--frames", ":2", "--resume"};
+  expect_well(render);
+  render.insert(render.end(), {"--codec", "prores"});
+  const Outcome refused = weft(render);
+  EXPECT_EQ(refused.exit_code, 6) << refused.err;
+  EXPECT_TRUE(contains(refused.err, "a.mkv: exists already")) << refused.err;
+  render.back() = "ffv1";  // the default of this extension
+  const Outcome again = weft(render);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(contains(again.err, "note: a.mkv is complete already: frames 0:2\n")) << again.err;
+}
+
 TEST_F(Completeness, ResumeOfACompleteOutputSaysWhichReportsAreMissing) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   const Arguments run{"run", "s.toml", "-o", "a.mp4", "--resume"}, render{"render", "c", "-o", "b.mp4", "--resume"};

@@ -104,6 +104,13 @@ TEST_F(CodecTest, ProResKeepsRamps) {
   EXPECT_LE(largest, 3);
 }
 
+TEST_F(CodecTest, DecoderNamesTheCodec) {
+  for (const Codec codec : {Codec::h264, Codec::h264_lossless, Codec::ffv1, Codec::prores}) {
+    write(folder_ / "cut.mkv", codec, {ramp()});
+    EXPECT_EQ(Decoder(folder_ / "cut.mkv").codec(), codec) << static_cast<int>(codec);
+  }
+}
+
 TEST_F(CodecTest, FilesThatDoNotHoldACodecAreNamed) {
   expect_error(ExitCode::usage, "prores is kept in files ending in .mov or .mkv",
                [&] { write((folder_ / "cut.mp4"), Codec::prores, {ramp()}); });

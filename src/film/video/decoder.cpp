@@ -140,6 +140,19 @@ bool Decoder::lossy() const {
   return !(format && format->flags & AV_PIX_FMT_FLAG_RGB);
 }
 
+std::optional<Codec> Decoder::codec() const {
+  switch (impl_->codec->codec_id) {
+    case AV_CODEC_ID_H264:
+      return lossy() ? Codec::h264 : Codec::h264_lossless;
+    case AV_CODEC_ID_FFV1:
+      return Codec::ffv1;
+    case AV_CODEC_ID_PRORES:
+      return Codec::prores;
+    default:
+      return std::nullopt;
+  }
+}
+
 double Decoder::fps() const {
   const AVRational rate = impl_->input->streams[impl_->stream]->avg_frame_rate;
   return rate.den == 0 ? 0 : av_q2d(rate);  // libav gives 0/0 if the rate is unknown

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "film/image/image.hpp"
+#include "film/video/encoder.hpp"
 
 namespace weft::video {
 
@@ -25,6 +26,8 @@ class Decoder {
   /// Whether the pictures may differ from those that the encoder received. H.264 can be lossy or lossless; RGB in H.264
   /// counts as lossless, YUV as lossy.
   bool lossy() const;
+  /// The codec of the video; nullopt if it is none of those that Encoder writes.
+  std::optional<Codec> codec() const;
   double fps() const;  ///< frames per second; 0 if libav finds no rate
   /// The metadata of the file, with keys in lower case.
   const std::map<std::string, std::string>& metadata() const;

@@ -49,7 +49,8 @@ class FramePattern {
 struct OutputTarget {
   enum class Kind { video, images, none };
   Kind kind = Kind::video;
-  std::string text;  ///< images: a pattern; video: the file; none: the folder of the cache
+  std::string text;                              ///< images: a pattern; video: the file; none: the folder of the cache
+  video::Codec codec = video::Codec::automatic;  ///< of a video; automatic: that of the extension
 
   /// Whether pictures are written as OpenEXR with all layers of a frame.
   bool layered() const { return kind == Kind::images && std::filesystem::path(text).extension() == ".exr"; }

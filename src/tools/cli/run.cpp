@@ -100,8 +100,10 @@ void take_output(FilmPlan& plan, const RunOptions& options) {
     throw Error(ExitCode::usage, "--depth: expected pictures (.png), got {}", plan.target.text);
   if (!video && options.video.any())
     throw Error(ExitCode::usage, "--codec, --crf: expected a video, got {}", plan.target.text);
-  if (video) video::frame_rate(plan.scene.fps / plan.wanted.step);
-  if (video) warn_of_odd_size(plan, codec_of(plan.target.text, options.video));
+  if (!video) return;
+  video::frame_rate(plan.scene.fps / plan.wanted.step);
+  plan.target.codec = codec_of(plan.target.text, options.video);
+  warn_of_odd_size(plan, plan.target.codec);
 }
 
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
@@ -231,7 +233,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
     };
     parts.open_writer = [&](const std::string& gl) {
       return make_writer({plan.target, plan.wanted, plan.settings.width, plan.settings.height, plan.scene.fps,
-                          options_.depth, options_.video.codec, options_.video.crf, plan.metadata(gl)});
+                          options_.depth, options_.video.crf, plan.metadata(gl)});
     };
   }
   if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());

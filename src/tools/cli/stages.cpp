@@ -91,7 +91,7 @@ class OutputWriter : public FrameWriter {
     video.height = settings_.height;
     // If only every step-th frame is drawn, a lower frame rate keeps the true speed of the motion.
     video.fps = settings_.fps / settings_.frames.step;
-    video.codec = settings_.codec;
+    video.codec = settings_.target.codec;
     video.crf = settings_.crf.value_or(video.crf);
     video.metadata = settings_.metadata;
     video.metadata["frames"] = settings_.frames.text();

@@ -61,7 +61,6 @@ struct WriterSettings {
   int width = 0, height = 0;  ///< [pixels]
   double fps = 0;             ///< of the scene
   int depth = 8;              ///< bits per channel of PNG pictures
-  video::Codec codec = video::Codec::automatic;
   std::optional<int> crf;
   Metadata metadata = {};
 };

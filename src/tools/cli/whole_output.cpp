@@ -7,6 +7,7 @@
 #include "film/image/exr.hpp"
 #include "film/image/png.hpp"
 #include "film/video/decoder.hpp"
+#include "film/video/encoder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -28,13 +29,14 @@ bool has_expected_metadata(const Metadata& found, Metadata expected) {
 
 enum class State { absent, other, part, whole };  // `other`: of another film or with other settings
 
-State state_of_video(const fs::path& file, const FrameRange& frames, const render::Settings& settings,
+State state_of_video(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
                      Metadata expected) {
-  video::Decoder decoder(file);
+  video::Decoder decoder(target.text);
   expected["frames"] = frames.text();
   // Some codecs pad odd sizes to even ones.
   const auto near = [](int found, int wanted) { return found == wanted || found == wanted + wanted % 2; };
-  const bool fits = near(decoder.width(), settings.width) && near(decoder.height(), settings.height);
+  const bool fits = near(decoder.width(), settings.width) && near(decoder.height(), settings.height) &&
+                    decoder.codec() == video::codec_of(target.text, target.codec);
   if (!fits || !has_expected_metadata(decoder.metadata(), std::move(expected))) return State::other;
   int count = 0;
   while (decoder.next()) ++count;
@@ -68,7 +70,7 @@ State state_of(const OutputTarget& target, const FrameRange& frames, const rende
   const fs::path file = target.file(frames.begin);
   if (!is_file(file)) return State::absent;
   try {
-    if (target.kind == OutputTarget::Kind::video) return state_of_video(file, frames, settings, expected);
+    if (target.kind == OutputTarget::Kind::video) return state_of_video(target, frames, settings, expected);
     return state_of_picture(file, frames.begin, settings, expected);
   } catch (const Error&) {
     return State::other;  // an unreadable file counts as one of another film
