@@ -125,6 +125,26 @@ TEST_F(NothingLost, EachSecondFrameWithOverwriteLeavesTheOthers) {
   EXPECT_EQ(support::read_bytes(folder_ / "p/00001.png"), second);
 }
 
+// The frames after the first missing one may be good ones of an earlier command.
+TEST_F(NothingLost, PartialWithOverwriteLeavesTheFramesThatItDoesNotMake) {
+  const Arguments render{"render", "c", "-o", "p/{frame:05}.png", "--meshes", "m"},
+      exported{"export", "c", "--format", "ply", "-o", "e"};
+  const auto make = [&](const Arguments& more) {
+    for (const Arguments& command : {render, exported}) {
+      Arguments arguments = command;
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const Outcome outcome = command == render ? weft(arguments) : run_weft(arguments, folder_);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    }
+  };
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":3"});
+  make({"--frames", ":3"});
+  fs::remove(folder_ / "c/frame_00001.weft");
+  make({"--partial", "--overwrite"});
+  for (const char* file : {"p/00001.png", "p/00002.png", "m/cloth_00002.ply", "e/cloth_00002.ply"})
+    EXPECT_TRUE(fs::exists(folder_ / file)) << file;
+}
+
 TEST_F(NothingLost, AFolderThatIsRemovedWhileARunWorksEndsTheRun) {
   for (const Arguments& run :
        {Arguments{"run", "s.toml", "-o", "d/p/{frame:05}.png"}, Arguments{"run", "s.toml", "-o", "d/a.mp4"},

@@ -117,7 +117,9 @@ ExitCode export_frames(const ExportOptions& options) {
   if (!whole)
     throw Error(ExitCode::interrupted, "interrupted after {} of {} frames; export again with --overwrite", done,
                 request.frames.size());
-  if (options.overwrite && options.frames.selects_all()) remove_stale(request, manifest, frames);
+  // With --partial, the meshes after the first missing frame may be good ones of an earlier export.
+  if (options.overwrite && options.frames.selects_all() && frames.count() == manifest.frame_count)
+    remove_stale(request, manifest, frames);
   log::info(fmt::format("{}: {} file{} of {} frame{}", request.folder.string(), files.size(),
                         files.size() == 1 ? "" : "s", request.frames.size(), request.frames.size() == 1 ? "" : "s"));
   return ExitCode::ok;

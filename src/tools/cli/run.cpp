@@ -160,11 +160,12 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
 }
 
 /// Removes the frames that an earlier run has kept instead of this video. With --overwrite, also removes pictures and
-/// meshes of other frames, which an earlier run of a longer scene has left. Keeps these if --frames selects a part of
-/// the film, since other commands may write the other frames.
+/// meshes of other frames, which an earlier run of a longer scene has left. Keeps these if --frames or --partial
+/// selects a part of the film, since other commands may write the other frames, or have written them.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   if (plan.target.kind == Kind::video) remove_kept_frames(plan.target.file(0), plan.scene.scene);
-  if (!options.common.overwrite || !options.frames.selects_all()) return;
+  const bool whole = options.frames.selects_all() && plan.wanted.count() == plan.scene.frame_count;
+  if (!options.common.overwrite || !whole) return;
   const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
   if (plan.target.kind == Kind::images) FramePattern(plan.target.text).remove_others(plan.wanted, is_picture);
   if (options.meshes.empty()) return;
