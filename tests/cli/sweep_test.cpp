@@ -341,6 +341,14 @@ TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", ".", "--set", kRadius}, folder_).exit_code, 2) << "holds the scene";
 }
 
+TEST_F(Sweeps, RefuseAFolderThatHoldsAFileOfALaterRun) {
+  fs::create_directories(folder_ / "w");
+  for (const char* picture : {"a.png", "w/b.png"}) image::write_png(folder_ / picture, image::Image(16, 16));
+  const Outcome refused = sweep({"--set", "cloth.cloth.look.image=a.png,w/b.png"});
+  EXPECT_EQ(refused.exit_code, 2) << refused.err;
+  EXPECT_NE(refused.err.find("-o: w holds a file of the scene, which is read"), std::string::npos) << refused.err;
+}
+
 TEST_F(Sweeps, OfWhichNoneIsWellHaveAPageThatSaysWhyAndNoSheet) {
   const Outcome outcome = sweep({"--set", "cloth.cloth.position=[0,0,0],[0,0,0.01]"});
   EXPECT_EQ(outcome.exit_code, 3);

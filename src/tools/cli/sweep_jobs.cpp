@@ -67,7 +67,7 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
     job.folder = options.output / job.run.name;
     const auto [first, is_new] = known.emplace(job.scene_hash, i);
     if (!is_new) job.equal_job = first->second;
-    if (i == 0) add_inputs(paths, loaded.scene);
+    add_inputs(paths, loaded.scene);
   }
   if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, "{}", fmt::join(mistakes, "\n"));
   if (!options.list.empty()) paths.reads(options.list, "the list of runs");

@@ -39,7 +39,7 @@ struct SweepJob {
 
 /// Reads and checks the scenes of all runs. If any scene has mistakes, throws Error(scene_invalid) with the mistakes of
 /// all scenes. Also throws as read_list() and plan_sweep() do. Registers in `paths` the file with the list of runs, if
-/// there is one, and the input files of the first run's scene.
+/// there is one, and the input files of all scenes.
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths);
 
 /// Registers the output folder in `paths`. Throws Error(output_failed) unless the folder is new, empty, or that of a
