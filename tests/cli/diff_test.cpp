@@ -257,6 +257,15 @@ TEST_F(Diff, ReferenceThatCannotBeWrittenIsNotInTheLogOfAcceptance) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "ref/accepted.md"));
 }
 
+TEST_F(Diff, LogOfAcceptanceThatIsALinkWithoutTargetIsNotReplaced) {
+  write("out/a.png", 9);
+  write("ref/a.png", 1);
+  std::filesystem::create_symlink("none.md", folder_ / "ref/accepted.md");
+  expect({"accept", "ref", "out", "--reason", "new view"}, 4, "ref/accepted.md: cannot be read");
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "ref/accepted.md"));
+  expect({"diff", "ref", "out"}, 7, "0 of 1 match their references");
+}
+
 TEST_F(Diff, OnlyWhatAMaskShowsWhiteIsCompared) {
   const auto with_spot = [&](const std::string& name, int x) {
     image::Image image(32, 24);

@@ -72,6 +72,15 @@ TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
   EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
 }
 
+TEST_F(Helpers, TemplateOfARepositoryKeepsLinksWhoseTargetsAreMissing) {
+  const std::vector<std::string> links{"README.md", ".gitignore", "limits.toml", "weft.schema.json"};
+  for (const std::string& link : links) fs::create_symlink("none_" + link, folder_ / link);
+  const Outcome made = run_weft({"new", ".", "--template", "ci"}, folder_);
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  for (const std::string& link : links) EXPECT_TRUE(fs::is_symlink(folder_ / link)) << link;
+  EXPECT_TRUE(fs::exists(folder_ / "PICTURES.md"));
+}
+
 // A computed camera follows the cloth, so a change of the cloth would change every pixel.
 TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
   EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);

@@ -29,6 +29,11 @@ std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
 }
 
+// Whether the name is in use; that of a symbolic link is, even if its target does not exist.
+bool is_taken(const fs::path& file) {
+  return fs::exists(fs::symlink_status(file));
+}
+
 // Changes that add a template of several files to a folder without replacing a file. An existing .gitignore gets the
 // missing lines; if a README.md exists, the new one is named PICTURES.md; other existing files stay.
 struct Added {
@@ -52,7 +57,7 @@ Added add_to_folder(const std::vector<std::pair<fs::path, std::string>>& files) 
   for (const auto& [file, text] : files) {
     const bool is_readme = file.filename() == "README.md";
     if (is_readme) added.readme = file;
-    if (!fs::exists(file)) {
+    if (!is_taken(file)) {
       added.files.emplace_back(file, text);
     } else if (file.filename() == ".gitignore" && fs::is_regular_file(file)) {
       const std::string before = read_file(file, kLargestIgnoreFile);
@@ -60,7 +65,7 @@ Added add_to_folder(const std::vector<std::pair<fs::path, std::string>>& files) 
       if (after != before) added.files.emplace_back(file, after);
     } else if (is_readme) {
       added.readme = file.parent_path() / "PICTURES.md";
-      if (fs::exists(added.readme))
+      if (is_taken(added.readme))
         added.kept.push_back(added.readme.string());
       else
         added.files.emplace_back(added.readme, text);
@@ -96,7 +101,7 @@ ExitCode make_new(const NewOptions& options) {
     files.emplace_back(is_folder ? scene / fs::path(file.name).lexically_relative(options.kind) : scene, file.text);
   }
   const fs::path schema = (is_folder ? scene : scene.parent_path()) / "weft.schema.json";
-  if (options.overwrite || !fs::exists(schema)) files.emplace_back(schema, scene::json_schema());
+  if (options.overwrite || !is_taken(schema)) files.emplace_back(schema, scene::json_schema());
   PathLedger paths;
   for (const auto& [file, text] : files) paths.writes("NAME", file);
   const std::string name = scene.string();

@@ -102,7 +102,8 @@ class FolderLock {
 };
 
 void add_line(const fs::path& log, const std::string& line) {
-  std::string text = fs::exists(log) ? read_file(log) : kLogHead;
+  // A link whose target is missing is not replaced: reading it fails.
+  std::string text = fs::exists(fs::symlink_status(log)) ? read_file(log) : kLogHead;
   if (!text.empty() && text.back() != '\n') text += '\n';
   write_file(log, text + line);
 }
