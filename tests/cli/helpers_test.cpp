@@ -178,6 +178,17 @@ TEST_F(Helpers, WatchOfAFilmReplacesNoFinishedFilm) {
   EXPECT_EQ(run_weft(watch, folder_).exit_code, 0);
 }
 
+TEST_F(Helpers, WatchOfAFilmThatIsStoppedLeavesNoCacheAndNoTemporaryFile) {
+  Subprocess watch({"watch", "s.toml", "--film", "--size", "64x36", "--quality", "draft", "--set", "time.duration=60"},
+                   folder_);
+  const fs::path output = folder_ / "output";
+  for (int i = 0; i < 3000 && !fs::exists(output / ".s.watch.weft-cache/frame_00000.weft"); ++i) usleep(20'000);
+  watch.send(SIGTERM);
+  EXPECT_EQ(watch.wait().exit_code, 0);
+  for (const auto& entry : fs::directory_iterator(output))
+    EXPECT_FALSE(entry.path().filename().string().starts_with('.')) << entry.path();
+}
+
 // Descriptor 9 is a pipe whose reading end is closed, as that of `weft man | head` when `head` has ended.
 TEST_F(Helpers, EndsQuietlyWhereNobodyReadsWhatItPrints) {
   std::array<int, 2> ends{};

@@ -99,6 +99,12 @@ OutputTarget parse_output(const std::string& text, const std::string& scene_name
               text);
 }
 
+fs::path working_cache(const OutputTarget& target, const std::string& scene_name) {
+  const fs::path file = target.file(0);
+  const std::string name = target.kind == OutputTarget::Kind::video ? file.stem().string() : scene_name;
+  return file.parent_path() / ("." + name + ".weft-cache");
+}
+
 std::vector<fs::path> OutputTarget::files(const FrameRange& frames) const {
   return kind == Kind::images ? FramePattern(text).names(frames) : std::vector{fs::path(text)};
 }

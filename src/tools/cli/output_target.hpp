@@ -63,4 +63,9 @@ struct OutputTarget {
 /// pictures lacks the placeholder, or if the name of a video has one.
 OutputTarget parse_output(const std::string& text, const std::string& scene_name);
 
+/// The cache that `weft run` keeps while it works, a hidden folder beside the output:
+/// `output/.falling_band.weft-cache`. For pictures, the folder is named after the scene, so that runs of different
+/// scenes can write to one folder of pictures at the same time.
+std::filesystem::path working_cache(const OutputTarget& target, const std::string& scene_name);
+
 }  // namespace weft::cli

@@ -369,15 +369,6 @@ void note_missing_reports(const FilmPlan& plan, const RunOptions& options) {
                         fmt::join(missing, ", ")));
 }
 
-// Path of the cache that a run keeps while it works, a hidden folder beside the output:
-// `output/.falling_band.weft-cache`. For pictures, the folder is named after the scene, so that runs of different
-// scenes can write to one folder of pictures at the same time.
-fs::path working_cache(const OutputTarget& target, const std::string& scene) {
-  const fs::path file = target.file(0);
-  const std::string name = target.kind == Kind::video ? file.stem().string() : scene;
-  return file.parent_path() / ("." + name + ".weft-cache");
-}
-
 /// Simulates the frames that `store` does not have yet, and carries out the plan.
 ExitCode make_from_scene(Session& session, const scene::Scene& scene, const FilmPlan& plan, const PathLedger& paths,
                          Store& store) {

@@ -10,8 +10,11 @@
 
 #include "core/error.hpp"
 #include "core/log.hpp"
+#include "core/stop.hpp"
+#include "film/cache/writer.hpp"
 #include "tools/cli/child_process.hpp"
 #include "tools/cli/commands.hpp"
+#include "tools/cli/output_target.hpp"
 #include "tools/cli/own_files.hpp"
 #include "tools/cli/scene_input.hpp"
 #include "tools/cli/signals.hpp"
@@ -49,6 +52,7 @@ class Watch {
     if (!output.has_extension())
       output /= scene + (start ? ".start" : "") + (options.film ? ".watch.mp4" : ".watch.png");
     passed_on_.insert(passed_on_.end(), {"--output", output.string()});
+    if (options.film) cache_ = working_cache(parse_output(output.string(), scene), scene);
     // Each drawing replaces the output. Drawings of earlier calls are recognised by their names, because `weft run` and
     // `weft thumbnail` make the same videos and pictures.
     std::error_code ignored;
@@ -82,8 +86,8 @@ class Watch {
  private:
   bool changed() const { return stamps_of(files_) != drawn_; }
 
-  /// Draws in a child process, which reports its own errors. Kills the child if a file changes or a stop is requested.
-  /// Returns the exit code of the child, or ExitCode::interrupted if it was killed here.
+  /// Draws in a child process, which reports its own errors. Ends the child if a file changes or a stop is requested.
+  /// Returns the exit code of the child, or ExitCode::interrupted if it was ended here.
   ExitCode draw() const {
     std::vector<std::string> words{own_program().string(), options_.film ? "run" : "thumbnail", "--overwrite",
                                    "--progress", "none"};
@@ -91,21 +95,45 @@ class Watch {
     for (const std::string& text : options_.overrides) words.insert(words.end(), {"--set", text});
     words.insert(words.end(), {"--", options_.scene.string()});  // its name may begin with a dash
     const pid_t process = start_process(words, "");
-    bool is_killed = false;
+    bool is_ended = false;
+    long long next_signal_at = 0;  // [ns]
     int status = 0;
     while (::waitpid(process, &status, WNOHANG) == 0) {
-      if (!is_killed && (stop_.requested() || changed())) {
-        ::kill(process, SIGKILL);  // leaves no partial output: outputs get their names when they are complete
-        is_killed = true;
+      if (stop_.requested() && monotonic_ns() >= next_signal_at) {
+        // The first signal ends the child after its current frame, which may take kStopGrace and the drawing; the
+        // second one ends it at once. With either, the child removes its temporary files.
+        ::kill(process, SIGTERM);
+        next_signal_at = monotonic_ns() + 2 * kStopGrace;
+        is_ended = true;
+      } else if (!is_ended && changed()) {
+        // Leaves no partial output: outputs get their names when they are complete. The next drawing, which need not
+        // wait for a frame, removes the temporary files.
+        ::kill(process, SIGKILL);
+        is_ended = true;
       }
       ::usleep(kFilePollPause);
     }
-    if (is_killed) return ExitCode::interrupted;
+    if (is_ended) {
+      remove_cache();
+      return ExitCode::interrupted;
+    }
     return WIFEXITED(status) ? static_cast<ExitCode>(WEXITSTATUS(status)) : ExitCode::internal;
+  }
+
+  /// Removes the cache of an unfinished film, since the next drawing does not resume it.
+  void remove_cache() const {
+    std::error_code ignored;
+    if (cache_.empty() || !fs::is_directory(cache_, ignored)) return;
+    try {
+      cache::Lock(cache_).remove();
+    } catch (const Error& error) {
+      log::warn(error.what());
+    }
   }
 
   const WatchOptions& options_;
   std::vector<std::string> passed_on_;  // those of options_, with the output as a file
+  fs::path cache_;                      // working cache of the child; empty: it has none, as it draws a still
   const StopSignals stop_{"ending"};
   std::vector<fs::path> files_;
   Stamps drawn_;
