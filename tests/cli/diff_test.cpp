@@ -48,6 +48,17 @@ TEST_F(Diff, ExitCodesTellEqualDifferentMissingAndUnreadable) {
   expect({"diff", "a.png", "b.png", "--pixel-budget", "5"}, 2, "--pixel-budget: expected a number from 0 to 1, got 5");
 }
 
+// As a folder without permission, which root has everywhere, a link to itself causes an error that is not "missing".
+TEST_F(Diff, FoldersThatCannotBeReadAreUnreadable) {
+  write("ref/a.png", 100);
+  write("out/a.png", 100);
+  std::filesystem::create_symlink("loop", folder_ / "loop");
+  expect({"diff", "loop", "out"}, 4, "loop: cannot be read: Too many levels of symbolic links");
+  expect({"diff", "ref", "loop"}, 4, "loop: cannot be read: ");
+  std::filesystem::create_symlink("default", folder_ / "ref/default");
+  expect({"diff", "ref", "out"}, 4, "ref/default: cannot be read: ");
+}
+
 TEST_F(Diff, LimitsCanBeWidened) {
   write("a.png", 100);
   write("b.png", 130);

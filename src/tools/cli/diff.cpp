@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
+#include <system_error>
 
+#include "core/error.hpp"
 #include "core/json.hpp"
 #include "core/log.hpp"
 #include "core/temporary_file.hpp"
@@ -94,6 +96,20 @@ std::vector<Pair> all_pairs(const DiffOptions& options) {
   return {{test.filename(), options.reference, test}};
 }
 
+// Like all_pairs(), but checks --heatmap first, and throws Error(asset_unreadable) if a folder cannot be read.
+std::vector<Pair> read_pairs(const DiffOptions& options) {
+  try {
+    const bool folders = fs::is_directory(options.reference) && fs::is_directory(options.test);
+    if (folders && options.heatmap.extension() == ".png")
+      throw Error(ExitCode::usage, "--heatmap: expected a folder for the pictures of folders, got {}",
+                  options.heatmap.string());
+    return all_pairs(options);
+  } catch (const fs::filesystem_error& error) {
+    if (error.code() == std::errc::filename_too_long) throw;
+    throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", error.path1().string(), error.code().message());
+  }
+}
+
 // Exit code of the whole comparison. Unreadable files take precedence over differences; differences take precedence
 // over missing references.
 ExitCode exit_code(const std::vector<FileComparison>& results) {
@@ -154,12 +170,7 @@ void check_outputs(const DiffOptions& options, const std::vector<Pair>& pairs) {
 }  // namespace
 
 ExitCode diff(const DiffOptions& options) {
-  const bool folders = fs::is_directory(options.reference) && fs::is_directory(options.test);
-  if (folders && options.heatmap.extension() == ".png") {
-    throw Error(ExitCode::usage, "--heatmap: expected a folder for the pictures of folders, got {}",
-                options.heatmap.string());
-  }
-  std::vector<Pair> pairs = all_pairs(options);
+  std::vector<Pair> pairs = read_pairs(options);
   const DiffLimits rules(options.limits, options.limits_file);
   std::vector<std::string> names;
   for (const Pair& pair : pairs) names.push_back(pair.name);
