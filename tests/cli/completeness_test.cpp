@@ -281,6 +281,19 @@ TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
   EXPECT_EQ(render({"--resume"}).err, "note: a.mp4 is complete already: frames 0:21\n");
 }
 
+// The camera is computed, so that the run draws after the last frame is simulated.
+TEST_F(Completeness, InterruptedDrawingNamesTheLastFrameThatIsDrawn) {
+  Subprocess process({"run", "s.toml", "-o", "a.mp4", "--size", "640x360", "--progress", "none", "--log-json", "-"},
+                     folder_);
+  ASSERT_TRUE(process.wait_for_output("\"frame\":1,"));
+  process.send(SIGINT);
+  const Outcome outcome = process.wait();
+  if (outcome.exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
+  const int drawn = probe_video(folder_ / "a.mp4").frames;
+  EXPECT_TRUE(contains(outcome.err, fmt::format("interrupted after frame {} of 20; {} frames are", drawn - 1, drawn)))
+      << outcome.err;
+}
+
 class Joining : public Completeness {
  protected:
   void SetUp() override {

@@ -286,8 +286,12 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
         failure.code == ExitCode::simulation_failed ? "the simulation failed: " + failure.text : failure.text;
   } else if (result.interrupted) {
     report_.exit_code = ExitCode::interrupted;
-    report_.message =
-        fmt::format("interrupted after frame {} of {}", report_.frames.back().report.frame, plan.wanted.last());
+    // If the camera is computed, frames are drawn after the last one is made.
+    const bool is_drawn_later = plan.draws() && plan.finds_camera;
+    const auto last = std::ranges::find_if(report_.frames.rbegin(), report_.frames.rend(),
+                                           [&](const FrameRecord& r) { return !is_drawn_later || r.written; });
+    const FrameRecord& record = last == report_.frames.rend() ? report_.frames.back() : *last;
+    report_.message = fmt::format("interrupted after frame {} of {}", record.report.frame, plan.wanted.last());
   }
 }
 
