@@ -58,6 +58,15 @@ TEST(LibraryScene, MistakesHaveLineColumnAndKey) {
   EXPECT_TRUE(std::string(error.what()).starts_with("folder/a.toml:3:26: cloth.a.material.thickness: "));
 }
 
+TEST(LibraryScene, MistakesHaveTheWholeChangeThatCausedThem) {
+  const std::string change = "time.step=\"" + std::string(200, 'x') + "\"\n";
+  const auto error = thrown<SceneError>([&] { Scene::parse(kDrape, {"time.fps=50", change}); });
+  ASSERT_EQ(error.mistakes().size(), 1u) << error.what();
+  EXPECT_EQ(error.mistakes()[0].change, change);
+  EXPECT_TRUE(std::string(error.what()).starts_with("--set time.step=\"" + std::string(60, 'x') + "...: time.step: "))
+      << error.what();
+}
+
 TEST(LibraryScene, OfAMissingFileIsAnErrorWithItsName) {
   const auto error = thrown<SceneError>([] { Scene::load("missing.toml"); });
   EXPECT_EQ(error.mistakes().at(0).file, "missing.toml");

@@ -12,16 +12,21 @@ namespace weft::scene {
 Place place_of(const toml::source_region& source) {
   if (source.path && !source.path->empty()) {
     const std::size_t space = source.path->find(' ');
-    return {0, 0, source.path->substr(space + 1), std::stoi(source.path->substr(0, space))};
+    return {0, 0, std::stoi(source.path->substr(space + 1)), std::stoi(source.path->substr(0, space))};
   }
-  return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column), {}};
+  return {static_cast<int>(source.begin.line), static_cast<int>(source.begin.column)};
+}
+
+int Findings::add_override(const std::string& text) {
+  overrides_.push_back(text);
+  return static_cast<int>(overrides_.size());
 }
 
 Place Findings::place(std::string key) const {
   for (;;) {
     if (const auto found = places_.find(key); found != places_.end()) return found->second;
     const auto dot = key.rfind('.');
-    if (dot == std::string::npos) return {1, 1, {}};
+    if (dot == std::string::npos) return {1, 1};
     key.resize(dot);
   }
 }
@@ -30,15 +35,16 @@ Place Findings::place_in_file(std::string key) const {
   for (;;) {
     const Place nearest = place(key);
     const auto dot = key.rfind('.');
-    if (nearest.override_text.empty() || dot == std::string::npos)
-      return nearest.override_text.empty() ? nearest : Place{1, 1, {}};
+    if (nearest.override_number == 0) return nearest;
+    if (dot == std::string::npos) return {1, 1};
     key.resize(dot);
   }
 }
 
 void Findings::report(const std::string& key, Place place, std::string text) {
   has_mistake_.insert(key);
-  mistakes_.push_back({place.line, place.column, key, std::move(text), std::move(place.override_text)});
+  std::string override_text = place.override_number > 0 ? "--set " + overrides_[place.override_number - 1] : "";
+  mistakes_.push_back({place.line, place.column, key, std::move(text), std::move(override_text)});
   if (mistakes_.size() >= 2 * kMaxMistakes) keep_first();
 }
 

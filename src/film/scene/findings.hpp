@@ -14,21 +14,24 @@ namespace weft::scene {
 
 /// A place in the scene file, or an override of the command line.
 struct Place {
-  int line = 0, column = 0;   ///< counted from 1; 0: none
-  std::string override_text;  ///< see Mistake
-  int batch = 0;              ///< 0: the file; else number of the list of overrides, see load_batches()
+  int line = 0, column = 0;  ///< counted from 1; 0: none
+  int override_number = 0;   ///< 0: the file; else number of the override, see Findings::add_override()
+  int batch = 0;             ///< 0: the file; else number of the list of overrides, see load_batches()
 };
 
 /// Place of a node or key of a parsed document. `source`: its source region. If an override gave the node, the path in
-/// `source` is the batch and the text of this override, with a space between them; if the file gave it, this path is
+/// `source` is the batch and the number of this override, with a space between them; if the file gave it, this path is
 /// empty.
 Place place_of(const toml::source_region& source);
 
 /// The mistakes and the places of keys. A key path is the whole path of a key, such as cloth.band.size.
 class Findings {
  public:
+  /// Stores an override "path.to.key=value", and returns its number, counted from 1. Places have the number instead of
+  /// the text, which may be long.
+  int add_override(const std::string& text);
   /// Stores the place of a key path.
-  void set_place(const std::string& key, Place place) { places_.insert_or_assign(key, std::move(place)); }
+  void set_place(const std::string& key, Place place) { places_.insert_or_assign(key, place); }
   /// Whether the scene gives the key.
   bool has(const std::string& key) const { return places_.contains(key); }
   /// The place of the key or, if none is stored, that of the innermost table around it that has one. If no table around
@@ -59,6 +62,7 @@ class Findings {
   std::size_t dropped_ = 0;  // number of removed mistakes
   std::set<std::string> has_mistake_;
   std::map<std::string, Place> places_;
+  std::vector<std::string> overrides_;
   std::map<std::string, std::vector<std::string>> entries_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/names.hpp"
 #include "film/scene/checks.hpp"
 #include "film/scene/document.hpp"
@@ -73,6 +75,13 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
   return result;
 }
 
+// The override as a place in messages: one line of at most 80 bytes.
+std::string shorten_override(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+  return text.size() > 80 ? std::string(beginning_of(text, 77)) + "..." : text;
+}
+
 }  // namespace
 
 std::string LoadResult::describe() const {
@@ -80,7 +89,7 @@ std::string LoadResult::describe() const {
   for (const Mistake& mistake : mistakes) {
     std::string where = file.string();
     if (!mistake.override_text.empty()) {
-      where = mistake.override_text;
+      where = shorten_override(mistake.override_text);
     } else if (mistake.line > 0) {
       where += fmt::format(":{}:{}", mistake.line, mistake.column);
     }

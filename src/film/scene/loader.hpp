@@ -21,7 +21,7 @@ struct Mistake {
   int line = 0, column = 0;
   std::string key;            ///< such as cloth.band.material.thickness; empty: the scene as a whole
   std::string text;           ///< such as "expected > 0 m, got -0.001"
-  std::string override_text;  ///< "--set key=value" if an override caused it; else empty
+  std::string override_text;  ///< "--set key=value", as it was given, if an override caused it; else empty
 };
 
 /// A loaded scene, or the mistakes in it.
@@ -30,7 +30,7 @@ struct LoadResult {
   std::vector<Mistake> mistakes;  ///< result of Findings::take_mistakes(); empty: none
   bool ok() const { return mistakes.empty(); }
   /// One line per mistake: `file:line:column: key: text` or, for overrides, `--set key=value: key: text`. Omits parts
-  /// that a mistake does not have.
+  /// that a mistake does not have, and the end of a long override.
   std::string describe() const;
   std::filesystem::path file;  ///< as given to load() or load_text()
   std::string text;            ///< content of the file, without overrides

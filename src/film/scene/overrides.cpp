@@ -73,15 +73,11 @@ std::string suggest_names(const std::string& part, const std::vector<std::string
 }  // namespace
 
 void apply_override(const std::string& override_text, int batch, toml::table& document, Findings& findings) {
-  // Messages show this text as the place of a mistake.
-  std::string shown = "--set " + override_text;
-  std::replace_if(
-      shown.begin(), shown.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
-  if (shown.size() > 80) shown = std::string(beginning_of(shown, 77)) + "...";
+  const int number = findings.add_override(override_text);
   // Marks nodes as given by this override; see place_of().
-  const std::string source = fmt::format("{} {}", batch, shown);
+  const std::string source = fmt::format("{} {}", batch, number);
   const auto refuse = [&](const std::string& key, const std::string& text) {
-    findings.report(key, {0, 0, shown}, text);
+    findings.report(key, {0, 0, number}, text);
   };
 
   const auto equals = override_text.find('=');

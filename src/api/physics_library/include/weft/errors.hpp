@@ -14,7 +14,8 @@ struct Mistake {
                              ///< Simulation; may be empty
   int line = 0, column = 0;  ///< counted from 1; 0: the mistake is not in the text of the file. For
                              ///< a missing key: those of the table around it, or 1 and 1.
-  std::string change;        ///< the change "key=value" that caused the mistake; empty if the file did
+  std::string change;        ///< the change "key=value" that caused the mistake, as it was given; empty
+                             ///< if the file did. what() shows only the beginning of a long one.
   std::string key;           ///< such as "cloth.band.material.thickness"; empty for the file as a whole
   std::string text;          ///< such as "expected > 0 m, got -0.001"
 };
