@@ -78,6 +78,14 @@ TEST_F(Dependencies, FilesOfASequence) {
   expect_counts(scene, "run/a_3.obj");
 }
 
+TEST_F(Dependencies, FolderOfASequenceHasTheSameHashByEachOfItsNames) {
+  for (const char* file : {"run/a_1.obj", "run/a_2.obj"}) put(file, "v 0 0 0\n");
+  const auto hash = [&](const std::string& files) {
+    return hash_of("character = [{ name = 'r', source = 'sequence', files = '" + files + "' }]\n");
+  };
+  for (const char* files : {"run/", "./run", "run/.", "run/*.obj"}) EXPECT_EQ(hash(files), hash("run")) << files;
+}
+
 TEST_F(Dependencies, PicturesAndCameraFilesCountButAreNotSimulated) {
   for (const char* file : {"print.png", "panel.png", "globe.png"}) put_picture(file);
   put("shot.gltf", R"({ "uri": "shot.bin" })"), put("shot.bin", "1234"), put("p/skirt.toml", "");

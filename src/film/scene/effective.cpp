@@ -165,8 +165,8 @@ void keep_file_names(Scene& scene) {
   for (Character& character : scene.characters) {
     if (auto* file = std::get_if<CharacterFile>(&character.source)) keep_name(file->path);
     if (SkeletonMotion* skeleton_motion = skeleton_motion_of(character)) keep_name_if_any(skeleton_motion->motion);
-    if (auto* sequence = std::get_if<MeshSequence>(&character.source))
-      sequence->files = std::filesystem::path(sequence->files).filename().string();
+    // A folder has several names, such as "walk", "walk/" and "."; its files count with their contents.
+    if (auto* sequence = std::get_if<MeshSequence>(&character.source)) sequence->files.clear();
     keep_names_of_pictures(character.look);
   }
   for (Camera& camera : scene.cameras) keep_name(camera.file);
