@@ -86,6 +86,20 @@ TEST_F(Dependencies, FolderOfASequenceHasTheSameHashByEachOfItsNames) {
   for (const char* files : {"run/", "./run", "run/.", "run/*.obj"}) EXPECT_EQ(hash(files), hash("run")) << files;
 }
 
+// The effective scene contains absolute paths, and TOML is UTF-8.
+TEST_F(Dependencies, InAFolderWhoseNameIsNotUtf8AreRefused) {
+  for (const char* file : {"\xe9/m.obj", "\xe9/run/1.obj", "\xe9/run/2.obj"}) put(file, "v 0 0 0\n");
+  const auto messages = [&](const std::string& scene) { return load_text(scene, folder_ / "\xe9/s.toml").describe(); };
+  EXPECT_NE(messages("obstacle = [{ name = 'm', shape = 'mesh', file = 'm.obj' }]\n")
+                .find("obstacle.m.file: expected a readable file, got \"m.obj\": the path of the scene's folder is not "
+                      "UTF-8"),
+            std::string::npos);
+  EXPECT_NE(messages("character = [{ name = 'r', source = 'sequence', files = 'run' }]\n")
+                .find("character.r.files: expected files in a folder whose path is UTF-8"),
+            std::string::npos);
+  EXPECT_EQ(messages("obstacle = [{ name = 'ball', shape = 'sphere' }]\n"), "");
+}
+
 TEST_F(Dependencies, PicturesAndCameraFilesCountButAreNotSimulated) {
   for (const char* file : {"print.png", "panel.png", "globe.png"}) put_picture(file);
   put("shot.gltf", R"({ "uri": "shot.bin" })"), put("shot.bin", "1234"), put("p/skirt.toml", "");

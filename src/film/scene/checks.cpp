@@ -359,6 +359,11 @@ void check_characters(const Scene& scene, Findings& findings) {
                       fmt::format("expected 0 beside a motion, which moves the mannequin, got {}", mannequin->walk));
     const auto* sequence = std::get_if<MeshSequence>(&character.source);
     if (sequence == nullptr || sequence->files.empty()) continue;
+    if (!is_utf8(sequence->files))
+      findings.report(
+          path + ".files",
+          "expected files in a folder whose path is UTF-8, as the effective scene must be, got another path; "
+          "rename the scene's folder");
     if (const std::size_t count = sequence_files(sequence->files).size(); count < 2)
       findings.report(path + ".files",
                       fmt::format("expected a folder, or a file name with a *, of at least 2 files, got "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/json.hpp"
 #include "core/nearest.hpp"
 
 namespace weft::scene {
@@ -53,6 +54,11 @@ std::string_view beginning_of(std::string_view text, std::size_t max_bytes) {
   std::size_t end = max_bytes;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   return text.substr(0, end);
+}
+
+bool is_utf8(const std::string& text) {
+  const std::string valid = parse_json(json_text(text));  // replaces bytes that are not UTF-8
+  return valid == text;
 }
 
 std::string in_quotes(std::string_view text) {

@@ -16,6 +16,8 @@ namespace weft::scene {
 std::string describe_node(const toml::node& node);
 /// The beginning of a UTF-8 text: at most `max_bytes` bytes, without a part of a character at the end.
 std::string_view beginning_of(std::string_view text, std::size_t max_bytes);
+/// Whether a text is UTF-8. The effective scene contains absolute paths, so these must be.
+bool is_utf8(const std::string& text);
 /// The text in quotes, for messages: at most its first 40 bytes, with escaped ASCII control characters.
 std::string in_quotes(std::string_view text);
 /// Whether the text is valid as the name of a list entry.

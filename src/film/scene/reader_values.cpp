@@ -150,6 +150,9 @@ Value Reader::check_file(const toml::node& node, const std::string& text, const 
   const auto status = std::filesystem::status(full, error);
   if (!std::filesystem::exists(status)) return missing(fmt::format("there is no {}", full.string()));
   if (!std::filesystem::is_regular_file(status)) return missing(fmt::format("{} is not a file", full.string()));
+  // The text is UTF-8, as TOML is.
+  if (!is_utf8(full.string()))
+    return missing("the path of the scene's folder is not UTF-8, but the effective scene must be; rename the folder");
   try {
     check_is_file(full);
   } catch (const std::runtime_error& problem) {
