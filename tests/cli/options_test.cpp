@@ -124,6 +124,19 @@ TEST(Options, MisspeltOptionsAndCommandsNameTheNearest) {
   EXPECT_EQ(refusal({}), "expected a command: " + commands + "; see weft --help");
 }
 
+TEST(Options, OfScenesAreRefusedForCachesWithWhatToDo) {
+  for (const std::string command : {"render", "export"}) {
+    EXPECT_EQ(refusal({command, "c", "--fps", "50"}),
+              "weft " + command +
+                  ": --fps: the frames of a cache are simulated for one rate; weft simulate SCENE --cache NEW --fps N "
+                  "simulates them for another; --frames ::STEP uses fewer frames");
+    const std::string no_set = refusal({command, "c", "--set=look.color=[1,0,0]"});
+    EXPECT_NE(no_set.find("weft simulate SCENE --cache CACHE --resume --set KEY=VALUE gives them other colours"),
+              std::string::npos)
+        << no_set;
+  }
+}
+
 TEST(Options, MissingOrSurplusArgumentsAreRefused) {
   EXPECT_EQ(refusal({"run"}), "weft run: SCENE is required; see weft run --help");
   EXPECT_EQ(refusal({"run", "a.toml", "b.toml"}), "weft run: unexpected argument b.toml; see weft run --help");

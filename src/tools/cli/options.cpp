@@ -50,11 +50,29 @@ std::string as_file(const std::string& argument) {
   return fmt::format("; for a file of this name, write ./{}, or put it after --", argument);
 }
 
+// Refuses options of scenes for commands that read the frames of a cache.
+void check_option_of_scenes(const CLI::App& command, const std::string& option, const std::string& prefix) {
+  const std::string name = command.get_name();
+  if (name != "render" && name != "export") return;
+  if (option == "--fps")
+    throw Error(ExitCode::usage,
+                "{}: --fps: the frames of a cache are simulated for one rate; weft simulate SCENE --cache NEW --fps N "
+                "simulates them for another; --frames ::STEP uses fewer frames",
+                prefix);
+  if (option == "--set")
+    throw Error(ExitCode::usage,
+                "{}: --set: the frames of a cache are simulated already; weft simulate SCENE --cache CACHE --resume "
+                "--set KEY=VALUE gives them other colours, cameras and lights without simulating them again; other "
+                "changes need a new cache",
+                prefix);
+}
+
 // Throws if the command was given an unknown option.
 void check_unknown(const CLI::App& command, const std::string& prefix) {
   for (const std::string& argument : command.remaining(true)) {
     if (!argument.starts_with('-')) continue;
     const std::string name = argument.substr(0, argument.find('='));
+    check_option_of_scenes(command, name, prefix);
     throw Error(ExitCode::usage, "{}: unknown option {}{}{}; see {} --help", prefix, name,
                 did_you_mean(name, option_names(command)), as_file(argument), prefix);
   }
