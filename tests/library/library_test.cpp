@@ -277,6 +277,19 @@ TEST(LibraryMove, LeavesLayersWhereTheyAreHeldAfterAResumption) {
     EXPECT_EQ(positions(resumed.frame(), name), positions(whole.frame(), name)) << name;
 }
 
+// The ball moves at 0.25 m/s along x until its release after two frames, and gets 0.5 m/s along y then.
+TEST(LibraryMove, VelocityOfABodyWithAMassIsAddedAtItsRelease) {
+  const Scene scene = Scene::parse(kDrape, {"physics.gravity=[0,0,0]", "obstacle.ball.mass=1",
+                                            "obstacle.ball.release=0.08", "obstacle.ball.velocity=[0,0.5,0]"});
+  Simulation simulation(scene, {.driven = {"ball"}, .state = {}});
+  for (int k = 1; k <= 2; ++k) simulation.move("ball", {.position = {0.01 * k, 0, 0}}), simulation.advance();
+  const Vector released = positions(simulation.frame(), "ball").front();
+  for (int k = 1; k <= 2; ++k) simulation.advance();
+  const Vector later = positions(simulation.frame(), "ball").front();
+  EXPECT_NEAR(later[0] - released[0], 0.02, 1e-6);
+  EXPECT_NEAR(later[1] - released[1], 0.04, 1e-6);
+}
+
 TEST(LibrarySettings, RefuseNumbersOfThreadsBelowZero) {
   EXPECT_THROW(set_threads(-1), std::invalid_argument);
   EXPECT_NO_THROW(set_threads(0));

@@ -17,7 +17,8 @@ class Scene;
 struct SimulationOptions {
   /// Names of the rigid bodies that Simulation::move() will move. They must have no mass.
   /// Exception: in a scene, a body with a mass may be driven until its `release`, if that is later
-  /// than 0 s.
+  /// than 0 s. From then on, forces move it; its `velocity` and `spin` are added to the velocity
+  /// that Simulation::move() gave it.
   std::vector<std::string> driven{};
   std::string state{};  ///< result of Simulation::save() from which to continue; empty: begin at frame 0
 };
