@@ -234,6 +234,31 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
 }
 
+// A seam that tears holds its load at each of its places, whether none, one or both of its ends are sewn to others.
+TEST_F(SewingText, SeamsThatTearHoldTheirLoadBesideSewnEnds) {
+  const double load = 300, length = 0.5;
+  const std::string path = "path = 'M -0.25 -0.2 L 0.25 -0.2 L 0.25 0.2 L -0.25 0.2 Z'\nedges = 'low right top left'\n";
+  const std::string seam = "[[seam]]\na = 'front.low'\nb = 'back.low'\ntearing_load = 300\n";
+  for (const std::vector<std::string>& sewn : {std::vector<std::string>{"top"}, {"top", "left"}, {"left", "right"}}) {
+    std::string text;
+    for (const std::string side : {"front", "back"})
+      text += "[[panel]]\nname = '" + side + "'\nside = '" + side + "'\n" + path;
+    for (const std::string& side : sewn) text += "[[seam]]\na = 'front." + side + "'\nb = 'back." + side + "'\n";
+    const double ends = static_cast<double>(sewn.size() - (sewn[0] == "top" ? 1 : 0));  // number of sewn ends
+    for (const double spacing : {0.05, 0.02}) {
+      const std::vector<mesh::Tie> zip = sew_text(text + seam, spacing).sheet.ties;
+      const double segments = std::round(length / spacing);
+      ASSERT_EQ(static_cast<double>(zip.size()), segments + 1 - ends) << ends;
+      // Both sewn ends together hold the length of one tie.
+      for (const mesh::Tie& tie : zip)
+        EXPECT_NEAR(tie.strength, load * length / (segments + 1 - 0.5 * ends), 1e-9) << ends << " " << spacing;
+    }
+    const std::vector<mesh::Tie> button = sew_text(text + seam + "buttons = 1\n").sheet.ties;
+    ASSERT_EQ(button.size(), 1U);
+    EXPECT_NEAR(button[0].strength, load * length / (1 + 0.5 * ends), 1e-9) << ends;
+  }
+}
+
 // In a sharp corner, triangles of both layers connect the same vertices, and no flip separates them.
 TEST_F(SewingText, TwoLayersAreSewnAroundSharpCorners) {
   const auto sewn_layers = [&](const std::string& path, int seams, double spacing) {

@@ -411,25 +411,28 @@ class Sewing {
       };
       // As for other seams, the length is the mean length of both edges.
       const double length = 0.5 * (length_of(seam.a) + length_of(seam.b));
-      // An end that both edges share, as at a sewn corner, needs no button.
-      const std::size_t skip_first = seam.buttons > 0 && a.front() == b.front() ? 1 : 0;
-      const std::size_t skipped = skip_first + (seam.buttons > 0 && a.back() == b.back() ? 1 : 0);
+      // An end that both edges share, as at a sewn corner, needs no tie.
+      const std::size_t skip_first = a.front() == b.front() ? 1 : 0;
+      const std::size_t skipped = skip_first + (a.back() == b.back() ? 1 : 0);
       // If both edges are closed, the first and last entry of each is the same particle, which gets only one tie.
       const bool ring = last > 0 && skipped == 0 && a.front() == a.back() && b.front() == b.back();
       const std::size_t places = ring ? last : std::max(a.size(), skipped) - skipped;
       // At most one tie per pair of particles, even if there are more buttons.
       const std::size_t count = seam.buttons > 0 ? std::min(places, static_cast<std::size_t>(seam.buttons)) : places;
       const std::size_t gaps = ring ? count : count + skipped - 1;
+      // All ties hold equal lengths of the seam. A shared end holds half of such a length, because the seam is on one
+      // side of it only.
+      const double tie_length = length / (static_cast<double>(count) + 0.5 * static_cast<double>(skipped));
       for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = count == 1 && skipped == 0 ? last / 2 : (2 * (i + skip_first) * last + gaps) / (2 * gaps);
         mesh::Tie tie{.a = a[k], .b = b[k], .strength = seam.strength};
         if (seam.tearing_load) {
-          tie.strength = *seam.tearing_load * length / static_cast<double>(count);
+          tie.strength = *seam.tearing_load * tie_length;
           tie.tearing = static_cast<int>(garment_.sheet.tearing_seams.size()) - 1;
         }
         if (seam.open) tie.open = *seam.open;
         if (seam.closed) tie.closed = *seam.closed;
-        // Two edges can share their end particle, which needs no tie.
+        // Two edges can share inner particles too, which need no tie.
         if (tie.a != tie.b) garment_.sheet.ties.push_back(tie);
       }
     }
