@@ -234,6 +234,24 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
   expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
 }
 
+// A wrap skirt: two fronts overlap. Each of them is sewn to one side of the back.
+TEST_F(SewingText, LayersOfFlatPanelsStartApart) {
+  const std::string seams =
+      "[[seam]]\na = 'under.side'\nb = 'back.left'\n[[seam]]\na = 'over.side'\nb = 'back.right'\n";
+  const std::string panels =
+      "depth = 0.04\n[[panel]]\nname = 'back'\nside = 'back'\nedges = 'low right top left'\n"
+      "path = 'M -0.26 0 L 0.26 0 L 0.2 0.5 L -0.2 0.5 Z'\n[[panel]]\nname = 'under'\nedges = 'low free top side'\n"
+      "path = 'M -0.26 0 L 0.12 0 L 0.12 0.5 L -0.2 0.5 Z'\n[[panel]]\nname = 'over'\nmirror_of = 'under'\nlayer = 1\n";
+  for (const double spacing : {0.03, 0.02}) {
+    const Garment garment = sew_text(panels + seams, spacing);
+    const std::vector<Vec3>& x = garment.sheet.rest;
+    const support::TestedObject object{"skirt", true, x, garment.sheet.triangles};
+    EXPECT_TRUE(support::find_intersections(std::span(&object, 1)).pairs.empty()) << spacing;
+    for (const Index v : garment.edges.at("under.free")) EXPECT_NEAR(x[v].y(), -0.04, 1e-12);
+    for (const Index v : garment.edges.at("over.free")) EXPECT_NEAR(x[v].y(), -0.05, 1e-12);
+  }
+}
+
 // A seam that tears holds its load at each of its places, whether none, one or both of its ends are sewn to others.
 TEST_F(SewingText, SeamsThatTearHoldTheirLoadBesideSewnEnds) {
   const double load = 300, length = 0.5;

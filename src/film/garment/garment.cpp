@@ -282,7 +282,7 @@ class Sewing {
   void place_flat() {
     std::vector<LaidPanel> laid;
     for (std::size_t p = 0; p < meshes_.size(); ++p) {
-      laid.push_back({pattern_.panels[p].side == Side::back, {}, {}});
+      laid.push_back({pattern_.panels[p].side == Side::back, pattern_.panels[p].layer, {}, {}});
       for (const mesh::Triangle& t : meshes_[p].triangles) {
         laid.back().triangles.push_back(joined(p, t));
         auto& corners = laid.back().corners.emplace_back();

@@ -67,7 +67,8 @@ const Table& panel_rules() {
                   "the back; the panel is drawn as seen from outside")
           .by_default("for arms the outside, else that of `side`")
           .excludes("side")
-          .whole_number("layer", &Panel::layer, within(0, 20), "number of panels of the same part that it starts above")
+          .whole_number("layer", &Panel::layer, within(0, 20),
+                        "number of panels of the same part, or of flat ones of the same side, that it starts above")
           .plain(Type::text, "path", &Panel::path, "closed outline as SVG path data, in metres, y upward")
           .excludes("file")
           .plain(Type::file, "file", &Panel::file, "SVG drawing with the outline; relative to the pattern's folder")

@@ -43,7 +43,8 @@ struct Panel {
   /// Angle of the panel's origin around its part [degrees]: 0 the front, 90 the left. Absent: that of `side`; without
   /// `side`, the outside for arms, else the front.
   std::optional<double> angle;
-  int layer = 0;  ///< number of layers of panels between this panel and the skin of its part
+  /// Number of layers of panels between this panel and the skin of its part, or of flat panels nearer to the wearer.
+  int layer = 0;
   /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel (0, 0); for a bent panel, 0 across,
   /// and the height at which its seams are shortest.
   std::optional<Vec2> position;

@@ -75,14 +75,20 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
       side_sign[at(a)] = side_sign[at(b)] = half == 0 ? -1 : 1;
     }
   for (const auto& [a, b] : shared) free[at(a)] = free[at(b)] = 0;
+  std::vector<int> layers(plane.size(), 0);  // the highest at each vertex
+  for (const LaidPanel& panel : panels)
+    for (const mesh::Triangle& t : panel.triangles)
+      for (const Index v : t) layers[at(v)] = std::max(layers[at(v)], panel.layer);
 
   std::vector<Vec3> x(plane.size());
   for (std::size_t v = 0; v < plane.size(); ++v) {
     double d = shared.empty() ? depth : std::numeric_limits<double>::infinity();
     for (const auto& [a, b] : shared) d = std::min(d, distance(plane[v], plane[at(a)], plane[at(b)]));
     d = free[v] ? std::min(d, depth) : 0;
-    x[v] = {plane[v].x(), side_sign[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
+    const double off = free[v] ? kLayerDistance * layers[v] : 0;
+    x[v] = {plane[v].x(), side_sign[v] * (std::sqrt(d * (2 * depth - d)) + off), plane[v].y()};
   }
+  if (std::ranges::any_of(layers, [](int layer) { return layer > 0; })) return x;
   // Smoothing must not move the rims of openings.
   std::vector<mesh::Triangle> all;
   for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());

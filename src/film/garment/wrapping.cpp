@@ -18,10 +18,8 @@
 namespace weft::garment {
 namespace {
 
-// The lengths below are for people: they are multiplied by size_factor(), except kLayerDistance.
+// The lengths below are for people: they are multiplied by size_factor().
 //
-// Distance between layers at the start [m]; larger than the contact thickness of any fabric.
-constexpr double kLayerDistance = 0.01;
 // Additional width of a ring of panels with a closure or a slit [m], so that the two edges of the opening start apart.
 constexpr double kOpeningSlack = 0.03;
 // kMinSleeveGap: minimum distance of sleeves from the skin at the start [m]. kCapNarrowing: the cap of a sleeve begins

@@ -19,7 +19,7 @@ bool are_drawn_from_same_side(const Panel& a, const Panel& b);
 
 /// For each panel, the start positions [m] of the points of its flat mesh, before sewing, in the axes of the wearer.
 /// - On the tube of the panel's part, each point has the height and the length across that it has in the drawing. Its
-///   distance from the skin is Pattern::gap plus kLayerDistance (wrapping.cpp) for each layer below.
+///   distance from the skin is Pattern::gap plus kLayerDistance for each layer below.
 /// - The panels around a part form a ring. If the ring is wider than the girth at a height, its panels move outward
 ///   until the ring closes. Panels of narrow sleeves start nearer to the skin than Pattern::gap.
 /// - If the pattern states no position for a panel, the panel gets the position along its part at which its seams to
