@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,6 +109,35 @@ TEST(MannequinAsWearer, HasAScaledGarmentAtItsNeckOrWaistIfItIsFitted) {
     const double as_drawn = top();
     cloth.scale = 1.2;
     EXPECT_NEAR(top(), as_drawn, 0.04) << name;
+  }
+}
+
+// The wearer stands 2 m beside the origin and is turned, so that its left is not along x.
+TEST_F(WearerBodies, AreTheMiddleOfGarmentsThatStartScaled) {
+  const scene::Scene scene = support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nedge_length = 0.05\nstance = 'rest'\nblend = 1\n"
+      "position = [2, 0, 0]\nrotation = [0, 0, 30]\n");
+  Wearers wearers(scene);
+  const Eigen::Isometry3d to_own = wearers.of("model", "here").to_world.inverse();
+  support::write_bytes(folder_ / "skirt.toml",
+                       "[[panel]]\nname = 'around'\naround = 'torso'\nposition = [0, 0.55]\n"
+                       "path = 'M -0.5 0 L 0.5 0 L 0.5 0.5 L -0.5 0.5 Z'\nedges = 'hem left waist right'\n"
+                       "[[seam]]\na = 'around.left'\nb = 'around.right'\n");
+  for (const bool flat : {false, true}) {
+    scene::Cloth cloth;
+    cloth.name = "skirt";
+    cloth.shape = scene::ClothShape::pattern;
+    cloth.file = flat ? std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/patterns/skirt.toml" : folder_ / "skirt.toml";
+    cloth.edge_length = 0.06;
+    cloth.fit = flat;
+    const std::vector<Vec3> as_sewn = make_cloth(scene, cloth, wearers).cloth.start;
+    cloth.start_scale = {0.9, 0.95};
+    const std::vector<Vec3> scaled = make_cloth(scene, cloth, wearers).cloth.start;
+    ASSERT_EQ(scaled.size(), as_sewn.size());
+    double error = 0;  // [m]
+    for (std::size_t i = 0; i < scaled.size(); ++i)
+      error = std::max(error, (to_own * scaled[i] - Vec3(0.9, 1, 0.95).cwiseProduct(to_own * as_sewn[i])).norm());
+    EXPECT_LT(error, 1e-12) << flat;
   }
 }
 

@@ -34,17 +34,24 @@ double noise(std::uint64_t z) {
 }
 
 // Positions of the particles at the start [m]: those of `rest` (the mesh placed in the scene), scaled about the
-// position of the cloth's pose, plus noise.
-std::vector<Vec3> start_positions(scene::UpAxis up, const scene::Cloth& cloth, const mesh::Mesh& rest) {
+// position of the cloth's pose, plus noise. A garment that starts at its wearer, `worn_by`, is scaled about the origin
+// of the wearer, along its axes; null: none.
+std::vector<Vec3> start_positions(scene::UpAxis up, const scene::Cloth& cloth, const garment::Wearer* worn_by,
+                                  const mesh::Mesh& rest) {
   std::vector<Vec3> x = rest.positions;
   if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
   Vec3 factors(cloth.start_scale.x(), cloth.start_scale.y(), 1);
-  // A pattern stands upright, with warp along the up axis. If y is up, factors.y() already scales this axis.
-  if (cloth.shape == scene::ClothShape::pattern && up == scene::UpAxis::z) std::swap(factors.y(), factors.z());
-  const Mat3 axes = cloth.pose.rotation.toRotationMatrix();
+  // A pattern stands upright, with warp along the up axis, which is z for a wearer. If y is up, factors.y() already
+  // scales this axis.
+  if (worn_by != nullptr || (cloth.shape == scene::ClothShape::pattern && up == scene::UpAxis::z))
+    std::swap(factors.y(), factors.z());
+  Eigen::Isometry3d frame = Eigen::Translation3d(cloth.pose.position) * cloth.pose.rotation;
+  if (worn_by != nullptr) frame = frame * worn_by->to_world;
+  const Mat3 axes = frame.linear();
+  const Vec3 origin = frame.translation();
   const Mat3 scale = axes * factors.asDiagonal() * axes.transpose();
   for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = cloth.pose.position + scale * (x[i] - cloth.pose.position);
+    x[i] = origin + scale * (x[i] - origin);
     for (int axis = 0; axis < 3; ++axis)
       x[i][axis] += cloth.start_noise * noise(3 * i + static_cast<std::size_t>(axis));
   }
@@ -78,9 +85,9 @@ void fill_from_triangles(mesh::Mesh mesh, MadeCloth& made) {
 
 /// Makes cloth from a pattern. The garment is upright. If it is fitted to its wearer or has panels around parts of the
 /// wearer, it is at the position of the wearer. Sets made.details.fractions to the positions in the bounding box of
-/// Garment::sheet.rest, from 0 to 1 along x and z.
-void fill_from_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
-                       MadeCloth& made) {
+/// Garment::sheet.rest, from 0 to 1 along x and z. Returns the wearer at which the garment starts, or null.
+const garment::Wearer* fill_from_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
+                                         Wearers& wearers, MadeCloth& made) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
   const garment::Wearer* wearer = pattern.has_bent_panels() ? &wearers.of(cloth, where) : nullptr;
   const garment::Wearer* fitted = cloth.fit ? &wearers.of(cloth, where) : nullptr;
@@ -138,6 +145,7 @@ void fill_from_pattern(const scene::Scene& scene, const scene::Cloth& cloth, con
                   where, made.details.panels.front(), panel.name,
                   nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
     }
+  return fitted != nullptr ? fitted : wearer;
 }
 
 /// Loads the triangles of the file of a cloth and mends them to a manifold sheet. Throws Error(asset_unreadable) if
@@ -288,6 +296,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
   made.cloth.pressure = cloth.pressure;
   const mesh::Grid grid = grid_of(cloth);
   assets::LoadedMesh file;
+  const garment::Wearer* worn_by = nullptr;
   switch (cloth.shape) {
     case scene::ClothShape::quads:
       fill_from_grid(grid, made);
@@ -302,7 +311,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
       file = fill_from_mesh_file(scene, cloth, where, made);
       break;
     case scene::ClothShape::pattern:
-      fill_from_pattern(scene, cloth, where, wearers, made);
+      worn_by = fill_from_pattern(scene, cloth, where, wearers, made);
       break;
     case scene::ClothShape::rope:
       fill_from_rope(scene, *cloth.rope, made);
@@ -311,7 +320,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
   choose_particles(scene, cloth, file, where, made);
   if (can_touch_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(made.cloth.sheet, where);
   for (Vec3& x : made.cloth.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
-  made.cloth.start = start_positions(scene.up, cloth, made.cloth.mesh);
+  made.cloth.start = start_positions(scene.up, cloth, worn_by, made.cloth.mesh);
   made.cloth.velocity = cloth.velocity;
   made.cloth.spin = std::numbers::pi / 180 * cloth.spin;
   return made;
