@@ -35,6 +35,21 @@ TEST(Outlines, LinesInEveryFormGiveTheSamePolygon) {
   }
 }
 
+// Coordinates of 0.01 mm. The outline ends 0.022 mm from its start, 4.5e-5 of its diagonal; another one, 0.14 mm from
+// it.
+TEST(Outlines, RoundedRelativeCoordinatesCloseThem) {
+  const std::string almost = "m 10,10 l 300.12,0 0.03,400.2 -300.14,0.01 -0.03,-400.2";
+  for (const std::string& path : {almost, almost + " z"}) {
+    const ParsedPath parsed = parse_path(path);
+    ASSERT_EQ(parsed.mistake, "") << path;
+    EXPECT_EQ(parsed.outline.size(), 4U) << path;
+    EXPECT_EQ(parsed.outline.back().end(), parsed.outline.front().start()) << path;
+  }
+  const ParsedPath apart = parse_path("m 10,10 l 300.12,0 0.03,400.2 -300.14,0.01 -0.1,-400.1 z");
+  ASSERT_EQ(apart.mistake, "");
+  EXPECT_EQ(apart.outline.size(), 5U) << "the closing line is an edge";
+}
+
 TEST(Outlines, ArcsAreCircles) {
   // A cubic that approximates a quarter circle deviates by at most 2.7e-4 of the radius. Areas have smaller errors.
   const double disc = std::numbers::pi * 0.25;

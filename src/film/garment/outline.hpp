@@ -41,8 +41,8 @@ struct ParsedPaths {
 };
 
 /// Reads closed outlines from path data of SVG 1.1 (section 8.3), in the units of the data. Each outline must end with
-/// Z or at its start point. Splits an arc into cubic curves of at most a quarter turn each (maximum error: 3e-4 of the
-/// radius). Ignores curves of zero length.
+/// Z or at its start point, with a gap of at most kMaxClosingGap (outline.cpp). Splits an arc into cubic curves of at
+/// most a quarter turn each (maximum error: 3e-4 of the radius). Ignores curves of zero length.
 ParsedPaths parse_paths(std::string_view data);
 
 /// As parse_paths(), but reports a mistake if the data have several outlines.
