@@ -106,6 +106,13 @@ TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
   EXPECT_NEAR(high, 0, 1e-12);
 }
 
+TEST_F(Specification, MayHaveAnEndingInCapitals) {
+  support::write_bytes(folder_ / "A.JSON", kSpecification);
+  const ReadPattern read = read_pattern(folder_ / "A.JSON");
+  ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+  EXPECT_EQ(read.pattern.panels.size(), 3U);
+}
+
 TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
   const Pattern pattern = read(kSpecification).pattern;
   const Panel& sleeve = pattern.panels[0];

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
+#include "film/garment/pattern.hpp"
 #include "film/garment/triangulation.hpp"
 #include "support/test_folder.hpp"
 
@@ -90,10 +93,45 @@ TEST_F(Drawings, RectanglesMayHaveRoundCorners) {
   expect_refused("<svg><rect id='p' width='1' height='1' rx='a'/></svg>", "rx and ry as numbers");
 }
 
+TEST_F(Drawings, CirclesAndEllipsesAreOneCurve) {
+  const std::string head = "<svg width='1000mm' viewBox='0 0 1000 1000'>";
+  for (const auto& [element, radii] :
+       {std::pair("<circle id='p' cx='100' cy='200' r='50'/>", Vec2(0.05, 0.05)),
+        std::pair("<ellipse id='p' cx='100' cy='200' rx='50' ry='20'/>", Vec2(0.05, 0.02))}) {
+    const Outline outline = load(head + element + "</svg>");
+    EXPECT_EQ(std::ranges::count(outline, false, &Curve::continues_arc), 1) << element;
+    // An inscribed polygon of 64 sides has an area that is smaller by 5e-3 of the product of the radii.
+    EXPECT_NEAR(std::abs(polygon_area(sample_points(outline))), std::numbers::pi * radii.prod(), 1e-2 * radii.prod());
+    for (const Vec2& p : sample_points(outline))
+      EXPECT_NEAR((p - Vec2(0.1, -0.2)).cwiseQuotient(radii).norm(), 1, 3e-4) << element;
+    support::write_bytes(folder_ / "p.toml", "[[panel]]\nname = 'round'\nfile = 'd.svg'\nid = 'p'\nedges = 'rim'\n");
+    EXPECT_EQ(load_pattern(folder_ / "p.toml", "a test").panels.at(0).edges.size(), 1U) << element;
+  }
+  const Vec2 start = load(head + "<circle cx='1' cy='1' r='9'/></svg>", "circle:1").front().start();
+  EXPECT_LT((start - Vec2(0.01, -0.001)).norm(), 1e-12);
+  expect_refused("<svg><circle id='p' cx='1'/></svg>", "the centre and radii > 0 as numbers");
+  expect_refused("<svg><ellipse id='p' rx='1' ry='50%'/></svg>", "the centre and radii > 0 as numbers");
+}
+
+TEST_F(Drawings, PolylinesAreOutlinesIfTheyAreClosed) {
+  const std::string head = "<svg width='10mm' viewBox='0 0 10 10'><polyline id='p' points='";
+  expect_corners(head + "1,0 2,0 2,1 1,0'/></svg>", {{0.001, 0}, {0.002, 0}, {0.002, -0.001}});
+  expect_refused(head + "1,0 2,0 2,1'/></svg>", "which ends with Z or where it starts, got one that is open");
+}
+
+// Buttons and notches are drawn as circles, too.
+TEST_F(Drawings, CirclesInAGroupAreOutlinesIfThereIsNoOther) {
+  const std::string head = "<svg><g id='p'>", circle = "<circle cx='1' cy='1' r='1'/>";
+  EXPECT_NEAR(load(head + circle + "<polyline points='0,0 1,1 2,0'/></g></svg>").front().start().y(), -0.0254 / 96,
+              1e-12);
+  EXPECT_EQ(load(head + circle + circle + "<path d='M0 0L9 0L0 9Z'/></g></svg>").size(), 3U);
+  expect_refused(head + circle + circle + "</g></svg>", "one closed outline, got 2");
+}
+
 TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
   expect_refused("<svg>\n  <path id='p' d='M0 0L1 x'/></svg>", "d.svg:2:4: path \"p\": expected a number, got \"x\"");
   expect_refused("<svg>\n\n<path id='q' d='M0 0L1 1L0 1Z'/></svg>", "the id or label \"p\"");
-  expect_refused("<svg><circle id='p' r='1'/></svg>", "path, polygon or rect");
+  expect_refused("<svg><line id='p' x2='1'/></svg>", "path, polygon, closed polyline, rect, circle or ellipse");
   expect_refused("<svg viewBox='0 0 0 1' width='1mm'><path id='p' d='M0 0L1 1L0 1Z'/></svg>", "viewBox");
   expect_refused("<svg>\n<path id='p' transform='spin(3)' d='M0 0L1 1L0 1Z'/></svg>", "transform");
   expect_refused("<svg><path id='p' d='M0 0", "expected valid XML");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numbers>
 #include <optional>
 #include <set>
@@ -455,7 +456,9 @@ ReadPattern read_and_check(const std::filesystem::path& file) {
   read.pattern.file = file;
   if (const auto text = scene::read_file(file, findings)) {
     bool parsed = false;
-    if (file.extension() == ".json") {
+    std::string ending = file.extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (ending == ".json") {
       parsed = read_specification(*text, findings, read.pattern);
     } else if (const auto document = scene::parse(*text, findings)) {
       scene::Reader(findings, file.parent_path()).read(*document, pattern_rules(), &read.pattern, "");
