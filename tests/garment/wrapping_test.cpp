@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "film/environment/environment.hpp"
 #include "film/garment/garment.hpp"
@@ -195,6 +196,24 @@ TEST_F(Wrapping, SlitsStartOpen) {
   const std::array<support::TestedObject, 1> object{
       support::TestedObject{.name = "skirt", .positions = garment.sheet.rest, .triangles = garment.sheet.triangles}};
   EXPECT_TRUE(support::find_intersections(object).pairs.empty());
+}
+
+// The ties of an apron have no position. They go on along the skin from its sides, which are 0.2 m from its middle.
+TEST_F(Wrapping, TiesStartAtTheEdgesToWhichTheyAreSewn) {
+  const Garment garment = sew_text(
+      "[[panel]]\nname = 'apron'\naround = 'torso'\nposition = [0, 0.8]\n"
+      "path = 'M -0.2 0 L 0.2 0 L 0.2 0.3 L 0.2 0.34 L 0.2 0.4 L -0.2 0.4 L -0.2 0.34 L -0.2 0.3 Z'\n"
+      "edges = 'hem low_l tie_l high_l top high_r tie_r low_r'\n"
+      "[[panel]]\nname = 'left'\naround = 'torso'\npath = 'M 0 0 L 0.25 0 L 0.25 0.04 L 0 0.04 Z'\n"
+      "edges = 'lower free upper end'\n[[panel]]\nname = 'right'\nmirror_of = 'left'\n"
+      "[[seam]]\na = 'apron.tie_l'\nb = 'left.end'\n[[seam]]\na = 'apron.tie_r'\nb = 'right.end'\n");
+  const double radius = kTrunk + 0.015, angle = (0.2 + 0.25) / radius;
+  for (const auto& [edge, side] : {std::pair("left.free", 1.0), {"right.free", -1.0}}) {
+    const std::vector<Index>& free = garment.edges.at(edge);
+    const Vec3& middle = garment.sheet.rest[free[free.size() / 2]];
+    // Tolerance: the panels are bent along chords of 20 mm, and the tube has 96 sides.
+    EXPECT_LT((middle - Vec3(side * radius * std::sin(angle), -radius * std::cos(angle), 1.12)).norm(), 5e-3) << edge;
+  }
 }
 
 TEST_F(Wrapping, MirrorImagesHaveTheOtherSide) {

@@ -45,8 +45,8 @@ struct Panel {
   std::optional<double> angle;
   /// Number of layers of panels between this panel and the skin of its part, or of flat panels nearer to the wearer.
   int layer = 0;
-  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel (0, 0); for a bent panel, 0 across,
-  /// and the height at which its seams are shortest.
+  /// Start position of the panel's origin: across, up [m]. Absent: for a flat panel (0, 0); for a bent panel, the
+  /// height at which its seams are shortest, and 0 across or, for ties and the like, the place there (wrapping.hpp).
   std::optional<Vec2> position;
   double rotation = 0;  ///< rotation of the drawing at the start, counter-clockwise [degrees]
   Vec2 scale{1, 1};     ///< factors on the lengths of the start shape, across and up the drawing

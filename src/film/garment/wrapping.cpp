@@ -194,13 +194,16 @@ class PanelPlacer {
     }
   }
 
-  // The position of panel p along its part at which its seams to placed panels are shortest.
+  // The position of panel p at which its seams to placed panels are shortest: along its part and, if all these panels
+  // are around the same part, across too. Panels around arms, neck and head stay in the middle of their side, as drawn.
   std::optional<Vec2> position_from_seams(std::size_t p) const {
     struct Pair {
       Vec2 own;
       Vec3 other;
     };
     std::vector<Pair> pairs;
+    const Around part = part_of(pattern_.panels[p]);
+    bool moves_across = part == Around::torso || part == Around::body;
     for (const Seam& seam : pattern_.seams)
       for (const bool swapped : {false, true}) {
         const auto [own, edge] = pattern_.find(swapped ? seam.b : seam.a);
@@ -209,6 +212,7 @@ class PanelPlacer {
         const Panel &panel = pattern_.panels[own], &neighbour = pattern_.panels[other];
         const Arclength along(panel.edges[edge].curves), beside(neighbour.edges[other_edge].curves);
         const bool reversed = are_drawn_from_same_side(panel, neighbour);
+        moves_across = moves_across && part_of(neighbour) == part;
         for (int k = 0; k <= kSeamPoints; ++k) {
           const double fraction = double(k) / kSeamPoints;
           pairs.push_back(
@@ -216,15 +220,21 @@ class PanelPlacer {
         }
       }
     if (pairs.empty()) return std::nullopt;
-    const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
+    const Tube& tube = tubes_.at(part);
     Vec2 position(0, tube.high());
     for (int round = 0; round < kSeamRounds; ++round) {
-      double sum = 0;
+      constexpr double kAcrossStep = 1e-3;  // to find the direction across [m]
+      double up = 0, across = 0;
       for (const Pair& pair : pairs) {
         const double s = unrolled_position(pattern_.panels[p], position, pair.own).y();
-        sum += (pair.other - place(p, position, pair.own)).dot(tube.along(s));
+        const Vec3 here = place(p, position, pair.own), missing = pair.other - here;
+        up += missing.dot(tube.along(s));
+        if (moves_across)
+          across += missing.dot((place(p, position + Vec2(kAcrossStep, 0), pair.own) - here).normalized());
       }
-      position.y() += sum / static_cast<double>(pairs.size());
+      position.y() += up / static_cast<double>(pairs.size());
+      // In the first round, the height is not yet known, nor with it the section along which the panel moves.
+      if (round > 0) position.x() += across / static_cast<double>(pairs.size());
     }
     return position;
   }

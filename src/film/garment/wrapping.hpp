@@ -23,7 +23,8 @@ bool are_drawn_from_same_side(const Panel& a, const Panel& b);
 /// - The panels around a part form a ring. If the ring is wider than the girth at a height, its panels move outward
 ///   until the ring closes. Panels of narrow sleeves start nearer to the skin than Pattern::gap.
 /// - If the pattern states no position for a panel, the panel gets the position along its part at which its seams to
-///   panels with known positions are shortest.
+///   panels with known positions are shortest. Around torso and body, this includes the position across, if all these
+///   panels are around the same part.
 /// `refuse` receives the description of a mistake and must throw.
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
                                            const Wearer& wearer, const std::function<void(const std::string&)>& refuse);
