@@ -243,6 +243,26 @@ TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
   EXPECT_EQ(count, 2);
 }
 
+// The look `strain` refuses to draw frames without heat. The motion needs only the positions of the frame before.
+TEST_F(DataPassesTest, MotionNeedsNoHeatOfTheFrameBefore) {
+  frame::FrameSnapshot before = first_, now = second_;
+  auto stage = std::make_shared<frame::Stage>(*now.stage);
+  stage->heat = frame::Stage::Heat::strain;
+  before.stage = now.stage = stage;
+  for (frame::SurfaceState& state : before.states) state.heat.clear();
+  Settings settings;
+  settings.width = kPassWidth;
+  settings.height = kPassHeight;
+  settings.layers = true;
+  settings.look = frame::Stage::Look::strain;
+  Renderer renderer(settings);
+  renderer.draw(now, &before);
+  const image::Layers layers = renderer.layers();
+  for (const char* name : {"motion.X", "motion.Y"})
+    for (int y = 0; y < kPassHeight; ++y)
+      for (int x = 0; x < kPassWidth; ++x) ASSERT_EQ(value(layers, name, x, y), value(layers_, name, x, y));
+}
+
 // Between the frames, the camera moves backward past a square. In the frame before, the square was behind the camera.
 TEST_F(DataPassesTest, WhatWasBehindTheCameraDoesNotMove) {
   frame::FrameSnapshot before;

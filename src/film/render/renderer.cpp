@@ -121,7 +121,7 @@ struct Renderer::Impl {
   Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& upright) const;
   void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
   void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
-  void draw_layers(const Plan& plan, const frame::FrameSnapshot* before);
+  void draw_layers(const Plan& plan, const std::optional<EarlierFrame>& earlier);
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -372,20 +372,20 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const frame::Camera camera = choose_camera(snapshot);
   const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
+  const frame::Camera camera_before = before && (data || shutter > 0) ? choose_camera(*before) : camera;
+  const auto view_at = [&](double back, const frame::FrameSnapshot& moved) {
+    return make_view(interpolate_cameras(camera, camera_before, back), up_of(moved), settings.aspect(),
+                     subject_bounds(moved), find_floor(moved, up_of(moved)));
+  };
   // If layers are requested, the picture stays sharp: compositing programs blur it by the layers of motion and depth.
   if (data || (shutter <= 0 && camera.aperture <= 0)) {
     const Plan plan = plan_of(snapshot, camera, up_of(snapshot));
     draw_sharp(snapshot, plan);
-    if (data) draw_layers(plan, before);
+    if (data) draw_layers(plan, before ? std::optional(EarlierFrame{*before, view_at(1, *before)}) : std::nullopt);
     return;
   }
-  const frame::Camera camera_before = before ? choose_camera(*before) : camera;
   const auto snapshot_at = [&](double back) {
     return shutter > 0 ? interpolate_frames(snapshot, *before, back) : snapshot;
-  };
-  const auto view_at = [&](double back, const frame::FrameSnapshot& moved) {
-    return make_view(interpolate_cameras(camera, camera_before, back), up_of(moved), settings.aspect(),
-                     subject_bounds(moved), find_floor(moved, up_of(moved)));
   };
   // Without depth of field, draws as few pictures as kMaxMotionPerPicture allows (at most `instants`), and smears each
   // of them along the motion.
@@ -423,7 +423,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   for (std::size_t i = 0; i < sums.size(); ++i) rgba[i] = encode(Eigen::Vector3f(sums[i] / static_cast<float>(count)));
 }
 
-void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before) {
+void Renderer::Impl::draw_layers(const Plan& plan, const std::optional<EarlierFrame>& earlier) {
   layers = {settings.width, settings.height, {}};
   std::vector<Eigen::Vector4f> surfaces;
   outlines->extract_surfaces(seen, unsmoothed, surfaces);
@@ -450,8 +450,6 @@ void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* b
     }
     layers.channels.push_back({"caught.A", std::move(alpha), true});
   }
-  std::optional<EarlierFrame> earlier;
-  if (before) earlier.emplace(EarlierFrame{*before, plan_of(*before, choose_camera(*before), up_of(*before)).view});
   data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
 }
 
