@@ -110,6 +110,7 @@ TEST(Codec, FramesComeBackBitForBit) {
     EXPECT_EQ(a->cameras[0].elevation, b.cameras[0].elevation);
     EXPECT_EQ(a->cameras[0].margin, b.cameras[0].margin);
     EXPECT_EQ(a->cameras[0].smoothing, b.cameras[0].smoothing);
+    EXPECT_EQ(a->cameras[0].shot, b.cameras[0].shot);
     ASSERT_EQ(b.lights.size(), 1u);
     EXPECT_EQ(a->lights[0].name, b.lights[0].name);
     EXPECT_EQ(a->lights[0].kind, b.lights[0].kind);

@@ -80,6 +80,7 @@ struct Sample {
     camera.elevation = 5;
     camera.margin = 0.25;
     camera.smoothing = 0.75;
+    camera.shot = 3 * k;
     snapshot->cameras = {camera, frame::Camera{}};
     frame::Light light;
     light.name = "lamp";

@@ -1,6 +1,7 @@
-// Cameras that follow a body, and focal lengths in millimetres, as they appear in snapshots.
+// Cameras that follow a body, cuts of cameras, and focal lengths in millimetres, as they appear in snapshots.
 #include "film/production/camera_mounts.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -100,6 +101,35 @@ follow = "man.head"
   const Vec3 displacement = middle(*end) - middle(*start), ridden = end->cameras[0].target - start->cameras[0].target;
   EXPECT_GT(displacement.norm(), 0.5);
   EXPECT_LT((ridden - displacement).norm(), 0.1) << "the head and the body as a whole";
+}
+
+TEST(CameraCuts, AreCountedWhereTheCameraJumpsWithinAFrame) {
+  const auto shots = [](const std::string& keys) {
+    const scene::Scene scene = support::scene_of_text(
+        "[[obstacle]]\nname = 'box'\nshape = 'box'\n[[camera]]\nname = 'c'\ntarget = [0, 0, 0]\n"
+        "interpolation = 'linear'\nkeys = [" +
+        keys + "]\n");
+    const environment::Environment environment(scene);
+    const SnapshotMaker maker(scene, environment);
+    std::vector<int> list;
+    for (const int frame : {0, 24, 25, 26, 50})
+      list.push_back(maker.make(frame, frame / 25.0, environment.model, {}, {})->cameras[0].shot);
+    return list;
+  };
+  const std::vector<int> one_shot{0, 0, 0, 0, 0}, two_shots{0, 0, 1, 1, 1};
+  const std::string before = "{ time = 0, position = [3, 0, 0] }, ",
+                    after = ", { time = 1, position = [0, 3, 0] }, { time = 2, position = [0, 3, 1] }";
+  EXPECT_EQ(shots(before + "{ time = 0.96, position = [2.5, 0, 0] }" + after), two_shots) << "from frame to frame";
+  EXPECT_EQ(shots(before + "{ time = 0.999, position = [2.5, 0, 0] }" + after), two_shots) << "as steps of files";
+  EXPECT_EQ(
+      shots(before + "{ time = 0.96, position = [2.5, 0, 0] }, { time = 0.97, position = [1.9, 0.7, 0] }" + after),
+      two_shots)
+      << "in two parts";
+  EXPECT_EQ(shots(before + "{ time = 0.5, position = [2.5, 0, 0] }" + after), one_shot) << "a fast move";
+  std::string dense;  // the camera starts at rest and accelerates, with keys every 10 ms
+  for (int k = 0; k <= 200; ++k)
+    dense += fmt::format("{}{{ time = {}, position = [3, {}, 0] }}", k > 0 ? ", " : "", 0.01 * k, 1e-4 * k * k);
+  EXPECT_EQ(shots(dense), one_shot);
 }
 
 TEST(FocalLength, GivesTheAngleThatTheSensorSees) {

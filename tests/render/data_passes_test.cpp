@@ -243,6 +243,22 @@ TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
   EXPECT_EQ(count, 2);
 }
 
+TEST_F(DataPassesTest, ACutOfTheCameraIsNoMotion) {
+  frame::FrameSnapshot now = second_;
+  now.cameras[0].shot = 1;
+  now.cameras[0].position += Vec3(0.5, 0, 0);
+  Settings settings;
+  settings.width = kPassWidth;
+  settings.height = kPassHeight;
+  settings.layers = true;
+  Renderer renderer(settings);
+  renderer.draw(now, &second_);
+  const image::Layers layers = renderer.layers();
+  for (const char* name : {"motion.X", "motion.Y"})
+    for (int y = 0; y < kPassHeight; ++y)
+      for (int x = 0; x < kPassWidth; ++x) ASSERT_NEAR(value(layers, name, x, y), 0, 1e-5);
+}
+
 // The look `strain` refuses to draw frames without heat. The motion needs only the positions of the frame before.
 TEST_F(DataPassesTest, MotionNeedsNoHeatOfTheFrameBefore) {
   frame::FrameSnapshot before = first_, now = second_;

@@ -101,6 +101,21 @@ TEST(Instants, FloorIsBlurredByTheMotionOfTheCamera) {
   EXPECT_GT(contrast(&now), 150);
 }
 
+// Between the frames, the camera jumps by 0.5 m. The square stands still.
+TEST(Instants, NothingIsBlurredAcrossACut) {
+  frame::FrameSnapshot now = square_at(0.1);
+  frame::FrameSnapshot before = now;
+  before.cameras[0].position.x() -= 0.5;
+  Settings settings = small_settings();
+  settings.motion_blur = 180;
+  Renderer renderer(settings);
+  const std::vector<std::uint8_t> still = renderer.draw(now, &now).rgb;
+  EXPECT_NE(renderer.draw(now, &before).rgb, still);
+  now.cameras[0].shot = 1;
+  EXPECT_EQ(renderer.draw(now, &before).rgb, still);
+  EXPECT_EQ(interpolate_cameras(now.cameras[0], before.cameras[0], 1).position, now.cameras[0].position);
+}
+
 TEST(Instants, NothingIsBlurredUnasked) {
   const frame::FrameSnapshot now = square_at(0.1), before = square_at(-0.1);
   Renderer renderer(small_settings());

@@ -230,6 +230,7 @@ void serialize(Archive& archive, frame::Camera& camera) {
   for (double* number :
        {&camera.azimuth, &camera.elevation, &camera.margin, &camera.smoothing, &camera.aperture, &camera.focus})
     serialize_finite(archive, *number);
+  archive.value(camera.shot);
 }
 
 template <class Archive>
@@ -287,7 +288,7 @@ struct FrameHead {
 
 template <class Archive>
 void serialize(Archive& archive, FrameHead& head) {
-  constexpr std::size_t kMinCameraBytes = 121, kMinLightBytes = 129;  // sizes with empty texts and lists [bytes]
+  constexpr std::size_t kMinCameraBytes = 125, kMinLightBytes = 129;  // sizes with empty texts and lists [bytes]
   serialize_finite(archive, head.time);
   serialize_each(
       archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kMinCameraBytes);

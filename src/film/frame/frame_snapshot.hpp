@@ -143,6 +143,9 @@ struct Camera {
   double elevation = 17;   ///< angle of the direction from the subjects to the camera above the horizontal [degrees]
   double margin = 0.14;    ///< free space around the subjects, as a fraction of half the picture's width or height
   double smoothing = 0.5;  ///< standard deviation of the Gaussian that smooths the camera's motion [s]
+  /// Number of cuts of a placed camera from its first key to this time. Between two frames with different numbers, the
+  /// camera jumps: it has no motion there.
+  std::int32_t shot = 0;
 };
 
 /// Maximum number of lights of a picture, because each light takes rays at every pixel. Further lights are ignored.

@@ -268,7 +268,38 @@ double sensor_height(const scene::Camera& camera, const scene::Render& render) {
   return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
 }
 
-motion::Spline<7> camera_track(const scene::Camera& camera) {
+/// Times of the cuts of a camera [s], each halfway through its jump. A jump is a change that lasts at most a frame and
+/// is much faster than the changes before and after it: two close keys, a step of a file (assets::load_camera() makes
+/// it a fast change), or a step in a file with a key for each frame. `duration`: of a frame [s].
+std::vector<double> find_cuts(std::span<const double> times, std::span<const CameraValue> values, double duration) {
+  // kMaxJump: longest jump [frames]; above 1, because files have times in single precision. kMinSpeedRatio: smallest
+  // ratio of the speed of a jump to the speeds before and after it.
+  constexpr double kMaxJump = 1.01, kMinSpeedRatio = 10;
+  // Speed up to each key, of all values together; the camera stands still before the first key and after the last.
+  std::vector<double> speeds(times.size() + 1, 0);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    speeds[i] = (values[i] - values[i - 1]).norm() / (times[i] - times[i - 1]);
+  std::vector<double> cuts;
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    double slowest = speeds[i + 1];  // from key i to key `end`
+    for (std::size_t end = i + 1; end < times.size() && times[end] - times[i] <= kMaxJump * duration; ++end) {
+      slowest = std::min(slowest, speeds[end]);
+      if (slowest <= kMinSpeedRatio * speeds[i]) break;
+      if (slowest <= kMinSpeedRatio * speeds[end + 1]) continue;
+      cuts.push_back(0.5 * (times[i] + times[end]));
+      break;
+    }
+  }
+  return cuts;
+}
+
+CameraTrack make_track(scene::Interpolation interpolation, std::vector<double> times, std::vector<CameraValue> values,
+                       const scene::Scene& scene) {
+  std::vector<double> cuts = find_cuts(times, values, 1 / scene.time.fps);
+  return {{interpolation, std::move(times), std::move(values)}, std::move(cuts)};
+}
+
+CameraTrack placed_track(const scene::Scene& scene, const scene::Camera& camera) {
   std::vector<double> times;
   std::vector<CameraValue> values;
   for (const scene::CameraKey& key : camera.keys) {
@@ -276,11 +307,11 @@ motion::Spline<7> camera_track(const scene::Camera& camera) {
     const double lens = scene::has_focal_length(camera) ? key.focal_length : key.field_of_view;
     values.push_back((CameraValue() << key.position, key.target, lens).finished());
   }
-  return {camera.interpolation, std::move(times), std::move(values)};
+  return make_track(camera.interpolation, std::move(times), std::move(values), scene);
 }
 
 // Track of a camera from a file. In the file, y is up and z points toward the front of the scene.
-motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
+CameraTrack file_track(const scene::Scene& scene, const scene::Camera& camera) {
   const std::string where =
       fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
   const assets::LoadedCamera loaded = assets::load_camera(camera.file, camera.object, where);
@@ -296,7 +327,7 @@ motion::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& c
     values.push_back(
         (CameraValue() << eye, eye + target_distance * turned(loaded.forward[i]), loaded.field_of_view).finished());
   }
-  return {scene::Interpolation::linear, std::move(times), std::move(values)};
+  return make_track(scene::Interpolation::linear, std::move(times), std::move(values), scene);
 }
 
 motion::Spline<10> light_track(const scene::Light& light) {
@@ -336,8 +367,8 @@ SceneLooks::SceneLooks(const scene::Scene& scene, const environment::Environment
                         .smoothing = camera.smoothing});
     cameras_.back().aperture = camera.aperture;
     cameras_.back().focus = camera.focus;
-    camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? camera_track(scene, camera)
-                                                                    : camera_track(camera));
+    camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? file_track(scene, camera)
+                                                                    : placed_track(scene, camera));
     orbits_.push_back(camera.orbit);
     sensor_heights_.push_back(sensor_height(camera, scene.render));
     // The renderer assumes a film 24 mm high. Scales the f-number so that the aperture has the same diameter with it.
@@ -361,13 +392,15 @@ SceneLooks::SceneLooks(const scene::Scene& scene, const environment::Environment
 std::vector<frame::Camera> SceneLooks::cameras_at(double time) const {
   std::vector<frame::Camera> cameras = cameras_;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
-    const CameraValue value = camera_tracks_[c].at(time).value;
+    const auto& [spline, cuts] = camera_tracks_[c];
+    const CameraValue value = spline.at(time).value;
     cameras[c].position = value.segment<3>(0);
     cameras[c].target = value.segment<3>(3);
     const double height = sensor_heights_[c];
     cameras[c].field_of_view =
         height > 0 ? 360 / std::numbers::pi * std::atan(height / (2 * value[6])) : static_cast<double>(value[6]);
     cameras[c].azimuth += orbits_[c] * time;
+    cameras[c].shot = static_cast<std::int32_t>(std::ranges::upper_bound(cuts, time) - cuts.begin());
   }
   return cameras;
 }

@@ -18,6 +18,12 @@
 
 namespace weft::production {
 
+/// Position, target and lens of a camera over time.
+struct CameraTrack {
+  motion::Spline<7> spline;  ///< position and target [m], field of view [degrees] or focal length [mm]
+  std::vector<double> cuts;  ///< times at which the camera jumps [s], increasing
+};
+
 /// Textures from picture files. Decodes each file once.
 class Pictures {
  public:
@@ -50,8 +56,7 @@ class SceneLooks {
   std::shared_ptr<const frame::Stage> stage_;
   std::vector<frame::Camera> cameras_;
   std::vector<frame::Light> lights_;
-  // Values of camera tracks: position, target, field of view [degrees] or focal length [mm].
-  std::vector<motion::Spline<7>> camera_tracks_;
+  std::vector<CameraTrack> camera_tracks_;
   // Values of light tracks: direction, position, target, intensity.
   std::vector<motion::Spline<10>> light_tracks_;
   std::vector<double> orbits_;          // rate of the azimuth of each camera [degrees/s]

@@ -35,6 +35,7 @@ std::vector<Instant> make_instants(double shutter, bool lens, int count) {
 }
 
 frame::Camera interpolate_cameras(const frame::Camera& now, const frame::Camera& before, double back) {
+  if (now.shot != before.shot) return now;
   frame::Camera camera = now;
   camera.position = mix(now.position, before.position, back);
   camera.target = mix(now.target, before.target, back);

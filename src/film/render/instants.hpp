@@ -26,7 +26,8 @@ std::vector<Instant> make_instants(double shutter, bool lens, int count);
 /// `before` lacks also stay as in `now`.
 frame::FrameSnapshot interpolate_frames(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before,
                                         double back);
-/// Interpolates position, target and field of view of a camera in the same way.
+/// Interpolates position, target and field of view of a camera in the same way. If there is a cut between both frames
+/// (Camera::shot), the camera stays as in `now`.
 frame::Camera interpolate_cameras(const frame::Camera& now, const frame::Camera& before, double back);
 
 /// The camera with its eye moved to a point of its lens, and turned so that the point in focus on its view axis stays
