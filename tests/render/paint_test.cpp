@@ -9,6 +9,7 @@
 #include "film/image/color.hpp"
 #include "film/render/opacity.hpp"
 #include "film/render/painted_mesh.hpp"
+#include "film/render/reflected_light.hpp"
 #include "film/render/renderer.hpp"
 #include "render/snapshots.hpp"
 
@@ -182,6 +183,23 @@ TEST(Paint, WhatIsTransparentGivesNoColorToWhatIsNot) {
   EXPECT_NEAR(half.texels[0].w(), 0.5, 1e-6);
   EXPECT_NEAR(half.texels[0].x(), 0.5, 1e-6);
   EXPECT_NEAR(half.texels[0].y(), 0, 1e-6);
+}
+
+// Prints are pictures over the colour of the cloth. Here, they cover half of it; the other half is transparent.
+TEST(Paint, PrintsReflectLightInTheirColor) {
+  frame::Appearance look;
+  look.color = Vec3(0, 0, 1);
+  look.paint.texture = texture(2, 1, {{255, 0, 0, 255}, {0, 255, 0, 0}}, 1);
+  look.paint.alpha = Alpha::over_color;
+  MeanColors colors;
+  EXPECT_TRUE(colors.of(look, false).isApprox(Eigen::Vector3f(0.5f, 0, 0.5f)));
+  EXPECT_TRUE(colors.of(look, true).isApprox(Eigen::Vector3f(0.5f, 0, 0.5f)));
+  look.back_paleness = 0.2;
+  const float pale = std::pow(0.8f * std::sqrt(0.5f) + 0.2f, 2.0f);
+  EXPECT_TRUE(colors.of(look, true).isApprox(Eigen::Vector3f(pale, 0.04f, pale)));
+  look.back_painted = false;
+  look.back_color = Vec3(0, 1, 0);
+  EXPECT_TRUE(colors.of(look, true).isApprox(Eigen::Vector3f(0, 1, 0)));
 }
 
 TEST(Paint, VerticesAreSplitWhereCornersLieElsewhereAndTrianglesSortedByPart) {

@@ -269,6 +269,8 @@ TEST(ReflectedLight, PictureThatLiesOnceHidesTheColorOnlyWhereItLies) {
   EXPECT_EQ(color(), Vector3f(0, 0, 0)) << "repeated: multiplied by the colour everywhere";
   look.paint.wrap_u = frame::Paint::Wrap::once;
   EXPECT_TRUE(color().isApprox(Vector3f(0.25f, 0, 0.75f))) << color().transpose();
+  look.paint.alpha = frame::Paint::Alpha::over_color;
+  EXPECT_TRUE(color().isApprox(Vector3f(0.25f, 0, 0.75f))) << color().transpose();
 }
 
 /// Points of two planes that face the viewer: at 1 m in the left half of the picture, at 1.1 m in the right half.

@@ -25,11 +25,15 @@ Lanes evaluate(const std::array<Vector3f, 9>& c, int k, const Lanes3& n) {
       .max(0.0f);
 }
 
-/// Whether an opaque picture covers only a part of the surface, because it does not repeat. The rest of the surface
-/// then shows its colour (case 3 of paint_mode_of() in geometry_buffer.cpp).
-bool covers_partly(const frame::Paint& paint) {
-  using Wrap = frame::Paint::Wrap;
-  return paint.alpha == frame::Paint::Alpha::ignored && (paint.wrap_u == Wrap::once || paint.wrap_v == Wrap::once);
+bool lies_once(const frame::Paint& paint) {
+  return paint.wrap_u == frame::Paint::Wrap::once || paint.wrap_v == frame::Paint::Wrap::once;
+}
+
+/// Whether the picture covers the colour of the surface, which shows beside it and through its transparent parts (case
+/// 3 of paint_mode_of() in geometry_buffer.cpp). Otherwise, the picture is multiplied by the colour.
+bool covers_color(const frame::Paint& paint) {
+  using Alpha = frame::Paint::Alpha;
+  return paint.alpha == Alpha::over_color || (paint.alpha == Alpha::ignored && lies_once(paint));
 }
 
 }  // namespace
@@ -37,7 +41,7 @@ bool covers_partly(const frame::Paint& paint) {
 double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, std::span<const Triangle> triangles,
                         std::span<const Vec3> positions) {
   const frame::Paint& paint = range.look->paint;
-  if (!paint.texture) return 1;
+  if (!paint.texture || !lies_once(paint)) return 1;
   const auto is_inside = [](double place, frame::Paint::Wrap wrap) {
     return wrap != frame::Paint::Wrap::once || (place >= 0 && place <= 1);
   };
@@ -53,28 +57,34 @@ double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, s
 }
 
 Vector3f MeanColors::of(const frame::Appearance& look, bool back, double fraction) {
-  const Vec3 own = image::linear_from_srgb(back ? look.back_color : look.color);
   const frame::Paint& paint = look.paint;
-  if (!paint.texture || (back && !look.back_painted) || paint.alpha == frame::Paint::Alpha::over_color)
-    return own.cast<float>();
-  const bool cuts = paint.alpha == frame::Paint::Alpha::cutout;
-  const auto [known, added] = means_.try_emplace({paint.texture, cuts}, Vector3f::Zero());
+  if (!paint.texture || (back && !look.back_painted))
+    return image::linear_from_srgb(back ? look.back_color : look.color).cast<float>();
+  const bool opaque = paint.alpha == frame::Paint::Alpha::ignored;
+  const auto [known, added] = means_.try_emplace({paint.texture, opaque});
+  Mean& mean = known->second;
   if (added) {
     // Averages a sample of about 500 to 1,000 pixels, which is accurate enough.
     const std::size_t pixels = paint.texture->rgba.size() / 4, step = std::max<std::size_t>(1, pixels / 499);
     Vec3 sum = Vec3::Zero();
-    double covered = 0;
+    double covered = 0, count = 0;
     for (std::size_t i = 0; i < pixels; i += step) {
       const std::uint8_t* rgba = paint.texture->rgba.data() + 4 * i;
-      const double opacity = cuts ? rgba[3] / 255.0 : 1;
+      const double opacity = opaque ? 1 : rgba[3] / 255.0;
       sum += opacity * image::linear_from_srgb(Vec3(rgba[0], rgba[1], rgba[2]) / 255);
       covered += opacity;
+      ++count;
     }
-    if (covered > 0) known->second = (sum / covered).cast<float>();
+    if (covered > 0) mean = {(sum / covered).cast<float>(), static_cast<float>(covered / count)};
   }
-  const Vector3f color = image::linear_from_srgb(look.color).cast<float>();
-  if (covers_partly(paint)) return color + static_cast<float>(fraction) * (known->second - color);
-  return known->second.cwiseProduct(color);
+  const Vector3f own = image::linear_from_srgb(look.color).cast<float>();
+  const float covered = static_cast<float>(fraction) * mean.opacity;
+  const Vector3f front = covers_color(paint) ? Vector3f((1 - covered) * own + covered * mean.color)
+                                             : Vector3f(mean.color.cwiseProduct(own));
+  if (!back) return front;
+  // Paler by the formula of geometry.frag, applied to the mean.
+  const float pale = static_cast<float>(look.back_paleness);
+  return ((1 - pale) * front.array().sqrt() + pale).square().matrix();
 }
 
 ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame::Appearance& look, bool plain,
@@ -89,7 +99,7 @@ ReflectingSurface reflecting_surface(const SurfaceBuffers& surface, const frame:
   ReflectingSurface result;
   for (const PaintedRange& each : painted.ranges) {
     const double covered =
-        covers_partly(each.look->paint) ? covered_fraction(painted, each, surface.triangles(), surface.positions()) : 1;
+        covers_color(each.look->paint) ? covered_fraction(painted, each, surface.triangles(), surface.positions()) : 1;
     result.ranges.push_back(range(*each.look, each.first + each.count, covered));
   }
   return result;

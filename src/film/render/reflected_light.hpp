@@ -23,15 +23,20 @@ namespace weft::render {
 double covered_fraction(const PaintedMesh& painted, const PaintedRange& range, std::span<const Triangle> triangles,
                         std::span<const Vec3> positions);
 
-/// Computes mean linear colours of appearances, of the front or of the `back`. Pictures with Alpha::over_color are
-/// ignored. In pictures with Alpha::cutout, each pixel counts in proportion to its opacity. Each picture is averaged
-/// only once. `fraction`: covered_fraction(), for pictures with Alpha::ignored and Wrap::once; these cover the colour.
+/// Computes mean linear colours of appearances, of the front or of the `back`. In pictures with transparency, each
+/// pixel counts in proportion to its opacity; with Alpha::over_color, the colour of the surface has the rest. Each
+/// picture is averaged only once. `fraction`: covered_fraction(), for pictures that cover the colour
+/// (frame::Appearance::paint). The back with a picture has the mean colour of the front, paler by back_paleness.
 class MeanColors {
  public:
   Eigen::Vector3f of(const frame::Appearance& look, bool back, double fraction = 1);
 
  private:
-  std::map<std::pair<std::shared_ptr<const frame::Texture>, bool>, Eigen::Vector3f> means_;  // bool: cuts holes
+  struct Mean {
+    Eigen::Vector3f color = Eigen::Vector3f::Zero();  // weighted by opacity
+    float opacity = 0;
+  };
+  std::map<std::pair<std::shared_ptr<const frame::Texture>, bool>, Mean> means_;  // bool: its transparency is ignored
 };
 
 /// Albedo of both sides of a surface, by ranges of its drawn triangles.
