@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "film/render/painted_mesh.hpp"
+
 namespace weft::render {
 namespace {
 
@@ -220,6 +222,43 @@ TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
   for (int x = 0; x < kOutlinedWidth; ++x) {
     EXPECT_EQ(scene.red(x, 16), 255);
     EXPECT_EQ(scene.red(x, 17), 0);
+  }
+}
+
+// The same strip as lace: a picture makes its right half transparent.
+TEST(Outlines, LaceThatReachesBehindTheViewerIsCutOff) {
+  const std::vector<Vec3> strip = {Vec3(-50, -5, -1), Vec3(50, -5, -1), Vec3(50, 3.2, -1), Vec3(-50, 3.2, -1)};
+  constexpr int kTexels = 64, kMiddle = kOutlinedWidth / 2;
+  frame::Texture lace{kTexels, 1, {}};
+  for (int x = 0; x < kTexels; ++x)
+    lace.rgba.insert(lace.rgba.end(), {255, 255, 255, static_cast<std::uint8_t>(x < kTexels / 2 ? 255 : 0)});
+  std::vector<MipLevel> levels{base_mip_level(lace, false)};
+  while (levels.back().width > 1) levels.push_back(next_mip_level(levels.back()));
+  frame::Appearance look;
+  look.paint.texture_from_uv << 0.5, 0, 0.5, 0, 0, 0.5;  // the picture is 2 m wide, around x = 0
+  PaintedMesh painted;
+  for (const Vec3& position : strip) painted.places.emplace_back(static_cast<float>(position.x()), 0.0f);
+  painted.ranges = {{0, kQuad.size(), &look}};
+  const Opacity opacity(levels, frame::Paint::Wrap::clamp, frame::Paint::Wrap::clamp);
+  const Holes holes(painted, {&opacity});
+  Scene scene;
+  for (int y = 0; y < 17; ++y) {
+    for (int x = 0; x < kMiddle; ++x) {
+      scene.seen[y * kOutlinedWidth + x] = {static_cast<float>(1 / ((32 - y - 0.5) / 48)), kFirstSurface};
+      scene.picture[y * kOutlinedWidth + x] = kWhite;
+    }
+  }
+  const std::vector<DrawnMesh> meshes = {{strip, kQuad, &holes}};
+  Outlines(kOutlinedWidth, kOutlinedHeight)
+      .antialias(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight}, scene.picture);
+  for (int x = 0; x < kMiddle - 1; ++x) {
+    EXPECT_GE(scene.red(x, 16), 239) << x << ": at most one of 16 samples may be between two triangles";
+    EXPECT_EQ(scene.red(x, 17), 0) << x;
+  }
+  // The interpolated opacity falls over half a pixel around the middle.
+  for (int y = 0; y < 16; ++y) {
+    EXPECT_GT(scene.red(kMiddle - 1, y), 180) << y;
+    EXPECT_LT(scene.red(kMiddle, y), 75) << y;
   }
 }
 

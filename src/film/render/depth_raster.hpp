@@ -46,15 +46,15 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
 }
 
 /// Clips a triangle in clip space at the near plane and calls `visit(a, b, c)` for each of up to two triangles that
-/// remain (Sutherland and Hodgman 1974).
-template <class Visit>
-void clip_near(const std::array<Eigen::Vector4d, 3>& corners, const Visit& visit) {
+/// remain (Sutherland and Hodgman 1974). `Corner`: a vector of the four clip coordinates, which attributes may follow.
+template <class Corner = Eigen::Vector4d, class Visit>
+void clip_near(const std::array<Corner, 3>& corners, const Visit& visit) {
   // At least 0 if the corner is on the visible side of the near plane.
-  const auto before = [](const Eigen::Vector4d& corner) { return corner.w() - corner.z(); };
-  std::array<Eigen::Vector4d, 4> left;
+  const auto before = [](const Corner& corner) { return corner.w() - corner.z(); };
+  std::array<Corner, 4> left;
   std::size_t count = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Eigen::Vector4d &from = corners[i], &to = corners[(i + 1) % 3];
+    const Corner &from = corners[i], &to = corners[(i + 1) % 3];
     const double there = before(from), next = before(to);
     if (there >= 0) left[count++] = from;
     if ((there >= 0) != (next >= 0)) left[count++] = from + there / (there - next) * (to - from);

@@ -241,18 +241,29 @@ void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const Vie
   for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
     const PaintedRange& range = mesh.holes->ranges()[r];
     const Opacity* opacity = mesh.holes->opacity(r);
-    for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
-      // Triangles with a corner nearer than the near plane are omitted.
-      if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) < view.near) continue;
-      if (opacity == nullptr) {
-        sample(vertices_[a], vertices_[b], vertices_[c], surface);
-        continue;
-      }
-      const HoleTest test(*opacity, std::array{vertices_[a], vertices_[b], vertices_[c]},
-                          {mesh.holes->place(r, a), mesh.holes->place(r, b), mesh.holes->place(r, c)});
-      sample(vertices_[a], vertices_[b], vertices_[c], surface, [&](float x, float y, float nearness, int s) {
+    const auto sample_triangle = [&](const std::array<Vertex, 3>& corners,
+                                     const std::array<Eigen::Vector2f, 3>& places) {
+      if (opacity == nullptr) return sample(corners[0], corners[1], corners[2], surface);
+      const HoleTest test(*opacity, corners, places);
+      sample(corners[0], corners[1], corners[2], surface, [&](float x, float y, float nearness, int s) {
         return test.opacity(x, y, nearness) > (static_cast<float>(kThresholdOrder[s]) + 0.5f) / kSamples;
       });
+    };
+    // Clip coordinates and place of a vertex.
+    using Corner = Eigen::Matrix<double, 6, 1>;
+    const auto corner = [&](Index v) -> Corner {
+      return (Corner() << clip_[v], mesh.holes->place(r, v).cast<double>()).finished();
+    };
+    for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
+      if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) >= view.near) {
+        sample_triangle({vertices_[a], vertices_[b], vertices_[c]},
+                        {mesh.holes->place(r, a), mesh.holes->place(r, b), mesh.holes->place(r, c)});
+      } else {
+        clip_near(std::array{corner(a), corner(b), corner(c)}, [&](const Corner& p, const Corner& q, const Corner& t) {
+          sample_triangle({to_picture(p.head<4>()), to_picture(q.head<4>()), to_picture(t.head<4>())},
+                          {p.tail<2>().cast<float>(), q.tail<2>().cast<float>(), t.tail<2>().cast<float>()});
+        });
+      }
     }
   }
 }
