@@ -82,6 +82,8 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
     EXPECT_EQ(a.passed_through, b.passed_through);
     EXPECT_EQ(a.part_of_triangle, b.part_of_triangle);
     EXPECT_EQ(a.paint_uv, b.paint_uv);
+    EXPECT_EQ(a.closures, b.closures);
+    EXPECT_EQ(a.max_closed_gap, b.max_closed_gap);
   }
 }
 
@@ -231,6 +233,7 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
   refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.triangles[1][2] = 4; });
   refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.triangles[1][0] = -1; });
   refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.quads[0][3] = 4; });
+  refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.closures[0][1][1] = 4; });
   refuse("one (u, v) per vertex", [](frame::Surface& s, Positions&) { s.uv.pop_back(); });
   refuse("(u, v) is not finite", [](frame::Surface& s, Positions&) { s.uv[0].x() = NAN; });
   refuse("position is not finite", [](frame::Surface&, Positions& p) { p[0].x() = NAN; });

@@ -124,9 +124,9 @@ TEST_F(CacheFolder, BrokenFilesAreNamed) {
   other.objects.pop_back();
   spoil("manifest.json", manifest_text(other), "its objects are not those of the manifest");
   std::string newer = manifest_text(sample_.manifest());
-  newer.replace(newer.find("\"format_version\": 18"), 20, "\"format_version\": 19");
+  newer.replace(newer.find("\"format_version\": 19"), 20, "\"format_version\": 20");
   spoil("manifest.json", newer,
-        "manifest.json: made by another version of Weft (format 19; this one reads 18); simulate the scene again");
+        "manifest.json: made by another version of Weft (format 20; this one reads 19); simulate the scene again");
   expect_error(ExitCode::asset_unreadable, "expected a frame cache, a folder with a manifest.json",
                [&] { Reader reader(folder_); });
 }

@@ -49,6 +49,8 @@ struct Sample {
     cloth.part_of_triangle = {1, 0};
     cloth.passed_through = {0, 1};
     cloth.paint_uv = {{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(2, 0), Vec2(3, 1), Vec2(2, 1)}};
+    cloth.closures = {{{0, 3}, {1, 2}}, {}};
+    cloth.max_closed_gap = 0.006;
     frame::Surface floor;
     floor.name = "floor";
     floor.kind = frame::ObjectKind::obstacle;

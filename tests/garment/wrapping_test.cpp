@@ -305,6 +305,22 @@ TEST_F(Wrapping, SeamsThatTearAreTiesOfTheirLoadPerLength) {
   }
 }
 
+TEST_F(Wrapping, AZipClosesFromEndToEnd) {
+  const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
+  std::string zipped = kVest, buttoned = kVest;
+  zipped.replace(zipped.find(seam), seam.size(), seam + "open = 2\n");
+  buttoned.replace(buttoned.find(seam), seam.size(), seam + "buttons = 3\n");
+  const Garment garment = sew_text(zipped);
+  ASSERT_EQ(garment.closures.size(), 1U);
+  const auto& pairs = garment.closures[0];
+  ASSERT_EQ(pairs.size(), garment.sheet.ties.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    EXPECT_EQ(pairs[k], (std::array{garment.sheet.ties[k].a, garment.sheet.ties[k].b}));
+    EXPECT_EQ(pairs[k][0], garment.edges.at("front.right")[k]);
+  }
+  EXPECT_TRUE(sew_text(buttoned).closures.empty());
+}
+
 TEST_F(Wrapping, AStifferPanelIsStifferAlone) {
   std::string fused = kVest;
   fused.replace(fused.find("name = \"sleeve\""), 15, "name = \"sleeve\"\nfabric = { stretch = 3, bend = 8 }");

@@ -267,5 +267,42 @@ TEST(Trims, StitchesHaveNoBeats) {
   }
 }
 
+/// Two dark panels side by side before the bright backdrop, with a vertical slit of `gap` [m] between them, which is a
+/// zip. The zip is closed up to a gap of 6 mm.
+frame::FrameSnapshot zipped_cloth(double gap) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  std::vector<Vec3> positions;
+  for (const double z : {-0.5, 0.0, 0.5})
+    for (const double x : {-0.5, -0.5 * gap, 0.5 * gap, 0.5}) positions.emplace_back(x, 0, z);
+  std::vector<Triangle> triangles;
+  for (const Index a : {0, 2, 4, 6}) {
+    triangles.push_back({a, a + 1, a + 5});
+    triangles.push_back({a, a + 5, a + 4});
+  }
+  frame::Surface& cloth = add_surface(snapshot, frame::ObjectKind::cloth, positions, triangles);
+  cloth.closures = {{{1, 2}, {5, 6}, {9, 10}}};
+  cloth.max_closed_gap = 0.006;
+  cloth.appearance.color = cloth.appearance.back_color = Vec3::Constant(0.2);
+  cloth.appearance.thickness = 1e-3;
+  snapshot.cameras = {camera_at(Vec3(0, -0.3, 0), Vec3::Zero(), 30)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  return snapshot;
+}
+
+TEST(Trims, ClosedZipsShowNoLight) {
+  const auto brightest = [](double gap, Quality quality) {
+    const image::Image image = drawn(zipped_cloth(gap), 1, quality);
+    int level = 0;
+    for (int y = 10; y < 90; ++y)
+      for (int x = 40; x < 120; ++x) level = std::max<int>(level, image.pixel(x, y)[1]);
+    return level;
+  };
+  for (const Quality quality : {Quality::draft, Quality::final}) {
+    EXPECT_LT(brightest(0.003, quality), 80);
+    EXPECT_GT(brightest(0.008, quality), 150) << "open";
+  }
+}
+
 }  // namespace
 }  // namespace weft::render

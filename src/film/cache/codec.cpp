@@ -216,6 +216,9 @@ void serialize(Archive& archive, frame::Surface& surface, const Textures& textur
   serialize_plain(archive, surface.passed_through);
   serialize_plain(archive, surface.part_of_triangle);
   serialize_plain(archive, surface.paint_uv);
+  serialize_each(
+      archive, surface.closures, [&](auto& pairs) { serialize_plain(archive, pairs); }, sizeof(std::size_t));
+  serialize_finite(archive, surface.max_closed_gap);
 }
 
 template <class Archive>
@@ -323,6 +326,7 @@ void check(const frame::Surface& surface, std::size_t vertices) {
       if (!uv.allFinite()) broken("a place of paint is not finite");
   inside(surface.triangles);
   inside(surface.quads);
+  for (const auto& pairs : surface.closures) inside(pairs);
 }
 
 }  // namespace

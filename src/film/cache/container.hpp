@@ -19,7 +19,7 @@
 
 namespace weft::cache {
 
-inline constexpr std::uint32_t kFormatVersion = 18;
+inline constexpr std::uint32_t kFormatVersion = 19;
 
 enum class Kind : std::uint32_t { surfaces = 1, frame = 2, state = 3 };
 

@@ -129,6 +129,7 @@ const garment::Wearer* fill_from_pattern(const scene::Scene& scene, const scene:
   made.cloth.mesh.positions = garment.sheet.rest;
   made.cloth.mesh.uv = std::move(garment.uv);
   made.details.edges = std::move(garment.edges);
+  made.details.closures = std::move(garment.closures);
   for (const garment::Panel& panel : pattern.panels) made.details.panels.push_back(panel.name);
   made.details.panel_of = std::move(garment.panel_of);
   made.details.paint_uv = garment.sheet.material;

@@ -24,6 +24,8 @@ struct ClothDetails {
   std::vector<std::int32_t> panel_of;               ///< for patterns: index of the panel of each triangle
   /// For cloth sewn from panels: per triangle, the coordinates (weft, warp) of its corners in its panel [m].
   std::vector<std::array<Vec2, 3>> paint_uv;
+  /// For patterns: per zip and per seam that can tear, the pairs of particles that it holds together, in order.
+  std::vector<std::vector<std::array<Index, 2>>> closures;
   std::string fitted;     ///< for patterns that were scaled to their wearer: description of the scaling; else empty
   std::string rest_from;  ///< for mesh files: source of the rest shape, and the reason for the choice
   std::vector<std::string> warnings;

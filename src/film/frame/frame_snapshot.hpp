@@ -101,6 +101,10 @@ struct Surface {
   /// Per triangle: (u, v) of its corners, which Paint::texture_from_uv maps to the picture; on panels of a garment, in
   /// metres along weft and warp. Empty: `uv` applies.
   std::vector<std::array<Vec2, 3>> paint_uv;
+  /// Per zip and per seam that can tear: pairs of vertices of its two edges, in order. The edges are drawn as one
+  /// between consecutive pairs if both pairs are closer than `max_closed_gap` [m].
+  std::vector<std::vector<std::array<Index, 2>>> closures;
+  double max_closed_gap = 0;
 };
 
 /// Whether a surface or one of its parts has a picture, or a part has other colours than the surface.

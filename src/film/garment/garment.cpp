@@ -404,6 +404,10 @@ class Sewing {
                                ? !are_drawn_from_same_side(panel_of(seam.a), panel_of(seam.b))
                                : straight < end_distance();
       if (in_line) std::ranges::reverse(b);
+      if (seam.buttons == 0) {
+        std::vector<std::array<Index, 2>>& pairs = garment_.closures.emplace_back();
+        for (std::size_t k = 0; k < a.size(); ++k) pairs.push_back({a[k], b[k]});
+      }
       const std::size_t last = a.size() - 1;
       const auto length_of = [this](const std::string& edge) {
         const std::vector<double> lengths = band_along(edge).lengths;

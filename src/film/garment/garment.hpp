@@ -1,6 +1,7 @@
 // Makes one mesh around the wearer from a sewing pattern.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,6 +28,9 @@ struct Garment {
   std::vector<Vec2> uv;         ///< per vertex: texture coordinates of the weave [m]; panels overlap in this plane
   std::vector<Index> panel_of;  ///< index of the panel, per triangle
   std::vector<SewnSeam> seams;  ///< in the order of the pattern, without closures
+  /// Per zip and per seam that can tear: the pairs of vertices that ties hold together, in the order of the edge
+  /// Seam::a.
+  std::vector<std::vector<std::array<Index, 2>>> closures;
   std::map<std::string, std::vector<Index>> edges;  ///< by "panel.edge": vertices of this edge, from its start
 };
 

@@ -154,6 +154,8 @@ std::shared_ptr<frame::Surface> make_cloth_surface(const model::Cloth& cloth, co
   for (const std::string& panel : details.panels) surface->parts.push_back({panel, {}});
   surface->part_of_triangle = details.panel_of;
   surface->paint_uv = details.paint_uv;
+  surface->closures = details.closures;
+  surface->max_closed_gap = 2 * mesh::Tie::kRest;  // farther apart, a tie cannot hold its particles
   apply_look(*surface, look, pictures);
   return surface;
 }

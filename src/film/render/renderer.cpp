@@ -163,13 +163,14 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const
       next.push_back(std::move(*known));
       passes->surfaces.erase(known);
     } else {
-      // If layers for compositors are requested, cloth is not refined and has no rims: layers show the simulated faces.
+      // For layers for compositors, cloth is not refined and has no strips, because they show the simulated faces.
       const bool cloth = surface->kind == frame::ObjectKind::cloth;
       const bool free = cloth && !settings.layers;
       next.emplace_back(gl, surface,
                         Detail{.refines = quality.refines && free && cloth_triangles <= kMaxRefinedTriangles,
                                .rims = quality.trims && free && surface->appearance.thickness > 0,
-                               .trims = quality.trims && cloth && surface->appearance.thickness > 0});
+                               .trims = quality.trims && cloth && surface->appearance.thickness > 0,
+                               .closures = free});
     }
     next.back().update(snapshot.states[i],
                        rim_width(surface->appearance, snapshot.states[i].positions, view, settings.height));

@@ -63,6 +63,7 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
   closed_ = surface_->kind != frame::ObjectKind::cloth && !has_holes(*surface_) && is_closed(surface_->triangles);
   if (detail_.refines) refinement_.emplace();
   if (detail_.trims || detail_.rims) trims_.emplace(*surface_);
+  if (detail_.closures) slits_ = find_slits(*surface_);
   describe(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
   // Adds an attribute of `size` floats with its own buffer.
@@ -123,8 +124,8 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
                    has_heat ? state.heat[v] : no_heat};
   }
   if (refinement_) add_midpoints(vertices);
-  with_rims_.clear();
-  if (rim > 0) add_rims(vertices, rim);
+  with_strips_.clear();
+  if (rim > 0 || !slits_.empty()) add_strips(vertices, rim);
   if (detail_.trims && uploaded_trim_count_ != positions_.size()) upload_trims();
   upload<Vertex>(*gl_, vertices_, vertices);
   upload<Triangle>(*gl_, triangles_, triangles());
@@ -151,10 +152,11 @@ void SurfaceBuffers::add_midpoints(std::vector<Vertex>& vertices) {
   }
 }
 
-/// Appends the strips along borders (RimStrip) after all other vertices and triangles.
-void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
+/// Appends strips after all other vertices and triangles: those along borders (RimStrip) if `rim`, their width [m], is
+/// positive, and those across the slits of closed zips.
+void SurfaceBuffers::add_strips(std::vector<Vertex>& vertices, double rim) {
   // `points`: the positions of the surface vertices and, if the surface is refined, the midpoints
-  // of the rims.
+  // of the rims and slits.
   std::vector<Index> drawn(vertex_count_);
   for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
   std::vector<Vec3> points = state_.positions, normals(vertex_count_);
@@ -162,22 +164,48 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   std::vector<std::pair<Index, Index>> ends;  // per point: two drawn vertices, whose attributes are averaged
   for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
   const double max_offset = max_midpoint_offset(surface_->appearance.thickness);
-  std::vector<Trims::Rim> rims;
-  for (const Trims::Rim& rim : trims_->rims()) {
-    if (!refinement_) {
-      rims.push_back(rim);
-      continue;
-    }
-    const Middle here = middle(points[rim.a], points[rim.b], normals[rim.a], normals[rim.b], max_offset);
-    const auto m = static_cast<Index>(points.size());
+  const auto add_middle = [&](Index a, Index b) {
+    const Middle here = middle(points[a], points[b], normals[a], normals[b], max_offset);
     points.push_back(here.position);
     normals.push_back(here.normal);
-    ends.emplace_back(drawn[rim.a], drawn[rim.b]);
-    rims.push_back({rim.a, m, rim.triangle});
-    rims.push_back({m, rim.b, rim.triangle});
+    ends.emplace_back(drawn[a], drawn[b]);
+    return static_cast<Index>(points.size()) - 1;
+  };
+  std::vector<Trims::Rim> rims;
+  for (const Trims::Rim& whole : rim > 0 ? trims_->rims() : std::span<const Trims::Rim>{}) {
+    if (!refinement_) {
+      rims.push_back(whole);
+      continue;
+    }
+    const Index m = add_middle(whole.a, whole.b);
+    rims.push_back({whole.a, m, whole.triangle});
+    rims.push_back({m, whole.b, whole.triangle});
   }
+  RimStrip strip = rim_strip(rims, points, normals, rim);
+  // Both sides of a slit have the attributes of side a, because (u, v) of the two sides may be far apart.
+  const auto add_across = [&](const Slit& slit) {
+    const auto p = static_cast<Index>(strip.positions.size());
+    for (const Index v : {slit.a[0], slit.b[0], slit.a[1], slit.b[1]}) {
+      strip.positions.push_back(points[v]);
+      strip.normals.push_back(normals[v]);
+    }
+    strip.source.insert(strip.source.end(), {slit.a[0], slit.a[0], slit.a[1], slit.a[1]});
+    strip.triangles.insert(strip.triangles.end(), {{p + 2, p, p + 1}, {p + 2, p + 1, p + 3}});
+    strip.owner.insert(strip.owner.end(), {slit.triangle, slit.triangle});
+  };
+  for (const Slit& slit : slits_) {
+    const auto gap = [&](std::size_t end) { return (points[slit.a[end]] - points[slit.b[end]]).norm(); };
+    if (std::max(gap(0), gap(1)) >= surface_->max_closed_gap) continue;
+    if (!refinement_) {
+      add_across(slit);
+      continue;
+    }
+    const Index a = add_middle(slit.a[0], slit.a[1]), b = add_middle(slit.b[0], slit.b[1]);
+    add_across({{slit.a[0], a}, {slit.b[0], b}, slit.triangle});
+    add_across({{a, slit.a[1]}, {b, slit.b[1]}, slit.triangle});
+  }
+  if (strip.triangles.empty()) return;
   const frame::Appearance& look = surface_->appearance;
-  const RimStrip strip = rim_strip(rims, points, normals, width);
   const std::span<const Triangle> without =
       refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
   const auto first = static_cast<Index>(vertices.size());
@@ -189,10 +217,10 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
                         0.5f * (vertices[a].heat + vertices[b].heat)});
     if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
   }
-  with_rims_.assign(without.begin(), without.end());
+  with_strips_.assign(without.begin(), without.end());
   const auto add = [&](std::size_t t) {
     const auto& [a, b, c] = strip.triangles[t];
-    with_rims_.push_back({a + first, b + first, c + first});
+    with_strips_.push_back({a + first, b + first, c + first});
   };
   if (!painted_) {
     for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
@@ -205,10 +233,10 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   };
   const std::vector<PaintedRange> ranges = painted_->ranges;
   for (const PaintedRange& range : ranges) {
-    PaintedRange strips{with_rims_.size(), 0, range.look};
+    PaintedRange strips{with_strips_.size(), 0, range.look};
     for (std::size_t t = 0; t < strip.triangles.size(); ++t)
       if (look_of(strip.owner[t]) == range.look) add(t);
-    strips.count = with_rims_.size() - strips.first;
+    strips.count = with_strips_.size() - strips.first;
     if (strips.count > 0) painted_->ranges.push_back(strips);
   }
 }
@@ -219,8 +247,8 @@ void SurfaceBuffers::upload_trims() {
   for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
   if (refinement_)
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
-  // The strips along borders must show neither the fold of the hem nor its stitches. Therefore the strips get a
-  // distance from the border beyond the fold and before the stitches: kPlain times the width of the hem.
+  // The strips along borders and across slits must show neither the fold of the hem nor its stitches. Therefore the
+  // strips get a distance from the border beyond the fold and before the stitches: kPlain times the width of the hem.
   constexpr float kPlain = 0.3f;
   Trim plain;
   plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);

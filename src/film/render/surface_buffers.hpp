@@ -15,9 +15,10 @@ namespace weft::render {
 
 /// Detail of the drawn surface beyond its simulated triangles.
 struct Detail {
-  bool refines = false;  ///< splits each triangle in four (Refinement); mesh() has the triangles before this split
-  bool rims = false;     ///< strips along borders, which show the thickness of the cloth; mesh() excludes them
-  bool trims = false;    ///< hems and seams
+  bool refines = false;   ///< splits each triangle in four (Refinement); mesh() has the triangles before this split
+  bool rims = false;      ///< strips along borders, which show the thickness of the cloth; mesh() excludes them
+  bool trims = false;     ///< hems and seams
+  bool closures = false;  ///< strips between the edges of closed zips; mesh() excludes them
 };
 
 /// One surface in GL buffers. Vertex attributes, numbered as in geometry.vert: 0: position, 1: normal, 2: rest (u, v),
@@ -46,7 +47,7 @@ class SurfaceBuffers {
   /// World positions of the drawn vertices [m], and the drawn triangles.
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const {
-    if (!with_rims_.empty()) return with_rims_;
+    if (!with_strips_.empty()) return with_strips_;
     return refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
   }
   /// The mesh that positions() and triangles() derive from.
@@ -60,7 +61,7 @@ class SurfaceBuffers {
     float heat;
   };
   void add_midpoints(std::vector<Vertex>& vertices);
-  void add_rims(std::vector<Vertex>& vertices, double width);
+  void add_strips(std::vector<Vertex>& vertices, double rim);
   void upload_trims();
   friend class FloorBuffers;
   static void describe(const Gl& gl, const VertexArray& array, const Buffer& vertices);
@@ -81,7 +82,8 @@ class SurfaceBuffers {
   std::optional<Trims> trims_;
   std::size_t uploaded_trim_count_ = 0;  // number of vertices whose trims are uploaded
   double rim_width_ = 0, longest_edge_ = 0;
-  std::vector<Triangle> with_rims_;
+  std::vector<Slit> slits_;  // of closures
+  std::vector<Triangle> with_strips_;
   std::vector<Vec3> positions_;
   frame::SurfaceState state_;  // of the last frame
 };

@@ -241,6 +241,26 @@ Trim Trims::middle(Index a, Index b) const {
   return trim(0.5 * (places_[ends[0]] + places_[ends[1]]), ends);
 }
 
+std::vector<Slit> find_slits(const frame::Surface& surface) {
+  std::vector<Slit> slits;
+  if (surface.closures.empty()) return slits;
+  std::unordered_map<std::uint64_t, std::int32_t> owner;  // triangle of each directed edge
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      owner.emplace(key(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]), static_cast<std::int32_t>(t));
+  for (const auto& pairs : surface.closures) {
+    for (std::size_t k = 1; k < pairs.size(); ++k) {
+      const auto [a, b] = pairs[k - 1];
+      const auto [next_a, next_b] = pairs[k];
+      if (const auto found = owner.find(key(a, next_a)); found != owner.end())
+        slits.push_back({{a, next_a}, {b, next_b}, found->second});
+      else if (const auto reversed = owner.find(key(next_a, a)); reversed != owner.end())
+        slits.push_back({{next_a, a}, {next_b, b}, reversed->second});
+    }
+  }
+  return slits;
+}
+
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows) {
   const double edge = (look.hem > 0 ? 2 : 1) * look.thickness;
   if (edge <= 0) return 0;

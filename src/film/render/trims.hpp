@@ -71,6 +71,14 @@ class Trims {
   std::array<Lines, Trim::kKinds> lines_;
 };
 
+/// The gap between two consecutive pairs of a closure (frame::Surface::closures): its sides run from a[0] to a[1], as
+/// an edge of `triangle` in its orientation, and from b[0] to b[1].
+struct Slit {
+  std::array<Index, 2> a, b;
+  std::int32_t triangle;
+};
+std::vector<Slit> find_slits(const frame::Surface& surface);
+
 /// A strip along each border, from the front to the back of the cloth, which shows its thickness.
 struct RimStrip {
   std::vector<Vec3> positions, normals;

@@ -16,9 +16,7 @@ namespace weft::forces {
 /// stays torn. If F becomes zero, the tie no longer holds.
 class Ties final : public Force {
  public:
-  /// Rest distance [m]: slightly above the contact thickness of most fabrics, so that ties do not press the layers
-  /// together.
-  static constexpr double kRest = 0.003;
+  static constexpr double kRest = mesh::Tie::kRest;  ///< rest distance [m]
   /// Time from closing to full strength [s].
   static constexpr double kClosing = 0.4;
 

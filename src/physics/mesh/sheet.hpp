@@ -26,6 +26,9 @@ struct Band {
 /// that can tear. `open` and `closed` are the scene times at which the fastener opens and closes [s]; infinite: never.
 /// If `closed` < `open`, the fastener is closed only between these times; otherwise it is closed at the start.
 struct Tie {
+  /// Distance up to which a fastener does not pull [m]: slightly above the contact thickness of most fabrics, so that
+  /// ties do not press the layers together. From twice this distance on, it pulls with its full strength.
+  static constexpr double kRest = 0.003;
   Index a = 0, b = 0;
   double strength = 0;  ///< maximum force [N]
   int tearing = -1;     ///< index of the seam in Sheet::tearing_seams; −1: the tie never tears
