@@ -37,6 +37,26 @@ TEST(Picture, FloorOfHugeSurroundingsFadesAtTheHorizonOnly) {
   }
 }
 
+// In a run, a square moves by kilometres. In each frame, the floor reaches as far as the fading, to the horizon.
+TEST(Picture, FloorOfALongRunReachesTheHorizon) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  add_floor(snapshot).appearance.color = Vec3::Constant(0.6);
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0, 1), Vec3::UnitZ(), Vec3::UnitX(), 0.5).run_bounds =
+      Box3(Vec3(-1700, -0.5, 1), Vec3(1700, 0.5, 1));
+  snapshot.cameras = {camera_at(Vec3(0, 0, 1.7), Vec3(0, 10, 1.65), 30)};
+  snapshot.lights = {sun(Vec3(0.5, 0.5, -1))};
+  const int horizon = static_cast<int>(kPictureHeight / 2 * (1 - 0.005 / std::tan(15 * std::numbers::pi / 180)));
+  Settings settings;
+  settings.width = kPictureWidth;
+  settings.height = kPictureHeight;
+  settings.quality = Quality::preview;
+  const image::Image image = Renderer(settings).draw(snapshot);
+  for (int y = horizon + 3; y < kPictureHeight; ++y)
+    EXPECT_NEAR(image.pixel(160, y)[1], image.pixel(160, kPictureHeight - 1)[1], 1.5) << y;
+  EXPECT_GT(std::abs(image.pixel(160, horizon - 20)[1] - image.pixel(160, kPictureHeight - 1)[1]), 8);
+}
+
 // The drawn floor extends for 130 km. At this distance, single precision rounds by millimetres.
 TEST(Picture, TiltedFloorOfKilometresIsDrawn) {
   constexpr int kTilts = 8;

@@ -31,7 +31,8 @@ constexpr std::size_t kMaxRefinedTriangles = 20000;
 constexpr std::size_t kMaxPeeledLayers = 4;  // maximum number of drawn layers of translucent cloth
 // Motion that one sharp picture of motion blur may cover [pixels]; determines how many such pictures are averaged.
 constexpr double kMaxMotionPerPicture = 5;
-constexpr double kFloorSizeRatio = 60;  // half side of the drawn floor / (subjects' radius + distance of the eye)
+// Half side of the drawn floor / (radius of the run's surroundings + distance of the eye); there, the floor has faded.
+constexpr double kFloorSizeRatio = 60;
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3(0, 0, 1);
@@ -195,7 +196,7 @@ void Renderer::Impl::update_floor(const Plan& plan) {
   passes->shading.set_floor(plan.floor, plan.lighting.style.floor_tint);
   const Vec3 center = plan.subjects.center();
   const Vec3 under = center - plan.floor->normal.dot(center - plan.floor->point) * plan.floor->normal;
-  const double radius = 0.5 * plan.subjects.diagonal().norm();
+  const double radius = 0.5 * plan.surroundings.diagonal().norm();
   passes->floor.update(under, plan.floor->normal, kFloorSizeRatio * (radius + (plan.view.eye - under).norm()));
 }
 
