@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "physics/mesh/shapes.hpp"
@@ -237,6 +238,45 @@ TEST(PinsThatAreReleased, HoldUntilTheStepThatEndsAtTheirRelease) {
   EXPECT_TRUE(pinned.pins.release_between(0.1 + 0.02, 0.14));
   EXPECT_FALSE(pinned.pins.release_between(0.1, 0.1 + 0.02));
   EXPECT_TRUE(pinned.at(0.121).empty());
+}
+
+// The pin is released at its last key, or its last key is that of a frame for which another program moves its body.
+TEST(PinsThatAreReleased, HaveTheVelocityWithWhichTheyReachTheirLastKey) {
+  const std::string ends = "interpolation = 'linear', keys = [{ time = 0 }, { time = 0.4, offset = [0, 0, 1] }]",
+                    sheet =
+                        "[[cloth]]\nname = 'a'\nsize = [0.2, 0.2]\nparticles = [3, 3]\npin = [{ low = [0, 1], high = "
+                        "[1, 1], release = 1, ";
+  Pinned by_keys(support::scene_of_text(sheet + ends + " }]\n"));
+  Pinned by_body(support::scene_of_text(
+      sheet +
+      "follow = 'ball' }]\n[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nradius = 0.1\nposition = [0, 0, 3]\n"
+      "keys = [{ time = 0 }, { time = 0.1, position = [0, 0, 3.1] }]\n"));
+  by_body.model.set_motion(
+      0, {motion::Interpolation::linear, {{0, {.position = {0, 0, 3}}}, {0.4, {.position = {0, 0, 4}}}}});
+  for (const Pinned* pinned : {&by_keys, &by_body}) {
+    ASSERT_EQ(pinned->at(0.4).size(), 3u);
+    for (const double t : {0.3, 0.4, 0.4 + 1e-14})
+      for (const integrator::HeldParticle& held : pinned->at(t))
+        EXPECT_LT((held.v_end - Vec3(0, 0, 2.5)).norm(), 1e-12) << t;
+    for (const integrator::HeldParticle& held : pinned->at(0.41)) EXPECT_EQ(held.v_end, Vec3(0, 0, 0));
+  }
+}
+
+TEST_F(PinsOnACharacter, HaveTheVelocityWithWhichItReachesItsLastKeyFrame) {
+  model::Model model = environment::Environment(scene_of(kRigid)).model;
+  std::vector<Vec3> begin(model.bodies[0].mesh.positions.size());
+  for (std::size_t v = 0; v < begin.size(); ++v) begin[v] = model.vertex(0, v, 0).position;
+  std::vector<Vec3> end = begin;
+  for (Vec3& x : end) x.z() += 0.1;
+  model.bodies[0].mover = std::make_shared<const model::Mover>(
+      motion::KeyFrames(motion::Interpolation::linear, 0, 0.05, {begin, end}, false));
+  const Pins pins(model, {0});
+  std::vector<integrator::HeldParticle> held;
+  pins.held_at(0.05, model, held);
+  ASSERT_EQ(held.size(), 9u);
+  for (const integrator::HeldParticle& particle : held) EXPECT_LT((particle.v_end - Vec3(0, 0, 2)).norm(), 1e-9);
+  pins.held_at(0.06, model, held);
+  for (const integrator::HeldParticle& particle : held) EXPECT_EQ(particle.v_end, Vec3(0, 0, 0));
 }
 
 }  // namespace

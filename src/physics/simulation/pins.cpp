@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "physics/collision/proximity/surface_point.hpp"
+#include "physics/simulation/step_end_motion.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -155,13 +156,17 @@ void Pins::held_at(double t, double t_targets, const model::Model& model,
     const Group& group = groups_[number];
     if (group.particles.empty() || (group.release >= 0 && model::is_later(t, group.release))) continue;
     const auto has = [&](std::size_t p) { return pin_of(group.particles[p], t) == number; };
+    const auto vertex_motion = [&](std::size_t vertex) {
+      return sample_at_step_end(
+          t_targets, [&](double time) { return model.vertex(static_cast<std::size_t>(group.follow), vertex, time); });
+    };
     for (std::size_t p = 0; p < group.anchors.size(); ++p) {
       if (!has(p)) continue;
       const Anchor& anchor = group.anchors[p];
       std::array<MovingPoint, 3> corners;
       MovingPoint place{Vec3::Zero(), Vec3::Zero()};
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto vertex = model.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t_targets);
+        const motion::VertexMotion vertex = vertex_motion(anchor.corners[k]);
         corners[k] = {vertex.position, vertex.velocity};
         place.x += anchor.weights[k] * vertex.position;
         place.v += anchor.weights[k] * vertex.velocity;
@@ -173,16 +178,13 @@ void Pins::held_at(double t, double t_targets, const model::Model& model,
     }
     for (std::size_t p = 0; p < group.followed_vertices.size(); ++p) {
       if (!has(p)) continue;
-      const auto place = model.vertex(static_cast<std::size_t>(group.follow), group.followed_vertices[p], t_targets);
+      const motion::VertexMotion place = vertex_motion(group.followed_vertices[p]);
       held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
     }
     if (!group.anchors.empty() || !group.followed_vertices.empty()) continue;
-    motion::PoseSample pose;
-    if (group.follow >= 0) {
-      pose = model.pose(static_cast<std::size_t>(group.follow), t_targets);
-    } else {
-      pose = group.track->at(t_targets);
-    }
+    const motion::PoseSample pose = sample_at_step_end(t_targets, [&](double time) {
+      return group.follow >= 0 ? model.pose(static_cast<std::size_t>(group.follow), time) : group.track->at(time);
+    });
     for (std::size_t p = 0; p < group.particles.size(); ++p) {
       if (!has(p)) continue;
       const Vec3 arm = pose.rotation * group.arms[p];

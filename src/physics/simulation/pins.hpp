@@ -39,6 +39,7 @@ class Pins {
   /// targets of these particles at t. Each particle has one entry. If pins share a particle, it
   /// belongs to the first of them in the model that is not released; pins that have the particle in
   /// their region precede pins that have it in their fade (model::WeightedParticle::faded).
+  /// Velocities are those at the end of a step (sample_at_step_end()).
   void held_at(double t, const model::Model& model, std::vector<integrator::HeldParticle>& held) const {
     held_at(t, t, model, held);
   }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "physics/simulation/step_end_motion.hpp"
+
 namespace weft::simulation {
 
 integrator::NewtonParameters newton_of(const model::Model& model) {
@@ -51,16 +53,8 @@ FrameVelocities velocities_of_frame(const model::Dynamics& body, const motion::P
   return velocities;
 }
 
-// Pose of a body that keys move. From its last key on, a track has zero velocity. If the body is
-// released at the last key, this function uses the velocity just before the key instead.
-motion::PoseSample pose_of_frame(const model::Model& model, std::size_t body, double t) {
-  motion::PoseSample pose = model.pose(body, t);
-  const bool rests = pose.velocity == Vec3::Zero() && pose.angular_velocity == Vec3::Zero();
-  if (!rests || std::abs(t - model.bodies[body].dynamics->release) > model::kSameTime) return pose;
-  const motion::PoseSample before = model.pose(body, t - model::kSameTime);
-  pose.velocity = before.velocity;
-  pose.angular_velocity = before.angular_velocity;
-  return pose;
+motion::PoseSample pose_at_step_end(const model::Model& model, std::size_t body, double t) {
+  return sample_at_step_end(t, [&](double time) { return model.pose(body, time); });
 }
 
 }  // namespace
@@ -101,7 +95,7 @@ void hold_frames(const model::Model& model, const ClothSystem& cloth, double t,
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const model::Dynamics* body = model.bodies[b].dynamics.get();
     if (body == nullptr || !is_held_until(*body, t)) continue;
-    const motion::PoseSample pose = pose_of_frame(model, b, t);
+    const motion::PoseSample pose = pose_at_step_end(model, b, t);
     for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k) {
       const Vec3 arm = pose.rotation * body->frame.particles()[k];
       held.push_back({{first_of_frames[b] + static_cast<Index>(k)}, pose.position + arm, pose.velocity_at(arm)});
@@ -115,10 +109,14 @@ bool any_frame_is_released(const model::Model& model, double t, double h) {
 
 void release_frames(const model::Model& model, const ClothSystem& cloth, double t, double h, std::span<Vec3> v) {
   const std::vector<Index> first_of_frames = cloth.first_of_frames(model);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (is_released(model.bodies[b], t, h))
-      std::ranges::copy(velocities_of_frame(*model.bodies[b].dynamics, pose_of_frame(model, b, t), true),
-                        v.begin() + first_of_frames[b]);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!is_released(model.bodies[b], t, h)) continue;
+    const model::Dynamics& body = *model.bodies[b].dynamics;
+    // A body that is released at its last key keeps its motion; one that is released later has come to rest.
+    const bool now = std::abs(t - body.release) <= model::kSameTime;
+    const motion::PoseSample pose = now ? pose_at_step_end(model, b, t) : model.pose(b, t);
+    std::ranges::copy(velocities_of_frame(body, pose, true), v.begin() + first_of_frames[b]);
+  }
 }
 
 bool frames_are_constant(const model::Model& model, double t0, double t1) {
