@@ -37,6 +37,33 @@ TEST(Weather, GoesByItsKeysAndKeepsWhatTheyLeaveOut) {
   EXPECT_FALSE(weather.is_constant_between(2, 2.1));
 }
 
+// Wind of keys carries gusts as a constant wind of the same velocity does; if it changes, by its integral over time.
+TEST(Weather, OfKeysCarriesTheGusts) {
+  const std::string gusts = "[physics.gusts]\nspeed = 2\n";
+  const Weather calm = weather_of(gusts), windy = weather_of("[physics]\nwind = [6, 1, 0]\n" + gusts),
+                keyed = weather_of("[physics]\nkeys = [{ time = 0.5, wind = [6, 1, 0] }]\n" + gusts);
+  const Vec3 x(1, 2, 3), wind(6, 1, 0);
+  EXPECT_GT((calm.air(x, 0.7) + wind - windy.air(x, 0.7)).norm(), 0.1);
+  EXPECT_LT((keyed.air(x, 0.7) - windy.air(x, 0.7)).norm(), 1e-12);
+  const Weather rising = weather_of(
+      "[physics]\ninterpolation = \"linear\"\nkeys = [{ time = 0, wind = [0, 0, 0] }, { time = 1, wind = [6, 0, 0] "
+      "}]\n" +
+      gusts);
+  EXPECT_LT((rising.air(x + Vec3(0.75, 0, 0), 0.5) - Vec3(3, 0, 0) - calm.air(x, 0.5)).norm(), 1e-12);
+  EXPECT_LT((rising.air(x + Vec3(9, 0, 0), 2) - Vec3(6, 0, 0) - calm.air(x, 2)).norm(), 1e-12);
+}
+
+// The keys of another wind begin with the gusts where those before have carried them.
+TEST(Weather, KeepsThePlaceOfItsGustsIfItsKeysAreReplaced) {
+  const std::string gusts = "[physics.gusts]\nspeed = 2\n";
+  const Weather before = weather_of("[physics]\nkeys = [{ time = 0, wind = [6, 0, 0] }]\n" + gusts);
+  Weather after = weather_of("[physics]\nkeys = [{ time = 0, wind = [-4, 0, 0] }]\n" + gusts);
+  const auto jump = [&] { return (after.air({1, 2, 3}, 2) - before.air({1, 2, 3}, 2) + Vec3(10, 0, 0)).norm(); };
+  EXPECT_GT(jump(), 0.1);
+  after.set_gust_displacement(2, before.gust_displacement(2));
+  EXPECT_LT(jump(), 1e-12);
+}
+
 constexpr const char* kFan =
     "[physics]\nwind = [0, 0, 1]\n[[fan]]\nname = \"fan\"\nposition = [1, 0, 0]\ndirection = [0, 2, 0]\nspeed = 6\n"
     "radius = 0.2\nangle = 24\n";

@@ -51,6 +51,22 @@ TEST(Spline, OfOneKeyStands) {
   }
 }
 
+TEST(Spline, HasTheIntegralOfItsValues) {
+  for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
+    const Spline1 spline(interpolation, kTimes, kValues);
+    const double d = 1e-4;
+    for (double t = -1.03; t < 6; t += 0.1)
+      // Tolerance: the central difference errs by d²/6 times the second derivative, about 100; no key is within d.
+      EXPECT_NEAR(spline.integral(t - d, t + d)[0] / (2 * d), spline.at(t).value[0], 1e-6) << t;
+  }
+  const Spline1 line(Interpolation::linear, {0, 2, 3}, values_of({1, 5, 4}));
+  EXPECT_NEAR(line.integral(-1, 0)[0], 1, kRoundingOfNumbers);
+  EXPECT_NEAR(line.integral(0, 3)[0], 10.5, kRoundingOfNumbers);
+  EXPECT_NEAR(line.integral(2.5, 1)[0], -6.375, kRoundingOfNumbers);
+  EXPECT_NEAR(line.integral(3, 5)[0], 8, kRoundingOfNumbers);
+  EXPECT_EQ(Spline1(Interpolation::cubic, {2}, values_of({7})).integral(0, 3)[0], 21);
+}
+
 TEST(LinearSpline, GoesStraightWithTheSlopeOfTheLaterSegmentAtAKey) {
   const Spline1 spline(Interpolation::linear, {0, 2, 3}, values_of({1, 5, 4}));
   EXPECT_EQ(spline.at(0.5).value[0], 2);

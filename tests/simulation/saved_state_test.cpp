@@ -371,6 +371,28 @@ TEST_F(SavedGarment, KnowsWhetherItsZipIsOpen) {
   EXPECT_EQ(continue_runs(scene, {15, {2, 5, 8, 13}}).difference, "");
 }
 
+// The state has the place to which an earlier wind carried the gusts.
+TEST(SavedStates, OfAChangedWindHaveItsGusts) {
+  const model::Model model =
+      environment::Environment(
+          support::scene_of_text("[physics.gusts]\nspeed = 3\n[[cloth]]\nname = 'flag'\nsize = [0.2, 0.2]\nparticles = "
+                                 "[5, 5]\nrotation = [90, 0, 0]\npin = [{ low = [0, 0], high = [0, 1] }]\n"))
+          .model;
+  const Vec3 wind(6, 2, 0);
+  Simulation whole(model), resumed(model);
+  whole.advance();
+  whole.advance();
+  whole.set_weather(model.physics.gravity, wind);
+  whole.advance();
+  std::string bytes;
+  whole.save(bytes);
+  resumed.set_weather(model.physics.gravity, wind);
+  resumed.restore(bytes);
+  whole.advance();
+  resumed.advance();
+  EXPECT_TRUE(resumed.particles_of_all() == whole.particles_of_all());
+}
+
 TEST(SavedStates, OfASceneWithACharacterFindItWhereItWalks) {
   const scene::Scene scene = support::scene_of_text(R"(
 [time]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace weft::model {
 
@@ -10,14 +11,17 @@ Weather::Weather(const Model& model) : gravity_(model.physics.gravity), wind_(mo
   if (!model.physics.keys.empty()) {
     std::vector<double> times;
     std::vector<motion::Spline<6>::Value> values;
+    std::vector<Vec3> excesses;
     for (const PhysicsKey& key : model.physics.keys) {
       times.push_back(key.time);
       values.push_back((motion::Spline<6>::Value() << key.gravity, key.wind).finished());
+      excesses.push_back(key.wind - wind_);
     }
-    keys_.emplace(model.physics.interpolation, std::move(times), std::move(values));
+    keys_.emplace(model.physics.interpolation, times, std::move(values));
+    excess_.emplace(model.physics.interpolation, std::move(times), std::move(excesses));
   }
   if (!model.air_acts()) return;
-  // Gusts move with Physics::wind even if keys replace this velocity elsewhere.
+  // The field moves with Physics::wind; gust_displacement() is the rest of its motion.
   if (model.physics.gusts.speed > 0) gusts_.emplace(model.physics.gusts, model.physics.wind);
   for (const model::Fan& fan : model.fans) {
     std::vector<double> times;
@@ -45,9 +49,13 @@ Vec3 Weather::Fan::air(const Vec3& x, double t) const {
 
 Vec3 Weather::air(const Vec3& x, double t) const {
   Vec3 sum = keys_ ? Vec3(keys_->at(t).value.tail<3>()) : wind_;
-  if (gusts_) sum += gusts_->at(x, t);
+  if (gusts_) sum += gusts_->at(x - gust_displacement(t), t);
   for (const Fan& fan : fans_) sum += fan.air(x, t);
   return sum;
+}
+
+Vec3 Weather::gust_displacement(double t) const {
+  return excess_ ? Vec3(shift_ + excess_->integral(0, t)) : shift_;
 }
 
 bool Weather::is_constant_between(double t0, double t1) const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "physics/model/gusts.hpp"
 #include "physics/model/model.hpp"
 #include "physics/motion/spline.hpp"
@@ -11,7 +12,8 @@
 namespace weft::model {
 
 /// Gravity is the same everywhere. The velocity of the air is the sum of wind, gusts and fans. If
-/// Model::air_acts() is false, gusts and fans are left out.
+/// Model::air_acts() is false, gusts and fans are left out. The wind displaces the field of gusts by the integral of
+/// its velocity over time.
 ///
 /// A fan moves air through its outlet disc into a cone, whose apex is radius / tan(angle / 2)
 /// behind the disc. In front of the disc, the fan adds a velocity away from the apex, of magnitude
@@ -38,6 +40,17 @@ class Weather {
   /// Whether gravity and air are the same at t0 and t1 [s]; false if there are gusts.
   bool is_constant_between(double t0, double t1) const;
 
+  /// Displacement of the gusts up to t [s] in addition to that by Model::physics.wind since time 0 [m]; 0 without keys.
+  Vec3 gust_displacement(double t) const;
+  /// Shifts gusts so that this displacement is `displacement` at t [s]: other keys would make them jump.
+  void set_gust_displacement(double t, const Vec3& displacement) { shift_ += displacement - gust_displacement(t); }
+  /// Saves or restores this shift.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    archive.raw(shift_.data(), 3 * sizeof(double));
+    if constexpr (Archive::kReads) require(shift_.allFinite(), "a displacement of gusts");
+  }
+
  private:
   struct Fan {
     motion::Spline<7> track;  // position of the disc, direction, speed
@@ -48,7 +61,9 @@ class Weather {
     Vec3 air(const Vec3& x, double t) const;
   };
   Vec3 gravity_, wind_;
-  std::optional<motion::Spline<6>> keys_;  // gravity and wind
+  std::optional<motion::Spline<6>> keys_;    // gravity and wind
+  std::optional<motion::Spline<3>> excess_;  // wind of the keys minus wind_
+  Vec3 shift_ = Vec3::Zero();                // part of gust_displacement() that the keys do not give [m]
   std::optional<GustField> gusts_;
   std::vector<Fan> fans_;
 };

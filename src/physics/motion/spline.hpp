@@ -85,6 +85,9 @@ class Spline {
       chords_.push_back((values_[i + 1] - values_[i]) / lengths_.back());
     }
     if (interpolation == Interpolation::cubic) slopes_ = slopes_between_keys<Value>(lengths_, chords_);
+    integrals_.push_back(Value::Zero());
+    for (std::size_t i = 0; i + 1 < times_.size(); ++i)
+      integrals_.push_back(integrals_[i] + integral_from_key(i, times_[i + 1]));
   }
 
   /// Takes time O(log keys); allocates nothing.
@@ -100,12 +103,28 @@ class Spline {
             bend + s * jerk};
   }
 
+  /// Integral of the value from t0 to t1 [unit · s].
+  Value integral(double t0, double t1) const { return antiderivative(t1) - antiderivative(t0); }
+
  private:
+  // Integral from the first key to t.
+  Value antiderivative(double t) const {
+    if (t < times_.front()) return (t - times_.front()) * values_.front();
+    if (t >= times_.back()) return integrals_.back() + (t - times_.back()) * values_.back();
+    const std::size_t i = find_segment(times_, t);
+    return integrals_[i] + integral_from_key(i, t);
+  }
+  // Integral from key i to t, which is not later than the next key. Simpson's rule is exact for cubic polynomials.
+  Value integral_from_key(std::size_t i, double t) const {
+    return (t - times_[i]) / 6 * (values_[i] + 4 * at(0.5 * (times_[i] + t)).value + at(t).value);
+  }
+
   std::vector<double> times_;
   std::vector<Value> values_;
-  std::vector<double> lengths_;  ///< of the segments [s]
-  std::vector<Value> chords_;    ///< mean slopes of the segments
-  std::vector<Value> slopes_;    ///< at the keys; empty for linear splines
+  std::vector<double> lengths_;   ///< of the segments [s]
+  std::vector<Value> chords_;     ///< mean slopes of the segments
+  std::vector<Value> slopes_;     ///< at the keys; empty for linear splines
+  std::vector<Value> integrals_;  ///< from the first key to each key
 };
 
 }  // namespace weft::motion

@@ -385,7 +385,7 @@ void Simulation::drive(std::size_t body, const motion::Pose& end) {
 void Simulation::set_weather(const Vec3& gravity, const Vec3& wind) {
   impl_->model.physics.keys = {{0, gravity, wind}};
   if (impl_->put_on_part) impl_->put_on_part->physics.keys = impl_->model.physics.keys;
-  impl_->steps->reload_weather();
+  impl_->steps->reload_weather(impl_->time());
   impl_->energy_bound->exempt_gains();
 }
 

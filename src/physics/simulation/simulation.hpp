@@ -115,8 +115,9 @@ class Simulation {
   /// motion in the model. The body then stays there.
   void drive(std::size_t body, const motion::Pose& end);
 
-  /// Sets gravity [m/s²] and wind [m/s] from the next frame on, in place of those of the model and their keys. Gusts
-  /// and fans stay. A saved state does not include these values: set them before restore(), too.
+  /// Sets gravity [m/s²] and wind [m/s] from the next frame on, in place of those of the model and their keys. Fans
+  /// stay; so do gusts, which this wind then carries. A saved state does not include these values: set them before
+  /// restore(), too.
   void set_weather(const Vec3& gravity, const Vec3& wind);
 
   /// Appends the state that later frames depend on. Only the same version of the program on the same CPU architecture

@@ -69,6 +69,7 @@ void StepLoop::copy_state_from(const StepLoop& before, std::span<const std::size
   cloth_.inflation().copy_state_from(before.cloth_.inflation(), cloths);
   attachments_.copy_state_from(before.attachments_, cloths);
   cloth_.copy_sewing_from(before.cloth_, cloths);
+  weather_.set_gust_displacement(step_end_, before.weather_.gust_displacement(step_end_));
   cloth_.update_rest_shapes(step_end_ - start_);
   next_ = progress_.now;
 }
@@ -291,6 +292,7 @@ void StepLoop::serialize(Archive& archive) {
   serialize_points(archive, now.v, particles);
   stepper_.serialize(archive, particles);
   if (progress_.control) progress_.control->serialize(archive);
+  weather_.serialize(archive);
   archive.value(progress_.longest);
   if constexpr (Archive::kReads) require(progress_.longest > 0, "a step length");
   serialize_parts(archive);

@@ -68,9 +68,11 @@ class StepLoop {
 
   const ClothSystem& cloth() const { return cloth_; }
   const model::Weather& weather() const { return weather_; }
-  /// Between two frames: takes gravity, wind and their keys from the model again.
-  void reload_weather() {
+  /// Between two frames, at the time t [s]: takes gravity, wind and their keys from the model again. Gusts do not jump.
+  void reload_weather(double t) {
+    const Vec3 displacement = weather_.gust_displacement(t);
     weather_ = model::Weather(model_);
+    weather_.set_gust_displacement(t, displacement);
     pins_.update_gravity();
   }
   const Attachments& attachments() const { return attachments_; }
