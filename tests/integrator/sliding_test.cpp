@@ -6,23 +6,28 @@
 namespace weft::integrator {
 namespace {
 
-/// Contact forces on the whole block [N]. `limit`: maximum friction.
+/// Contact forces on the whole block [N]. `limit`: maximum friction. `fraction`: of all forces, that on the first
+/// particle; more than 1 if the particles are those of the frame of a rigid body, whose surface is outside of the
+/// frame.
 struct Contacts {
   Vec3 push, friction;
   double limit;
+  double fraction = 0.5;
 };
 
-/// A solid of two particles, which form one diagonal block. Half of the forces `whole` acts on each.
+/// A solid of two particles, which form one diagonal block, and between which the forces `whole` are divided.
 class Block final : public System {
  public:
   explicit Block(const Contacts& whole) : whole_(whole) {}
 
   bool contact_forces(const StagePoint&, std::span<Vec3> pushes, std::span<Vec3> frictions,
-                      std::span<double> limits) const override {
+                      std::span<double> normal_forces, std::span<double> limits) const override {
     for (std::size_t i = 0; i < 2; ++i) {
-      pushes[i] += 0.5 * whole_.push;
-      frictions[i] += 0.5 * whole_.friction;
-      limits[i] += 0.5 * whole_.limit;
+      const double fraction = i == 0 ? whole_.fraction : 1 - whole_.fraction;
+      pushes[i] += fraction * whole_.push;
+      frictions[i] += fraction * whole_.friction;
+      normal_forces[i] += fraction * whole_.push.norm();
+      limits[i] += fraction * whole_.limit;
     }
     return true;
   }
@@ -62,8 +67,9 @@ TEST(Sliding, CountsTheResidualAlongFrictionAtItsLimit) {
 
 TEST(Sliding, CountsFrictionDueToANormalForceInTheResidual) {
   // The floor pushes with 20 N, but the motion needs only 10 N. So the friction limit should be 3 N, which is 1.4 N
-  // less than the friction.
-  EXPECT_NEAR(friction_error({{0, 0, 20}, {-4.4, 0, 0}, 6}, {0, 0, 10}), 1.4, 1e-12);
+  // less than the friction. A box on one face has the fraction 0.5 + √3 / 2.
+  for (const double fraction : {0.5, 1.37})
+    EXPECT_NEAR(friction_error({{0, 0, 20}, {-4.4, 0, 0}, 6, fraction}, {0, 0, 10}), 1.4, 1e-12) << fraction;
 }
 
 TEST(Sliding, AWallAllowsSlidingButAPinHoldsItsBlock) {

@@ -9,8 +9,8 @@ namespace weft::integrator {
 
 bool Sliding::evaluate(const System& system, const StagePoint& at) {
   for (auto* force : {&push_, &friction_}) force->assign(at.v.size(), Vec3::Zero());
-  limit_.assign(at.v.size(), 0);
-  return system.contact_forces(at, push_, friction_, limit_);
+  for (auto* of_particles : {&normal_force_, &limit_}) of_particles->assign(at.v.size(), 0);
+  return system.contact_forces(at, push_, friction_, normal_force_, limit_);
 }
 
 double Sliding::friction_error(const solver::DiagonalBlock& rows, std::span<const Vec3> residual) const {
@@ -20,11 +20,11 @@ double Sliding::friction_error(const solver::DiagonalBlock& rows, std::span<cons
     push += push_[i];
     friction += friction_[i];
     missing += residual[i];
-    normal_force += push_[i].norm();
+    normal_force += normal_force_[i];
     limit += limit_[i];
   }
   const double push_norm = push.norm(), friction_norm = friction.norm();
-  if (push_norm == 0 || friction_norm == 0) return 0;
+  if (push_norm == 0 || friction_norm == 0 || normal_force <= 0) return 0;
   // Friction that the motion requires, and the largest friction that the normal force allows, both
   // if the residual were zero [N].
   const double along = missing.dot(friction) / friction_norm, required = friction_norm - along;

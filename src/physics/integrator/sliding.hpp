@@ -29,8 +29,9 @@ class Sliding {
   double friction_error(const solver::DiagonalBlock& rows, std::span<const Vec3> residual) const;
 
  private:
-  std::vector<Vec3> push_, friction_;  // [N], as in System::contact_forces()
-  std::vector<double> limit_;          // [N]
+  // As in System::contact_forces() [N].
+  std::vector<Vec3> push_, friction_;
+  std::vector<double> normal_force_, limit_;
 };
 
 /// Whether constraints hold a diagonal block against sliding. A wall along which the block slides leaves two directions

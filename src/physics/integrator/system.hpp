@@ -60,13 +60,12 @@ class System {
   /// air.
   virtual bool is_translation_invariant() const { return false; }
 
-  /// Adds the contact part of forces() [N] at each particle: friction to `friction`, all other
-  /// contact forces to `push`, and the largest friction that the current normal forces allow to
-  /// `limit`, of which only sums over diagonal blocks have a meaning. Returns false, and adds
-  /// nothing, if there is no contact.
+  /// Adds the contact part of forces() [N] at each particle: friction to `friction`, all other contact forces to
+  /// `push`, their magnitudes to `normal_force`, and the largest friction that they allow to `limit`. Of the last two,
+  /// only sums over diagonal blocks have a meaning. Returns false, and adds nothing, if there is no contact.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
-                              std::span<double> limit) const {
-    (void)at, (void)push, (void)friction, (void)limit;
+                              std::span<double> normal_force, std::span<double> limit) const {
+    (void)at, (void)push, (void)friction, (void)normal_force, (void)limit;
     return false;
   }
 

@@ -45,10 +45,10 @@ void RigidVertices::gather(std::span<const Vec3> of_all, std::span<Vec3> force) 
   }
 }
 
-void RigidVertices::gather(std::span<const double> of_all, std::span<double> limit) const {
+void RigidVertices::gather(std::span<const double> of_all, std::span<double> magnitudes) const {
   for (Index v = first_; v < end(); ++v)
     if (const double of_vertex = of_all[static_cast<std::size_t>(v)]; of_vertex != 0)
-      for_each_weight(v, [&](Index i, double w) { limit[static_cast<std::size_t>(i)] += w * of_vertex; });
+      for_each_weight(v, [&](Index i, double w) { magnitudes[static_cast<std::size_t>(i)] += w * of_vertex; });
 }
 
 double RigidVertices::mass_of(Index vertex, std::span<const double> masses) const {

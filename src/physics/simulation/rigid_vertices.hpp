@@ -29,9 +29,9 @@ class RigidVertices {
   void place(std::span<Vec3> x) const;
   /// force[frame particle] += weight · of_all[vertex], for all vertices.
   void gather(std::span<const Vec3> of_all, std::span<Vec3> force) const;
-  /// As above for bounds of forces. The sum over a frame is that over the vertices of its body, which the weights,
+  /// As above for magnitudes of forces. The sum over a frame is that over the vertices of its body, which the weights,
   /// with a sum of 1, preserve; single entries may be negative.
-  void gather(std::span<const double> of_all, std::span<double> limit) const;
+  void gather(std::span<const double> of_all, std::span<double> magnitudes) const;
   /// Mass of the whole body of a vertex [kg]; `masses`: of the particles. Contacts derive their stiffness from it.
   /// (Measured: with the effective mass of a corner instead, a stack of ten boxes sways for ten seconds.)
   double mass_of(Index vertex, std::span<const double> masses) const;

@@ -90,8 +90,8 @@ double StepLoop::lift_bodies() {
 
 std::vector<Vec3> StepLoop::contact_forces() const {
   std::vector<Vec3> forces(cloth_.masses().size(), Vec3::Zero()), friction = forces;
-  std::vector<double> limit(forces.size(), 0);
-  problem_.contact_forces({.x = {}, .v = {}, .x_end = progress_.now.x}, forces, friction, limit);
+  std::vector<double> normal_force(forces.size(), 0), limit = normal_force;
+  problem_.contact_forces({.x = {}, .v = {}, .x_end = progress_.now.x}, forces, friction, normal_force, limit);
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += friction[i];
   return forces;
 }

@@ -111,25 +111,25 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
 }
 
 bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
-                                 std::span<double> limit) const {
+                                 std::span<double> normal_force, std::span<double> limit) const {
   if (contacts_ == nullptr || contacts_->empty()) return false;
   if (vertices_ == nullptr) {
-    contacts_->add_normal_and_friction_forces(at.x_end, memory_.contacts, push, friction, limit);
+    contacts_->add_normal_and_friction_forces(at.x_end, memory_.contacts, push, friction, normal_force, limit);
     return true;
   }
   const auto all = static_cast<std::size_t>(vertices_->end());
   std::vector<Vec3> push_of_all(all, Vec3::Zero()), friction_of_all = push_of_all;
-  std::vector<double> limit_of_all(all, 0);
+  std::vector<double> normal_force_of_all(all, 0), limit_of_all = normal_force_of_all;
   contacts_->add_normal_and_friction_forces(with_vertices(at.x_end), memory_.contacts, push_of_all, friction_of_all,
-                                            limit_of_all);
-  for (std::size_t i = 0; i < masses().size(); ++i) {
-    push[i] += push_of_all[i];
-    friction[i] += friction_of_all[i];
-    limit[i] += limit_of_all[i];
-  }
-  vertices_->gather(push_of_all, push);
-  vertices_->gather(friction_of_all, friction);
-  vertices_->gather(limit_of_all, limit);
+                                            normal_force_of_all, limit_of_all);
+  const auto add = [&](const auto& of_all, const auto& of_particles) {
+    for (std::size_t i = 0; i < masses().size(); ++i) of_particles[i] += of_all[i];
+    vertices_->gather(of_all, of_particles);
+  };
+  add(push_of_all, push);
+  add(friction_of_all, friction);
+  add(normal_force_of_all, normal_force);
+  add(limit_of_all, limit);
   return true;
 }
 

@@ -89,7 +89,7 @@ class StepProblem final : public integrator::System {
   void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
   bool contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
-                      std::span<double> limit) const override;
+                      std::span<double> normal_force, std::span<double> limit) const override;
   bool find_impacts(const integrator::StagePoint& at, const StepStart& start, std::span<Vec3> right_side) override;
   bool is_translation_invariant() const override { return true; }
   solver::LinearSystem& linear_system() override { return memory_.system; }

@@ -175,10 +175,11 @@ TEST(VelocityConstraints, ListNormalForceAndFrictionOfAStickingParticle) {
   }
   ASSERT_EQ(particle.prescribed().constraint.free, Mat3::Zero());
   std::vector<Vec3> push{Vec3::Zero()}, friction = push;
-  std::vector<double> limit{0};
-  particle.constraints.add_normal_and_friction_forces(particle.x_t0, push, friction, limit);
+  std::vector<double> normal_force{0}, limit{0};
+  particle.constraints.add_normal_and_friction_forces(particle.x_t0, push, friction, normal_force, limit);
   EXPECT_LT((push[0] - Vec3(0, 0, force.z())).norm(), 1e-12 * force.norm());
   EXPECT_LT((friction[0] - Vec3(force.x(), 0, 0)).norm(), 1e-12 * force.norm());
+  EXPECT_NEAR(normal_force[0], force.z(), 1e-12 * force.norm());
   EXPECT_NEAR(limit[0], kMu * force.z(), 1e-12 * force.norm());
 }
 

@@ -77,9 +77,9 @@ void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactState
 
 void ContactResponse::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states,
                                                      std::span<Vec3> push, std::span<Vec3> friction,
-                                                     std::span<double> limit) const {
-  springs_.add_normal_and_friction_forces(x_end, states, push, friction, limit);
-  if (walls_) walls_->add_normal_and_friction_forces(x_end, push, friction, limit);
+                                                     std::span<double> normal_force, std::span<double> limit) const {
+  springs_.add_normal_and_friction_forces(x_end, states, push, friction, normal_force, limit);
+  if (walls_) walls_->add_normal_and_friction_forces(x_end, push, friction, normal_force, limit);
 }
 
 void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states,

@@ -57,7 +57,8 @@ class ContactResponse {
     return springs_.add_impacts(x_end, states, start, right_side, system);
   }
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> push,
-                                      std::span<Vec3> friction, std::span<double> limit) const;
+                                      std::span<Vec3> friction, std::span<double> normal_force,
+                                      std::span<double> limit) const;
   void add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states, std::span<Vec3> force,
                  solver::LinearSystem& system) const;

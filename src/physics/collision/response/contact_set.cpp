@@ -272,17 +272,19 @@ void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactS
 
 void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states,
                                                 std::span<Vec3> push, std::span<Vec3> friction,
-                                                std::span<double> limit) const {
+                                                std::span<double> normal_force, std::span<double> limit) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
     const Response response = respond(c, Law::exact, x_end, states);
     if (!response.active) continue;
-    const Vec3 normal_part = contact.normal.dot(response.force) * contact.normal;
+    const double along = contact.normal.dot(response.force);
+    const Vec3 normal_part = along * contact.normal;
     const double max_friction = contact.static_friction * stick_slip_ * response.friction_per_slip;
     for (int k = 0; k < 4; ++k) {
       const Index i = contact.particles[k];
       push[i] += contact.weights[k] * normal_part;
       friction[i] += contact.weights[k] * (response.force - normal_part);
+      normal_force[i] += std::abs(contact.weights[k]) * along;
       limit[i] += std::abs(contact.weights[k]) * max_friction;
     }
   }

@@ -96,10 +96,11 @@ class ContactSet {
   /// values.
   void add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
 
-  /// As add_forces, but adds normal forces to `push` and friction to `friction`. Adds the maximum friction to `limit`
-  /// [N].
+  /// As add_forces, but adds normal forces to `push` and friction to `friction`. Adds the magnitudes of normal forces
+  /// to `normal_force` and the maximum friction to `limit` [N].
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> push,
-                                      std::span<Vec3> friction, std::span<double> limit) const;
+                                      std::span<Vec3> friction, std::span<double> normal_force,
+                                      std::span<double> limit) const;
 
   /// Adds the contacts to the linear system whose unknowns are the velocity jumps due to impacts in a step that ends at
   /// x_end: to the matrix in `system` and to `right_side` [N/s]. If there is no impact, adds nothing and returns false.

@@ -352,12 +352,14 @@ void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3
 }
 
 void VelocityConstraints::add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
-                                                         std::span<Vec3> friction, std::span<double> limit) const {
+                                                         std::span<Vec3> friction, std::span<double> normal_force,
+                                                         std::span<double> limit) const {
   for (const TouchingParticle& particle : touching_particles_) {
     const Index i = particle.particle;
     if (particle.memory.state == State::sticking) {
       push[i] += particle.memory.push;
       friction[i] += particle.force_across;
+      normal_force[i] += particle.memory.normal_force;
       limit[i] += walls_[main_wall(particle)].static_friction * particle.memory.normal_force;
       continue;
     }
@@ -365,6 +367,7 @@ void VelocityConstraints::add_normal_and_friction_forces(std::span<const Vec3> x
     const Wall& wall = walls_[main_wall(particle)];
     push[i] += particle.friction_normal_force * wall.normal;
     friction[i] += this->friction(particle, x_end[i]).force;
+    normal_force[i] += particle.friction_normal_force;
     limit[i] += wall.static_friction * particle.friction_normal_force;
   }
 }

@@ -93,11 +93,12 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// Adds normal forces to `push`, friction to `friction`, and the maximum static friction to `limit` [N]. For sliding
-  /// particles, these are the normal force that limits friction, and friction at x_end; for sticking ones, both parts
-  /// of the force that the walls exerted in the last solve before revise().
+  /// Adds normal forces to `push`, friction to `friction`, the magnitudes of normal forces to `normal_force`, and the
+  /// maximum static friction to `limit` [N]. For sliding particles, these are the normal force that limits friction,
+  /// and friction at x_end; for sticking ones, both parts of the force that the walls exerted in the last solve before
+  /// revise().
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
-                                      std::span<double> limit) const;
+                                      std::span<double> normal_force, std::span<double> limit) const;
   /// As add_forces; also adds −∂f/∂x to the matrix, positive semidefinite as in ContactSet::linearise(). `end_rate`:
   /// dx_end/dx for the stage positions x (see integrator::StagePoint): 1, or 2 for the midpoint rule.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
