@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/numerics.hpp"
 #include "core/stop.hpp"
 #include "film/environment/environment.hpp"
 #include "film/production/scene_simulation.hpp"
@@ -187,6 +188,20 @@ TEST(FailedStep, LeavesNoBodyWhereItWasDrivenThen) {
     EXPECT_GT(x[i].z(), 0.15);
     EXPECT_LT((x[i] - expected[i]).norm(), 1e-12);
   }
+}
+
+// An early check finds that the box obstructs the pin; then the solve goes on, and takes too many iterations.
+TEST(FailedStep, ReleasesNoPinIfTheSolverIsTheReason) {
+  model::Model model = environment::Environment(support::scene_of_text(kPinIntoABox)).model;
+  model.cloths[0].pins[0].motion.keys[1].time = 0.01;
+  model.solver.newton_iterations = 5;
+  model.solver.newton_tolerance = 1e-12;
+  model.solver.halvings = 0;
+  StepLoop steps(model, 0);
+  FrameReport report;
+  EXPECT_THROW(steps.advance(0, 0.04, report), Error);
+  // The iterations of one attempt: until the check, perhaps twice (StepLoop::solve_contacts), and after it.
+  EXPECT_LE(report.newton_iterations, 2 * numerics.newton.check_after + 5);
 }
 
 TEST(FailedStep, IsHalvedUntilItCanBeSolved) {

@@ -125,6 +125,8 @@ class CollisionStage {
   bool find_pins_between_cloths();
   /// The pinned particles that the last push_apart() or find_pins_between_cloths() has listed.
   std::span<const collision::ObstructedPin> obstructed_pins() const { return obstructed_pins_; }
+  /// Empties this list. Call before another solve: if that solve fails, the solver is the reason, not these pins.
+  void forget_obstructed_pins() { obstructed_pins_.clear(); }
   /// Text that says which object obstructs this pinned particle, and where: "'a' near (0, 0, 0) m".
   std::string describe(const collision::ObstructedPin& pin, const SystemState& now) const;
 

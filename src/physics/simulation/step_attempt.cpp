@@ -25,7 +25,6 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool i
     const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
     Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
                                        : solve_with_velocity_constraints(attempt, start, report);
-    // An accepted step needs no release: obstructed pins may be those of an early check, after which the solve went on.
     if (!rejection || collisions_->obstructed_pins().empty() || !may_release_pins(attempt)) return rejection;
     for (const collision::ObstructedPin& pin : collisions_->obstructed_pins())
       pins_.release_particle(pin.particle, collisions_->describe(pin, progress_.now));
@@ -164,6 +163,7 @@ StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start
                                              bool& solved, FrameReport& report) {
   held_.resize(pinned_);
   collisions_->append_prescribed_particles(held_);
+  collisions_->forget_obstructed_pins();
   integrator::StepReport step = solve(attempt, start, check_early, report);
   // Normal forces and friction depend on each other, and can increase each other without bound. If
   // the first solve of a step is unfinished and has added much energy, a second solve uses fixed
