@@ -247,6 +247,19 @@ TEST(Stepper, DoesNotContinueAStepThatItHasReturnedFromOrDiscarded) {
   }
 }
 
+TEST(Stepper, CountsTheIterationsOfTheCallThatPausedButNoEarlierOnes) {
+  const State now{{{2, 0, 0}}, {{0, 3, 0}}};
+  CountedSpring spring;
+  Stepper stepper(Method::implicit_euler, kTight);
+  State next = now;
+  for (const int expected : {0, 1, 1}) {
+    spring.iterations.clear();
+    const auto start = expected == 0 ? Stepper::Start::unchanged_velocity : Stepper::Start::next;
+    ASSERT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, next, start, 1).verdict, Verdict::unfinished);
+    EXPECT_EQ(spring.iterations, std::vector<int>{expected});
+  }
+}
+
 /// A system that takes 5 ms to find that there is no impact.
 class SlowImpacts final : public Spring {
  public:

@@ -52,8 +52,8 @@ class System {
   /// Does what linear_forces() does, and sets the matrix and the terms of linear_system() to a
   /// positive definite approximation of rate² M − ∂f/∂x − rate ∂f/∂v. First updates what stays
   /// constant between linearisations, such as the normal forces that limit friction. `iteration`:
-  /// number of Newton iterations of the solve before this one. If a call of Stepper::step()
-  /// continues a paused solve, the iterations before the pause count, too.
+  /// number of Newton iterations before this one, in this call of Stepper::step() and, if it
+  /// continues a paused solve, in the call that paused; earlier calls do not count.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// Whether translating a diagonal block changes no force except those of terms, constraints and
