@@ -1,10 +1,14 @@
-// Tests of regions of cloth behind a flat layer, whose bounding box has no depth.
+// Tests of regions of cloth behind a flat layer, whose bounding box has no depth, and of ways out of bodies.
 #include "physics/untangle/ways_out.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
+
+#include "physics/mesh/shapes.hpp"
 
 namespace weft::untangle {
 namespace {
@@ -75,6 +79,22 @@ TEST(ClothBehindAFlatLayer, HasTheDepthOfItsThreads) {
     EXPECT_NEAR(layer.midpoint_depth({-0.1, 0.01, -0.05}, {0.1, 0.02, -0.05}), 0.05 / Vec3(0.2, 0.01, 0).norm(), 1e-12);
     EXPECT_EQ(layer.midpoint_depth({-0.1, 0.01, 0.05}, {0.1, 0.02, 0.05}), 0);
   });
+}
+
+// A box without its upper side. Characters have such holes at soles and eyes.
+TEST(OpenBody, IsNotLeftThroughItsHole) {
+  mesh::Mesh box = mesh::make_box(Vec3(1, 1, 1), 0, 1);
+  const auto is_above = [&](Index v) { return box.positions[at(v)].z() > 0; };
+  std::erase_if(box.topology.triangles, [&](const mesh::Triangle& t) { return std::ranges::all_of(t, is_above); });
+  collision::Bodies bodies;
+  bodies.add(box.topology.triangles, static_cast<Index>(box.positions.size()), {.thickness = 0.002});
+  const collision::BroadPhase surfaces(bodies.surfaces(), box.positions);
+  const ForbiddenRegion region(surfaces, 0, SurfaceKind::solid, box.positions);
+  const Vec3 p(0.1, 0.07, 0.13);
+  EXPECT_TRUE(region.contains(p));
+  EXPECT_NEAR(region.distance_out(p, Vec3::UnitX()), 0.4, 1e-12);
+  EXPECT_NEAR(region.distance_out(p, -Vec3::UnitZ()), 0.63, 1e-12);
+  EXPECT_EQ(region.distance_out(p, Vec3::UnitZ()), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

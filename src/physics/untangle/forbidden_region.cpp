@@ -138,25 +138,26 @@ ForbiddenRegion::Exit ForbiddenRegion::find_exit(const Vec3& p) const {
 }
 
 double ForbiddenRegion::distance_out(const Vec3& p, const Vec3& d) const {
+  constexpr double kNoWay = std::numeric_limits<double>::infinity();
   if (kind_ == SurfaceKind::floor) {
     const double rise = normal_.dot(d);
-    return rise > 0 ? -normal_.dot(p - place_) / rise : std::numeric_limits<double>::infinity();
+    return rise > 0 ? -normal_.dot(p - place_) / rise : kNoWay;
   }
   const double length = 1.01 * box_.diagonal().norm();
-  int depth = 0, shells = 0;
   const std::vector<Hit> found = find_hits(p, length * d);
   if (kind_ == SurfaceKind::layer) {
     for (const Hit& hit : found)
       if (hit.winding < 0) return length * hit.fraction;
-    return std::numeric_limits<double>::infinity();
+    return kNoWay;
   }
-  for (const Hit& hit : found) shells -= hit.winding;
-  depth = shells;  // number of shells that contain p: the ray leaves that many more shells than it enters
+  int depth = 0;  // number of shells that contain p: the ray leaves that many more shells than it enters
+  for (const Hit& hit : found) depth -= hit.winding;
+  if (depth <= 0) return kNoWay;  // the ray leaves through a hole
   for (const Hit& hit : found) {
     depth += hit.winding;
-    if (depth <= 0) return length * hit.fraction;
+    if (depth == 0) return length * hit.fraction;
   }
-  return 0;
+  return kNoWay;
 }
 
 double ForbiddenRegion::midpoint_depth(const Vec3& p, const Vec3& q) const {

@@ -41,8 +41,8 @@ class ForbiddenRegion {
     double height;  ///< signed distance of p from `place` [m], negative inside
   };
   Exit find_exit(const Vec3& p) const;
-  /// Distance from p, which is inside, along the unit direction d to the point where the ray leaves the region [m]; for
-  /// a floor or layer, infinite if the ray does not leave the region.
+  /// Distance from p, which is inside, along the unit direction d to the point where the ray leaves the region [m];
+  /// infinite if the ray does not leave the region, or leaves it through a hole of a body, such as an open sole.
   double distance_out(const Vec3& p, const Vec3& d) const;
   /// Whether the segment from p to q crosses the surface; always false for a floor.
   bool crosses_surface(const Vec3& p, const Vec3& q) const {
