@@ -95,7 +95,8 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
 // Gathers the pairs of features that may be near while no vertex is farther from x than the Verlet
 // margin of near pairs (Numerics::Contact::verlet_margin). Skips pairs of triangles that a separating
 // plane keeps far enough apart. Does nothing if no vertex is farther than that from its position in
-// the last search.
+// the last search. So a pair of edges whose surfaces were flat there (Numerics::Contact::flat_fold) and fold since then
+// is missing until the next search.
 void Engine::gather(std::span<const Vec3> x) {
   const double verlet_margin = numerics.contact.verlet_margin * candidates_.detection_distance();
   const auto is_near = [&] {
@@ -137,9 +138,9 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   const bool is_moved = separate_guess(x_t0, x_t1, movable);
   pushed_pairs_.clear();
   // Find the pairs that might meet on the expected trajectory; they get contacts below. Test only planes of constant
-  // direction: a pair that only a turning plane separates comes close and needs a contact, too. Exception: if
-  // separate_guess() found a turning plane for a pair and did not move the pair afterwards, the pair is not tested
-  // again and gets no contact here.
+  // direction: a pair that only a turning plane separates comes close and needs a contact, too. Exception: a pair for
+  // which the last test of separate_guess() found a turning plane is not tested again and gets no contact here, unless
+  // the guess could not be corrected.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
   find_failing(x_t0, x_t1, PlaneKinds::constant);
   if (response_.form() == ResponseForm::springs)
@@ -166,8 +167,11 @@ bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, st
   PinchedPairs pinched = pinched_;
   const bool is_apart = push_apart(x_t0, x_t1, movable, false, false, PlaneKinds::turning).separated;
   pinched_ = std::move(pinched);
-  if (!is_apart) std::ranges::copy(expected, x_t1.begin());
-  return is_apart;
+  if (is_apart) return true;
+  std::ranges::copy(expected, x_t1.begin());
+  // If push_apart() has collected pairs, all tests are forgotten; whether it has depends on the parts of the search.
+  separation_.forget_tests();
+  return false;
 }
 
 // Finds near pairs at the expected end of the step. On a curved surface, contact directions found

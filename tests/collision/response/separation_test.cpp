@@ -142,6 +142,24 @@ TEST(Separation, ARememberedResultEqualsThatOfANewCheck) {
   EXPECT_GT(max_count, min_count);
 }
 
+// Two layers turn together, so that no plane of constant direction separates them.
+TEST(Separation, TestsPairsAgainWithOtherPlanesOnlyIfItForgetsItsTests) {
+  const std::vector<Vec3> x{{-1, -1, 0.01}, {1, -1, 0.01}, {0, 1, 0.01}, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  std::vector<Vec3> end;
+  for (const Vec3& place : x) end.push_back(Eigen::AngleAxisd(0.5, Vec3::UnitY()) * place);
+  const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}};
+  const std::vector<TrianglePair> pairs{{0, 1}};
+  Separation separation(triangles, {});
+  separation.watch(pairs, x);
+  const auto count_failing = [&](PlaneKinds which) {
+    return separation.find_failing(x, end, nullptr, nullptr, which).size();
+  };
+  EXPECT_EQ(count_failing(PlaneKinds::turning), 0u);
+  EXPECT_EQ(count_failing(PlaneKinds::constant), 0u);
+  separation.forget_tests();
+  EXPECT_EQ(count_failing(PlaneKinds::constant), 1u);
+}
+
 TEST(Separation, PairsThatWouldMeetArePushedApart) {
   for (double motion : {0.01, 0.05, 0.2}) {
     IsolatedPairs pairs = random_pairs(200, motion, 3);

@@ -105,6 +105,8 @@ class Separation {
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr, PlaneKinds which = PlaneKinds::all);
+  /// Makes the next find_failing() test all pairs, as watch() does.
+  void forget_tests() { tested_t0_.clear(); }
 
   /// Changes x_t1 of movable vertices until each pair is separated (see
   /// SeparationReport::separated). Pairs of cloth and obstacle for which this is impossible are
