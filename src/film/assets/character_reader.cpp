@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -90,7 +91,8 @@ class CharacterReader {
     for (const aiMaterial* material : std::span(scene_.mMaterials, scene_.mNumMaterials))
       character_.materials.emplace_back(material->GetName().C_Str());
     std::set<std::string> names;
-    for (std::size_t n = 0; n < nodes_.size(); ++n)
+    for (std::size_t n = 0; n < nodes_.size(); ++n) {
+      placing_of_skin_.reset();
       for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
         if (m >= scene_.mNumMeshes)
           throw std::runtime_error(fmt::format("node \"{}\": expected one of {} meshes, got number {}",
@@ -102,6 +104,7 @@ class CharacterReader {
         else
           targets_.left_out.insert({character_.nodes[n].name, mesh.mName.C_Str()});
       }
+    }
     check_choice(names);
     const RawMesh unjoined = raw_mesh_;
     join_vertices();
@@ -161,8 +164,8 @@ class CharacterReader {
     if (base + mesh.mNumVertices > kMaxVertices)
       throw std::runtime_error(fmt::format("mesh \"{}\": expected at most {} vertices in all", name, kMaxVertices));
 
-    Affine placing = globals_[node];
-    std::vector<Weights> weights = read_weights(mesh, node, placing);
+    Affine own_placing = globals_[node], placing;
+    std::vector<Weights> weights = read_weights(mesh, node, own_placing, placing);
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D& x = mesh.mVertices[v];
       raw_mesh_.positions.push_back(placing * Vec3(x.x, x.y, x.z));
@@ -171,17 +174,18 @@ class CharacterReader {
       materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
       uv_.push_back(uv_of(mesh, v));
     }
-    check_bind(mesh, placing, weights, node);
+    check_bind(mesh, placing, own_placing, weights, node);
     std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
-    read_faces(mesh, base, placing.linear().determinant() < 0);
+    read_faces(mesh, base, own_placing.linear().determinant() < 0);
     read_morphs(mesh, node, base, placing);
   }
 
-  /// The weights of each vertex of a mesh. For a skinned mesh, sets `placing` to the transform from mesh to world in
-  /// the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights, among the bones
-  /// for which this product is invertible. Vertices are stored after this transform, and bone offsets are adapted to
-  /// it, so that all meshes are in the same space.
-  std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
+  /// The weights of each vertex of a mesh. For a skinned mesh, sets `own_placing` to the transform from mesh to world
+  /// in the rest pose: (bone's node to world) × (bone offset) of the bone with the largest sum of weights, among the
+  /// bones for which this product is invertible. Sets `placing` to that of the first skinned mesh of the same node:
+  /// assimp divides a mesh by its materials, and rounding errors must not separate the parts. Vertices are stored after
+  /// `placing`, and bone offsets are adapted to it, so that it does not affect where the skin is in a pose.
+  std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& own_placing, Affine& placing) {
     std::vector<Weights> weights(mesh.mNumVertices);
     std::vector<std::pair<Index, Affine>> bones;  // node and offset of each bone with weights
     double most = 0;
@@ -198,21 +202,38 @@ class CharacterReader {
       if (!offset.matrix().allFinite())
         throw std::runtime_error(fmt::format("mesh \"{}\", bone \"{}\": its transform {}", mesh.mName.C_Str(),
                                              bone->mName.C_Str(), kNotFinite));
-      const auto index = static_cast<Index>(character_.bones.size() + bones.size());
+      const auto index = static_cast<Index>(bones.size());
       bones.emplace_back(found->second, offset);
       for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
         if (w.mWeight > 0) weights[w.mVertexId].push_back({index, w.mWeight});
       const Affine held = globals_[found->second] * offset;
       if (total > most && invertible(held)) {
         most = total;
-        placing = held;
+        own_placing = held;
       }
     }
-    const Affine back = invertible(placing) ? placing.inverse() : Affine::Identity();
-    if (!invertible(placing)) placing = Affine::Identity();
-    for (const auto& [bone_node, offset] : bones) character_.bones.push_back({bone_node, offset * back});
+    if (!invertible(own_placing)) own_placing = Affine::Identity();
+    if (most > 0 && !placing_of_skin_) placing_of_skin_ = own_placing;
+    placing = most > 0 ? *placing_of_skin_ : own_placing;
+    const Affine back = placing.inverse();
+    std::vector<Index> numbers;
+    for (const auto& [bone_node, offset] : bones) numbers.push_back(add_bone(bone_node, offset * back));
+    for (Weights& of_vertex : weights)
+      for (character::Influence& influence : of_vertex) influence.bone = numbers[at(influence.bone)];
     normalise_weights(mesh, node, placing, weights);
     return weights;
+  }
+
+  /// The number of a bone with this node and offset. Adds it if there is none, so that equal bones of several meshes
+  /// are one.
+  Index add_bone(Index node, const Affine& offset) {
+    std::vector<Index>& known = bones_of_node_[node];
+    const auto found = std::ranges::find_if(
+        known, [&](Index bone) { return character_.bones[at(bone)].offset.matrix() == offset.matrix(); });
+    if (found != known.end()) return *found;
+    known.push_back(static_cast<Index>(character_.bones.size()));
+    character_.bones.push_back({node, offset});
+    return known.back();
   }
 
   double check_weight(const aiMesh& mesh, const aiBone& bone, const aiVertexWeight& weight) const {
@@ -229,11 +250,12 @@ class CharacterReader {
 
   /// Warns if the rest pose of the nodes moves the skin away from its bind pose, for example because of pivots that
   /// assimp ignores. In FBX, the node of the mesh defines the bind pose. Other formats define only the bones relative
-  /// to each other; for them, `placing` defines the bind pose.
-  void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
+  /// to each other; for them, `own_placing` defines the bind pose.
+  void check_bind(const aiMesh& mesh, const Affine& placing, const Affine& own_placing,
+                  const std::vector<Weights>& weights, Index node) {
     if (mesh.mNumBones == 0) return;
     const std::optional<double> metres = metres_per_unit(scene_);
-    const Affine& bound = metres ? globals_[node] : placing;
+    const Affine& bound = metres ? globals_[node] : own_placing;
     double farthest = 0;
     unsigned worst = 0;
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
@@ -268,10 +290,7 @@ class CharacterReader {
       for (const character::Influence& influence : weights[v]) sum += influence.weight;
       if (sum <= 0) {
         ++unweighted;
-        if (own < 0) {
-          own = static_cast<Index>(character_.bones.size());
-          character_.bones.push_back({node, placing.inverse()});
-        }
+        if (own < 0) own = add_bone(node, placing.inverse());
         weights[v] = {{own, 1}};
         continue;
       }
@@ -334,8 +353,8 @@ class CharacterReader {
     if (name != of_node) targets_.morphs.emplace(name, group);
   }
 
-  /// Merges vertices with the same position, weights and displacements. At seams of textures or normals, files have
-  /// several vertices for one point, which would separate the surface there. Removes vertices without faces.
+  /// Merges vertices with the same position, weights and displacements. At seams of textures, normals or materials,
+  /// files have several vertices for one point, which would separate the surface there. Removes vertices without faces.
   void join_vertices() {
     std::unordered_map<std::string, Index> known;
     std::vector<Index> renamed(raw_mesh_.positions.size(), -1);
@@ -457,7 +476,9 @@ class CharacterReader {
   std::vector<Index> materials_;  // per vertex of the raw mesh; −1: no material
   std::vector<Vec2> uv_;          // per vertex of the raw mesh
   std::vector<Morph> morphs_;
-  std::set<const aiMesh*> skinned_;  // skinned meshes that have been read
+  std::set<const aiMesh*> skinned_;        // skinned meshes that have been read
+  std::optional<Affine> placing_of_skin_;  // of the skinned meshes of the node whose meshes are being read
+  std::map<Index, std::vector<Index>> bones_of_node_;
   ClipTargets targets_;
 };
 

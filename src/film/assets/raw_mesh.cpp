@@ -135,6 +135,16 @@ Transform placement_of(const aiMesh& part, const Transform& of_node,
   return placing;
 }
 
+/// Whether two meshes have a bone with the same offset in common. Such meshes of a node are parts of one mesh, which
+/// assimp divides by its materials.
+bool share_bone(const aiMesh& a, const aiMesh& b) {
+  return std::ranges::any_of(std::span(a.mBones, a.mNumBones), [&](const aiBone* of_a) {
+    return std::ranges::any_of(std::span(b.mBones, b.mNumBones), [&](const aiBone* of_b) {
+      return of_a->mName == of_b->mName && of_a->mOffsetMatrix == of_b->mOffsetMatrix;
+    });
+  });
+}
+
 template <class T>
 void put(std::string& bytes, const std::vector<T>& list) {
   const std::size_t count = list.size();
@@ -178,13 +188,20 @@ RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& obje
   for (const bool has_mesh : {false, true})
     for (const auto& [node, to_world] : nodes)
       if ((node->mNumMeshes > 0) == has_mesh) placed.emplace(node->mName.C_Str(), to_world);
-  for (const auto& [node, to_world] : nodes)
+  for (const auto& [node, to_world] : nodes) {
+    const aiMesh* first = nullptr;  // first mesh of the node that is read
+    Transform placement_of_first = Transform::Identity();
     for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
       const aiMesh& part = *scene->mMeshes[m];
       names.insert({node->mName.C_Str(), part.mName.C_Str()});
-      if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
-        append_mesh(raw, *scene, part, placement_of(part, to_world, placed));
+      if (!object.empty() && object != node->mName.C_Str() && object != part.mName.C_Str()) continue;
+      // Rounding errors of two placements would separate parts of one mesh.
+      const bool is_same = first != nullptr && share_bone(*first, part);
+      const Transform placement = is_same ? placement_of_first : placement_of(part, to_world, placed);
+      if (first == nullptr) first = &part, placement_of_first = placement;
+      append_mesh(raw, *scene, part, placement);
     }
+  }
   if (!object.empty() && raw.positions.empty()) {
     names.erase("");
     throw std::runtime_error(
