@@ -287,14 +287,8 @@ TEST_F(Acting, RefusesWhatItCannotPlayByItsName) {
   expect_refused(ExitCode::scene_invalid, "character.rod.clip: expected an animation in " + file_.path.string());
 }
 
-std::string bvh() {
-  return "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation "
-         "Xrotation\nJOINT Back\n{\nOFFSET 0 5 0\nCHANNELS 3 Zrotation Yrotation Xrotation\nEnd Site\n{\nOFFSET 0 5 "
-         "0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n0 0 0 0 0 0 0 0 0\n0 0 3 0 0 0 90 0 0\n";
-}
-
 TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
-  support::write_bytes(folder_ / "walk.bvh", bvh());
+  support::write_bytes(folder_ / "walk.bvh", support::walk_file());
   file_.motion = folder_ / "walk.bvh";
   file_.joints = {{"Spine", std::nullopt, "Back"}};
   const Actor actor = make();
@@ -321,7 +315,7 @@ TEST_F(Acting, PutsABodyWhoseOriginIsInItsMiddleOnTheFloor) {
   std::string file = support::rod_file();
   file.replace(file.find("0.0,0.0,0.0,1.0;; }") + 4, 3, "-1.0");
   support::write_bytes(file_.path, file);
-  support::write_bytes(folder_ / "walk.bvh", bvh());
+  support::write_bytes(folder_ / "walk.bvh", support::walk_file());
   file_.motion = folder_ / "walk.bvh";
   file_.joints = {{"Spine", std::nullopt, "Back"}};
   const Actor actor = make();
@@ -331,7 +325,7 @@ TEST_F(Acting, PutsABodyWhoseOriginIsInItsMiddleOnTheFloor) {
 
 TEST_F(Acting, LeavesAMotionInPlaceOrGivesItASpeed) {
   file_.motion = folder_ / "walk.bvh";
-  support::write_bytes(*file_.motion, bvh());
+  support::write_bytes(*file_.motion, support::walk_file());
   file_.joints = {{"Spine", std::nullopt, "Back"}};
   file_.travel = {scene::Travel::Kind::none, 0};
   const Actor still = make();
@@ -345,7 +339,7 @@ TEST_F(Acting, LeavesAMotionInPlaceOrGivesItASpeed) {
 }
 
 TEST_F(Acting, StandsUpAMotionWhoseFileHasZUp) {
-  std::string file = bvh();
+  std::string file = support::walk_file();
   for (std::size_t at = 0; (at = file.find("OFFSET 0 5 0", at)) != std::string::npos; ++at)
     file.replace(at, 12, "OFFSET 0 0 5");
   file.replace(file.find("90 0 0\n"), 6, "0 0 90");
@@ -364,7 +358,7 @@ TEST_F(Acting, StandsUpAMotionWhoseFileHasZUp) {
 TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   file_.motion = folder_ / "walk.bvh";
   file_.joints = {{"Spine", std::nullopt, "Back"}};
-  std::string fast = bvh();
+  std::string fast = support::walk_file();
   fast.replace(fast.find("0 0 3 "), 6, "0 0 90 ");
   support::write_bytes(folder_ / "walk.bvh", fast);
   const Actor actor = make();

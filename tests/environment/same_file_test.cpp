@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "film/environment/environment.hpp"
+#include "physics/mesh/geometry.hpp"
 #include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 
@@ -80,6 +82,29 @@ TEST_F(SameFile, GivesAClothWhatTheBodyThenHasNotWhereTheBodyHadIt) {
     for (const Vec3& x : dress.start)
       EXPECT_TRUE(std::ranges::any_of(whole, [&](const Vec3& y) { return (x - y).norm() < kSingle; })) << x.transpose();
   }
+}
+
+TEST_F(SameFile, PutsAClothOnTheFloorWithItsBody) {
+  std::string file = rod_with_dress();
+  file.replace(file.find("0.0,0.0,0.0,1.0;; }") + 4, 3, "-1.0");
+  support::write_bytes(file_.path, file);
+  const std::vector<Vec3> in_file = make().mesh.positions;
+  support::write_bytes(folder_ / "walk.bvh", support::walk_file());
+  file_.motion = folder_ / "walk.bvh";
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  scene::Cloth& cloth = scene_.cloths.emplace_back();
+  cloth.name = "dress";
+  cloth.shape = scene::ClothShape::mesh;
+  cloth.rest = scene::ClothRest::mesh;
+  cloth.file = file_.path;
+  cloth.object = "Dress";
+  EXPECT_NEAR(mesh::bounding_box(make().mesh.positions).min().z(), 0, kSingle) << "the body alone";
+  Wearers wearers(scene_);
+  const model::Cloth dress = make_cloth(scene_, cloth, wearers).cloth;
+  ASSERT_EQ(dress.start.size(), 3u);
+  for (const Vec3& x : dress.start)
+    EXPECT_TRUE(std::ranges::any_of(in_file, [&](const Vec3& y) { return (x - y - Vec3::UnitZ()).norm() < kSingle; }))
+        << x.transpose();
 }
 
 }  // namespace

@@ -25,6 +25,7 @@
 #include "film/environment/character_context.hpp"
 #include "film/environment/clearance.hpp"
 #include "film/environment/plausibility.hpp"
+#include "film/environment/soles.hpp"
 #include "film/scene/sequence_files.hpp"
 #include "physics/mesh/topology.hpp"
 
@@ -48,9 +49,6 @@ constexpr double kMaxFootSlide = 0.07;
 
 /// Minimum vertical component of the mean unit vector along the trunk of a body that stands upright.
 constexpr double kMinUprightness = 0.7;
-
-/// put_on_floor() moves a body if the height of its soles differs from that of the file's origin by at least this [m].
-constexpr double kMaxSoleOffset = 0.05;
 
 /// Loads a motion file. A BVH file does not state its up axis. If the scene does not state it either, it is z if the
 /// body in the file stands along z, else y.
@@ -98,21 +96,6 @@ character::Clip travel(const CharacterContext& context, const scene::SkeletonMot
                     context.where, clip.name, feet, speed, context.settings.speed * speed / feet));
   }
   return std::move(traveled.clip);
-}
-
-/// Makes a retargeted motion walk on the floor: if the soles are kMaxSoleOffset or more above or below the origin of
-/// the file, moves the body so that they are at the height of the origin.
-void put_on_floor(const CharacterContext& context, Body& body) {
-  const Vec3 up = context.up();
-  std::vector<Vec3> x(body.character.mesh.positions.size());
-  character::skin(body.character, character::rest_pose(body.character), x);
-  const double soles = up.dot(std::ranges::min(x, {}, [&](const Vec3& v) { return up.dot(v); }));
-  if (std::abs(soles) < kMaxSoleOffset) return;
-  for (character::Node& node : body.character.nodes)
-    if (node.parent < 0) node.local.pretranslate(-soles * up);
-  body.warnings.push_back(
-      fmt::format("{}: {} has its soles {:.3g} m {} its origin; they are put at the height of position", context.where,
-                  body.source, std::abs(soles), soles < 0 ? "below" : "above"));
 }
 
 character::Clip retarget_motion(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion,
@@ -480,6 +463,13 @@ StandingBody make_standing_body(const scene::Scene& scene, const scene::Characte
                                 const std::string& where) {
   const CharacterContext context = make_character_context(scene, character);
   return std::visit([&](const auto& source) { return make_standing(context, source, where); }, character.source);
+}
+
+Vec3 offset_in_file(const scene::Scene& scene, const scene::Character& character) {
+  const auto* file = std::get_if<scene::CharacterFile>(&character.source);
+  if (file == nullptr || !file->motion) return Vec3::Zero();
+  const CharacterContext context = make_character_context(scene, character);
+  return floor_offset(context, make_body(context, *file).character);
 }
 
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character) {

@@ -76,6 +76,10 @@ struct StandingBody {
 /// begins with `where`.
 StandingBody make_standing_body(const scene::Scene& scene, const scene::Character& character, const std::string& where);
 
+/// How far the rest pose of a character is moved from its place in its file (floor_offset()), in the coordinates of the
+/// body [m]. Reads the file. Zero for other characters, and without a motion of another file.
+Vec3 offset_in_file(const scene::Scene& scene, const scene::Character& character);
+
 /// Size of the key frames of a character, for `weft check --plan`.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;

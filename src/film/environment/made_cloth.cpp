@@ -217,11 +217,15 @@ bool uses_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::
   return true;
 }
 
-/// Makes cloth from a mesh file. The cloth starts as the mesh. Its rest shape is the mesh, or the flat panels that its
-/// UVs define. Moves the mesh into `made`, and returns the other data of the file, such as colours and vertex groups.
+/// Makes cloth from a mesh file. The cloth starts as the mesh; if the mesh is an object in the file of a character, it
+/// is moved as the body is. Its rest shape is the mesh, or the flat panels that its UVs define. Moves the mesh into
+/// `made`, and returns the other data of the file, such as colours and vertex groups.
 assets::LoadedMesh fill_from_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
-                                       MadeCloth& made) {
+                                       Wearers& wearers, MadeCloth& made) {
   assets::LoadedMesh loaded = load_sheet(scene, cloth, where, made);
+  const Vec3 offset = wearers.offset_in_file(cloth);
+  if (!offset.isZero(0))
+    for (Vec3& x : loaded.mesh.positions) x += offset;
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh)
     rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / mesh::kMaxEdgeToHeightRatio);
@@ -309,7 +313,7 @@ MadeCloth make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Weare
       fill_from_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), made);
       break;
     case scene::ClothShape::mesh:
-      file = fill_from_mesh_file(scene, cloth, where, made);
+      file = fill_from_mesh_file(scene, cloth, where, wearers, made);
       break;
     case scene::ClothShape::pattern:
       worn_by = fill_from_pattern(scene, cloth, where, wearers, made);

@@ -1,8 +1,11 @@
 #include "film/environment/wearers.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <optional>
+#include <system_error>
+#include <variant>
 
 #include "core/error.hpp"
 #include "film/character/joints.hpp"
@@ -148,6 +151,19 @@ const garment::Wearer& Wearers::carrier(const std::string& name, const std::stri
     axes = axes_at(mesh::bounding_box(standing.mesh.positions).center(), Vec3::UnitX(), standing, up);
   }
   return made_.emplace(name, make_wearer(standing, *axes)).first->second;
+}
+
+Vec3 Wearers::offset_in_file(const scene::Cloth& cloth) {
+  if (cloth.object.empty()) return Vec3::Zero();
+  std::error_code ignored;
+  for (const scene::Character& character : scene_.characters) {
+    const auto* source = std::get_if<scene::CharacterFile>(&character.source);
+    if (source == nullptr || !std::filesystem::equivalent(source->path, cloth.file, ignored)) continue;
+    const auto known = offsets_.find(character.name);
+    if (known != offsets_.end()) return known->second;
+    return offsets_[character.name] = environment::offset_in_file(scene_, character);
+  }
+  return Vec3::Zero();
 }
 
 }  // namespace weft::environment

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "core/types.hpp"
 #include "film/garment/wearer.hpp"
 #include "film/scene/scene.hpp"
 
@@ -25,11 +26,15 @@ class Wearers {
   /// that define its axes, its origin is below the middle of its bounding box, and its x axis is that of the world.
   /// Throws Error(scene_invalid) if it lacks bones.
   const garment::Wearer& carrier(const std::string& name, const std::string& where);
+  /// offset_in_file() of the first character from whose file a cloth has an `object`; zero if there is none. The cloth
+  /// moves with the body, so that it stays around it.
+  Vec3 offset_in_file(const scene::Cloth& cloth);
 
  private:
   const scene::Scene& scene_;
   std::map<std::string, garment::Wearer> made_;
-  std::set<std::string> without_axes_;  // characters that lack the joints that define their axes
+  std::map<std::string, Vec3> offsets_;  // by the name of the character
+  std::set<std::string> without_axes_;   // characters that lack the joints that define their axes
 };
 
 }  // namespace weft::environment
