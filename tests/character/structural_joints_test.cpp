@@ -143,5 +143,16 @@ TEST(Knuckles, AreThoseOfIndexAndLittleFinger) {
   }
 }
 
+// A thumb on the wrong side would turn the palm by 180 degrees.
+TEST(Knuckles, AreUnknownIfTheThumbIsAsLongAsAFinger) {
+  for (const double rounding : {-1e-7, 1e-7}) {
+    Sticks s = make_sticks(false, false);
+    const Index palm = s.of("LeftHand"), thumb = palm + 1, middle = palm + 5;
+    const auto root = [&](Index finger) { return s.body.nodes[at(finger)].local.translation().norm(); };
+    s.body.nodes[at(thumb + 1)].local.translation().x() = root(middle) + 0.08 - root(thumb) + rounding;
+    EXPECT_EQ(find_knuckles(s.body, palm)[0], -1) << rounding;
+  }
+}
+
 }  // namespace
 }  // namespace weft::character

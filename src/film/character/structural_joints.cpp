@@ -24,9 +24,10 @@ constexpr int kMinFingers = 3;
 /// below 9/13, because some recordings have collarbones of 13 cm and forearms of 9 cm. It is above 1/2, because the
 /// part of a hand up to the fingers is shorter than half a forearm.
 constexpr double kMinOuterElbowRatio = 0.6;
-/// kMaxHalfDifference: maximum relative difference of the two halves of a split bone. kMaxLimbBoneRatio: maximum ratio
-/// between the lengths of upper and lower bone of a limb (1.0 to 1.3 in adults).
-constexpr double kMaxHalfDifference = 0.01, kMaxLimbBoneRatio = 1.5;
+/// kMaxEqualDifference: maximum relative difference of lengths that count as equal, such as those of the two halves of
+/// a split bone; covers the rounding of files. kMaxLimbBoneRatio: maximum ratio between the lengths of upper and lower
+/// bone of a limb (1.0 to 1.3 in adults).
+constexpr double kMaxEqualDifference = 0.01, kMaxLimbBoneRatio = 1.5;
 /// A node above the arms that neither influences skin nor moves belongs to the neck if its bone is shorter than this
 /// fraction of the leg length. A longer bone is that of the head.
 constexpr double kMaxNeckBone = 0.17;
@@ -221,7 +222,7 @@ class StructuralJointFinder {
   void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
     for (std::size_t i = 0; i + 4 <= last; ++i) {
       const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };
-      const auto same = [](double a, double b) { return std::abs(a - b) < kMaxHalfDifference * std::max(a, b); };
+      const auto same = [](double a, double b) { return std::abs(a - b) < kMaxEqualDifference * std::max(a, b); };
       const double ratio = bone(3) / bone(1);
       if (!same(bone(1), bone(2)) || !same(bone(3), bone(4)) ||
           !(ratio > 1 / kMaxLimbBoneRatio && ratio < kMaxLimbBoneRatio))
@@ -338,8 +339,11 @@ std::array<Index, 2> find_knuckles(const Character& character, Index hand) {
   }
   constexpr std::size_t kMinFingerChains = 4;
   if (fingers.size() < kMinFingerChains) return {-1, -1};
-  const Index thumb = *std::ranges::min_element(fingers, {}, [&](Index f) { return chain_length[f]; });
+  const auto length = [&](Index finger) { return chain_length[finger]; };
+  const Index thumb = std::ranges::min(fingers, {}, length);
   std::erase(fingers, thumb);
+  const double next = length(std::ranges::min(fingers, {}, length));
+  if (next - length(thumb) < kMaxEqualDifference * next) return {-1, -1};
   std::array<Index, 2> ends{-1, -1};
   double widest = 0;
   for (const Index a : fingers)

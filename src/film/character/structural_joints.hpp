@@ -22,9 +22,9 @@ namespace weft::character {
 /// all -1 if there are not two arms and two legs, or if the left side cannot be determined.
 std::vector<Index> find_joints_by_structure(const Character& character);
 
-/// First nodes of the index and the little finger; -1 if fewer than four chains of at least two nodes leave the hand.
-/// The thumb is the shortest chain. Index and little finger are the two other chains whose first nodes are farthest
-/// apart; the index is on the side of the thumb.
+/// First nodes of the index and the little finger; -1 if fewer than four chains of at least two nodes leave the hand,
+/// or if the two shortest of them are equal, as in hands of cartoons. The thumb is the shortest chain. Index and little
+/// finger are the two other chains whose first nodes are farthest apart; the index is on the side of the thumb.
 std::array<Index, 2> find_knuckles(const Character& character, Index hand);
 
 }  // namespace weft::character
