@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "film/assets/character_file.hpp"
+#include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::assets {
@@ -73,6 +74,18 @@ TEST_F(BvhChannels, MayBeInOneLineWithTheirJoints) {
   hierarchy_on_one_line_ = true;
   EXPECT_EQ(channel("Hips", channels, frames).position.values, (std::vector<Vec3>{{1, 0, 3}, {4, 0, 6}}));
   EXPECT_EQ(channel("Spine", channels, frames).position.values, (std::vector<Vec3>{{0, 6, 1}, {0, 7, 1}}));
+}
+
+TEST_F(BvhChannels, OfSeveralSkeletonsOrWithoutFramesAreRefused) {
+  const auto expect_refused = [&](const std::string& from, const std::string& to, const std::string& words) {
+    std::string file = support::walk_file();
+    file.replace(file.find(from), from.size(), to);
+    support::write_bytes(folder_ / "motion.bvh", file);
+    support::expect_error(ExitCode::asset_unreadable, words, [&] { load_motion(folder_ / "motion.bvh", {}, "here"); });
+  };
+  expect_refused("Frames: 2", "frames:0", "motion.bvh: expected at least one frame, got Frames: 0");
+  expect_refused("MOTION", "ROOT Other {\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Yrotation Xrotation\n}\nMOTION",
+                 "motion.bvh: expected one skeleton, got 2 (ROOT); export each to a file of its own");
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "film/assets/character_reader.hpp"
 #include "film/assets/import.hpp"
 #include "film/assets/source.hpp"
+#include "film/assets/text_file.hpp"
 
 namespace weft::assets {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr int kUsualUp = 1;
 
 ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const MeshChoice& choice) {
+  if (is_bvh(file)) check_bvh(file);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, !with_mesh);
   return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path(), choice);

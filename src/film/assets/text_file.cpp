@@ -1,11 +1,14 @@
 #include "film/assets/text_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <charconv>
 #include <cstddef>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -190,6 +193,33 @@ std::string usual_bvh(std::string_view text) {
 }
 
 }  // namespace
+
+void check_bvh(const std::filesystem::path& file) {
+  const std::string bytes = read_bytes(file);
+  std::string_view text = bytes;
+  bool in_hierarchy = true;
+  int roots = 0;
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(line.size() + 1, text.size()));
+    if (in_hierarchy) {
+      for (const std::string& statement : statements_of(line)) {
+        const std::string usual = usual_bvh_statement(statement);
+        roots += usual.starts_with("ROOT") ? 1 : 0;
+        if (usual == "MOTION") in_hierarchy = false;
+      }
+    } else if (const std::string usual = usual_bvh_header(line); usual.starts_with("Frames:")) {
+      const std::string_view count = trimmed(std::string_view(usual).substr(usual.find(':') + 1));
+      double frames = 1;
+      std::from_chars(count.data(), count.data() + count.size(), frames);
+      if (!(frames >= 1)) throw std::runtime_error(fmt::format("expected at least one frame, got Frames: {}", count));
+      break;
+    }
+  }
+  if (roots > 1)
+    throw std::runtime_error(
+        fmt::format("expected one skeleton, got {} (ROOT); export each to a file of its own", roots));
+}
 
 std::optional<std::string> readable_text(const std::filesystem::path& file) {
   const std::string ending = ending_of(file);

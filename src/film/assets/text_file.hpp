@@ -18,4 +18,8 @@ namespace weft::assets {
 ///   positions of others.
 std::optional<std::string> readable_text(const std::filesystem::path& file);
 
+/// Throws std::runtime_error if a BVH file has no frames, which assimp 5.2 takes for 2^32 frames, or several skeletons,
+/// which it refuses as a missing word "MOTION".
+void check_bvh(const std::filesystem::path& file);
+
 }  // namespace weft::assets
