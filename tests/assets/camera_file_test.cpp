@@ -116,6 +116,10 @@ TEST_F(CameraFile, MayBeAtSeveralNodes) {
   document_["nodes"][0]["children"].push_back(2);
   EXPECT_LT((load("eye").positions.at(0) - Vec3(0, 1, 3)).norm(), kSingle);
   EXPECT_LT((load("other").positions.at(0) - Vec3(7, 0, 0)).norm(), kSingle);
+  document_["nodes"][2]["name"] = "eye";
+  EXPECT_LT((load("eye").positions.at(0) - Vec3(0, 1, 3)).norm(), kSingle);
+  EXPECT_LT((load("eye_2").positions.at(0) - Vec3(7, 0, 0)).norm(), kSingle) << "the number of its node";
+  expect_refused("choose one of \"eye\", \"eye_2\" by object");
 }
 
 // A channel of KHR_animation_pointer has no node. Here, its values are also longer than translations.

@@ -113,19 +113,26 @@ bool name_nodes_apart(Json& gltf) {
   for (std::size_t n = 0; n < nodes.size(); ++n)
     if (!is_referred[n] && !nodes[n].contains("mesh") && !nodes[n].contains("camera")) order.push_back(n);
   std::set<std::string> names;  // of joints, animated nodes and cameras
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    if (!is_referred[n] && nodes[n].contains("camera")) names.insert(value_or<std::string>(nodes[n], "name", ""));
   bool changed = false;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const std::size_t n = order[k];
-    if (!nodes[n].is_object()) continue;
-    std::string name = value_or<std::string>(nodes[n], "name", "");
-    if (name.empty() && k >= joints) continue;  // assimp gives it a name of its own
-    if (is_referred[n] ? !name.empty() && names.insert(name).second : !names.contains(name)) continue;
+  const auto rename = [&](std::size_t n, std::string name) {
     name = fmt::format("{}_{}", name.empty() ? "joint" : name, n);
     while (!names.insert(name).second) name += '_';
     nodes[n]["name"] = name;
     changed = true;
+  };
+  std::vector<std::size_t> equal;  // cameras with the name of an earlier one
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (!is_referred[n] && nodes[n].contains("camera"))
+      if (const auto name = value_or<std::string>(nodes[n], "name", ""); !name.empty() && !names.insert(name).second)
+        equal.push_back(n);
+  for (const std::size_t n : equal) rename(n, value_or<std::string>(nodes[n], "name", ""));
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const std::size_t n = order[k];
+    if (!nodes[n].is_object()) continue;
+    const auto name = value_or<std::string>(nodes[n], "name", "");
+    if (name.empty() && k >= joints) continue;  // assimp gives it a name of its own
+    if (is_referred[n] ? !name.empty() && names.insert(name).second : !names.contains(name)) continue;
+    rename(n, name);
   }
   return changed;
 }

@@ -25,8 +25,9 @@ bool copy_shared_parts(nlohmann::json& gltf);
 
 /// Gives each joint of a skin and each animated node without a camera a name that no other of them has, nor a camera,
 /// nor any other node without a mesh: assimp names the node of a bone, a channel or a camera by its name alone. Of
-/// several nodes with one name, the first keeps it: cameras, then joints, then animated nodes. Names of cameras and of
-/// meshes that do not move stay, as scenes state them. Returns whether a name has changed.
+/// several nodes with one name, the first keeps it: cameras, then joints, then animated nodes. Names of meshes that do
+/// not move stay, as scenes state them; so does the name of a camera, except if an earlier camera has it. The others
+/// get their number in the file after their name. Returns whether a name has changed.
 bool name_nodes_apart(nlohmann::json& gltf);
 
 }  // namespace weft::assets
