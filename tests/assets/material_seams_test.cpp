@@ -1,9 +1,10 @@
-// Meshes that assimp divides by their materials.
+// Meshes that assimp divides by their materials or primitives.
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "assets/small_files.hpp"
 #include "film/assets/character_file.hpp"
 #include "film/assets/mesh_file.hpp"
 #include "film/character/pose.hpp"
@@ -50,6 +51,23 @@ TEST_F(MaterialSeams, OfMeshesAreClosed) {
   const LoadedMesh rod = load_mesh(folder_ / "rod.x", {}, "here");
   EXPECT_EQ(rod.mesh.positions.size(), 5U);
   EXPECT_NEAR(mesh::bounding_box(rod.mesh.positions).max().y(), 2, 1e-6) << "where the bone of its first part holds it";
+}
+
+// assimp calls the parts of "Body" in glTF "Body-0" and "Body-1".
+TEST_F(MaterialSeams, LeaveAMeshItsName) {
+  std::string gltf = gltf_tetrahedron();
+  const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})", start = R"({"primitives":[)";
+  gltf.replace(gltf.find(start), start.size(), R"({"name":"Body","primitives":[)" + primitive + ",");
+  support::write_bytes(folder_ / "body.gltf", gltf);
+  const auto triangles = [&](const std::string& name) {
+    const MeshChoice choice{.only = {name}, .without = {}, .elsewhere = {}};
+    const auto count =
+        load_character(folder_ / "body.gltf", {}, "here", choice).character.mesh.topology.triangles.size();
+    EXPECT_EQ(load_mesh(folder_ / "body.gltf", {}, "here", name).mesh.topology.triangles.size(), count);
+    return count;
+  };
+  EXPECT_EQ(triangles("Body-1"), 4U);
+  EXPECT_EQ(triangles("Body"), 8U);
 }
 
 }  // namespace

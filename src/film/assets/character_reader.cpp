@@ -93,16 +93,17 @@ class CharacterReader {
     std::set<std::string> names;
     for (std::size_t n = 0; n < nodes_.size(); ++n) {
       placing_of_skin_.reset();
-      for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
+      for (unsigned k = 0; k < nodes_[n]->mNumMeshes; ++k) {
+        const unsigned m = nodes_[n]->mMeshes[k];
         if (m >= scene_.mNumMeshes)
           throw std::runtime_error(fmt::format("node \"{}\": expected one of {} meshes, got number {}",
                                                character_.nodes[n].name, scene_.mNumMeshes, m));
-        const aiMesh& mesh = *scene_.mMeshes[m];
-        names.insert({character_.nodes[n].name, mesh.mName.C_Str()});
-        if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str()))
-          read_mesh(mesh, static_cast<Index>(n));
+        const std::set<std::string> own = names_of_mesh(scene_, *nodes_[n], k);
+        names.insert(own.begin(), own.end());
+        if (is_chosen(own))
+          read_mesh(*scene_.mMeshes[m], static_cast<Index>(n));
         else
-          targets_.left_out.insert({character_.nodes[n].name, mesh.mName.C_Str()});
+          targets_.left_out.insert(own.begin(), own.end());
       }
     }
     check_choice(names);
@@ -118,9 +119,10 @@ class CharacterReader {
   }
 
  private:
-  bool is_chosen(const std::string& node, const std::string& mesh) const {
+  /// `own`: the names of a mesh, as of names_of_mesh().
+  bool is_chosen(const std::set<std::string>& own) const {
     const auto names_it = [&](const std::vector<std::string>& list) {
-      return std::ranges::any_of(list, [&](const std::string& name) { return name == node || name == mesh; });
+      return std::ranges::any_of(list, [&](const std::string& name) { return own.contains(name); });
     };
     return (choice_.only.empty() || names_it(choice_.only)) && !names_it(choice_.without) &&
            !names_it(choice_.elsewhere);

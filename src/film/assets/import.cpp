@@ -106,6 +106,13 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
   return *scene;
 }
 
+std::set<std::string> names_of_mesh(const aiScene& scene, const aiNode& node, unsigned k) {
+  const std::string mesh = scene.mMeshes[node.mMeshes[k]]->mName.C_Str(), number = fmt::format("-{}", k);
+  std::set<std::string> names{node.mName.C_Str(), mesh};
+  if (node.mNumMeshes > 1 && mesh.ends_with(number)) names.insert(mesh.substr(0, mesh.size() - number.size()));
+  return names;
+}
+
 std::optional<double> metres_per_unit(const aiScene& scene) {
   if (scene.mMetaData == nullptr) return std::nullopt;
   // assimp 5.2 stores a float, other versions a double.

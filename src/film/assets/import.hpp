@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 
 struct aiAnimMesh;
+struct aiNode;
 struct aiScene;
 namespace Assimp {
 class Importer;
@@ -23,6 +25,11 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
 
 /// Decodes escapes such as %20 (RFC 3986), which glTF and Collada use in names of files.
 std::string percent_decode(const std::string& name);
+
+/// The names by which a scene can choose mesh number `k` of a node, which must exist: that of the node and that of the
+/// mesh. assimp divides a mesh of glTF by its primitives, and calls the parts of "Body" "Body-0", "Body-1", ...: the
+/// name without the number chooses all of them.
+std::set<std::string> names_of_mesh(const aiScene& scene, const aiNode& node, unsigned k);
 
 /// The unit that an FBX file states [m]; nullopt if the number is not finite or not positive. Also nullopt for other
 /// formats: assimp converts them to metres if it finds their unit.

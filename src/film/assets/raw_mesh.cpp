@@ -191,10 +191,11 @@ RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& obje
   for (const auto& [node, to_world] : nodes) {
     const aiMesh* first = nullptr;  // first mesh of the node that is read
     Transform placement_of_first = Transform::Identity();
-    for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
-      const aiMesh& part = *scene->mMeshes[m];
-      names.insert({node->mName.C_Str(), part.mName.C_Str()});
-      if (!object.empty() && object != node->mName.C_Str() && object != part.mName.C_Str()) continue;
+    for (unsigned k = 0; k < node->mNumMeshes; ++k) {
+      const aiMesh& part = *scene->mMeshes[node->mMeshes[k]];
+      const std::set<std::string> own = names_of_mesh(*scene, *node, k);
+      names.insert(own.begin(), own.end());
+      if (!object.empty() && !own.contains(object)) continue;
       // Rounding errors of two placements would separate parts of one mesh.
       const bool is_same = first != nullptr && share_bone(*first, part);
       const Transform placement = is_same ? placement_of_first : placement_of(part, to_world, placed);
