@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weft::character {
 namespace {
@@ -103,23 +104,43 @@ double BlendedBody::Part::value(const Vec3& p) const {
   return cut ? -smooth_min(-whole, -cut(p), blend) : whole;
 }
 
+void BlendedBody::append(Part part) {
+  if (groups_.empty()) begin_group();
+  Group& group = groups_.back();
+  group.bounds.extend(part.shape.bounds());
+  group.max_blend = std::max(group.max_blend, part.blend);
+  group.paired = group.paired || part.paired;
+  parts_.push_back(std::move(part));
+  group.end = parts_.size();
+}
+
 double BlendedBody::operator()(const Vec3& p) const {
   constexpr double nothing = std::numeric_limits<double>::max();
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
-  for (const Part& part : parts_) {
-    // A part has no effect if its distance exceeds the blend width plus f (for a carved part, minus f).
-    const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
-    const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
-    double value = nothing;
-    if (is_near(p)) value = part.value(p);
-    // Blends a paired part with its mirror image first, so that the field is symmetric in x.
-    if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(max_distance, value + part.blend)) {
-      const double image = part.value(mirrored);
-      value = value == nothing ? image : smooth_min(value, image, part.blend);
+  std::size_t next = 0;
+  for (const Group& group : groups_) {
+    const std::size_t first = std::exchange(next, group.end);
+    // A group is skipped only if all its parts have no effect by the test below. Rounding cannot change this, because
+    // rounded sums and distances to boxes are monotonic: no part is nearer than the group, or has a larger limit.
+    const double max_group_distance = f == nothing ? nothing : group.max_blend + std::abs(f);
+    const auto is_far = [&](const Vec3& at) { return group.bounds.exteriorDistance(at) >= max_group_distance; };
+    if (is_far(p) && (!group.paired || is_far(mirrored))) continue;
+    for (std::size_t k = first; k < group.end; ++k) {
+      const Part& part = parts_[k];
+      // A part has no effect if its distance exceeds the blend width plus f (for a carved part, minus f).
+      const double max_distance = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
+      const auto is_near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < max_distance; };
+      double value = nothing;
+      if (is_near(p)) value = part.value(p);
+      // Blends a paired part with its mirror image first, so that the field is symmetric in x.
+      if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(max_distance, value + part.blend)) {
+        const double image = part.value(mirrored);
+        value = value == nothing ? image : smooth_min(value, image, part.blend);
+      }
+      if (value == nothing) continue;
+      f = part.carved ? -smooth_min(-f, value, part.blend) : f == nothing ? value : smooth_min(f, value, part.blend);
     }
-    if (value == nothing) continue;
-    f = part.carved ? -smooth_min(-f, value, part.blend) : f == nothing ? value : smooth_min(f, value, part.blend);
   }
   return f;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <functional>
 #include <utility>
 #include <vector>
@@ -66,14 +67,18 @@ class BlendedBody {
   /// A scalar field [m] that cuts a part; negative where the part remains.
   using Cut = std::function<double(const Vec3&)>;
 
+  /// Begins a group: the parts that follow, up to the next group, are near each other. Groups do not affect the field.
+  /// The parts of a group that is far from a point are skipped together.
+  void begin_group() { groups_.push_back({.end = parts_.size()}); }
+
   /// Adds a part. A paired part exists twice, mirrored at x = 0. If `cut` is given, the part exists only where `cut` is
   /// negative, with an edge that is rounded over the width `blend` [m].
   void add(Loft part, double blend, bool paired, Cut cut = {}) {
-    parts_.push_back({std::move(part), blend, paired, false, std::move(cut)});
+    append({std::move(part), blend, paired, false, std::move(cut)});
   }
 
   /// Subtracts a shape from all preceding parts, with an edge that is rounded over the width `blend` [m].
-  void carve(Loft part, double blend, bool paired) { parts_.push_back({std::move(part), blend, paired, true, {}}); }
+  void carve(Loft part, double blend, bool paired) { append({std::move(part), blend, paired, true, {}}); }
 
   /// Value of the field at p [m], negative inside.
   double operator()(const Vec3& p) const;
@@ -88,7 +93,17 @@ class BlendedBody {
 
     double value(const Vec3& p) const;
   };
+  struct Group {
+    std::size_t end = 0;   ///< index after its last part
+    Box3 bounds = {};      ///< of its parts, without mirror images
+    double max_blend = 0;  ///< largest blend width of its parts
+    bool paired = false;   ///< whether it has paired parts
+  };
+
+  void append(Part part);
+
   std::vector<Part> parts_;
+  std::vector<Group> groups_;
 };
 
 }  // namespace weft::character

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -122,7 +124,9 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   return at;
 }
 
-Character make_mannequin(const MannequinBuild& build) {
+namespace {
+
+Character build_character(const MannequinBuild& build) {
   const auto joints = mannequin_joints(build);
   Character character;
   for (std::size_t j = 0; j < kJointCount; ++j) {
@@ -138,6 +142,21 @@ Character make_mannequin(const MannequinBuild& build) {
   character.mesh = std::move(skin.mesh);
   character.coloring = paint_figure(character.mesh, build);
   return character;
+}
+
+}  // namespace
+
+Character make_mannequin(const MannequinBuild& build) {
+  static std::mutex mutex;
+  static MannequinBuild last_build;
+  static std::optional<Character> last;
+  const std::lock_guard lock(mutex);
+  if (!last || build != last_build) {
+    last.reset();
+    last = build_character(build);
+    last_build = build;
+  }
+  return *last;
 }
 
 }  // namespace weft::character

@@ -179,10 +179,14 @@ BlendedBody mannequin_body(const MannequinBuild& build) {
   add_bust_and_seat(body, scale);
   add_shoulders(body, scale);
   add_neck(body, scale);
+  body.begin_group();
   add_head(body, scale);
+  body.begin_group();
   const LoftFrame arm = arm_frame(at(Joint::left_upper_arm), at(Joint::left_hand));
   add_arm(body, scale, arm);
+  body.begin_group();
   add_hand(body, scale, arm);
+  body.begin_group();
   add_leg(body, scale);
   add_foot(body, scale, at(Joint::left_foot));
   return body;

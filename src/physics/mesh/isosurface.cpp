@@ -25,7 +25,7 @@ class Lattice {
     values_.assign(static_cast<std::size_t>(nodes_[0]) * nodes_[1] * nodes_[2], std::nan(""));
   }
 
-  static constexpr int kBlock = 4;  ///< number of cells along each side of a block
+  static constexpr int kBlock = 4;  ///< number of cells along each side of a block; even
 
   int nodes(int axis) const { return nodes_[axis]; }
   std::int64_t index(int i, int j, int k) const {
@@ -40,11 +40,11 @@ class Lattice {
   }
 
   /// Whether the zero set may pass through the block whose lowest node is (i, j, k). False if |field| at the centre of
-  /// the block is so large that a field with a gradient below 3 (see Field) has no zero in the block.
-  bool may_cross(int i, int j, int k) const {
+  /// the block, which is a node, is so large that a field with a gradient below 3 (see Field) has no zero in the block.
+  bool may_cross(int i, int j, int k) {
+    constexpr int half = kBlock / 2;
     const double half_diagonal = std::sqrt(3.0) / 2 * kBlock * cell_;
-    const double half = kBlock / 2.0;
-    return std::abs(field_(origin_ + cell_ * Vec3(i + half, j + half, k + half))) < 3 * half_diagonal;
+    return std::abs(value(i + half, j + half, k + half)) < 3 * half_diagonal;
   }
 
  private:

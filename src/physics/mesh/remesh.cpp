@@ -90,7 +90,8 @@ class Remesher {
 
   /// Collects the triangles around each vertex, the edges, and the vertices on the border.
   void update_connectivity() {
-    around_.assign(x_.size(), {});
+    around_.resize(x_.size());
+    for (std::vector<Index>& triangles : around_) triangles.clear();  // keeps their memory
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       for (const Index v : triangles_[t]) around_[v].push_back(static_cast<Index>(t));
     }
@@ -104,6 +105,7 @@ class Remesher {
   /// Vertices that share a triangle with v, ascending, without duplicates.
   std::vector<Index> neighbours(Index v) const {
     std::vector<Index> list;
+    list.reserve(2 * around_[v].size());
     for (const Index t : around_[v]) {
       for (const Index w : triangles_[t]) {
         if (w != v) list.push_back(w);
@@ -133,6 +135,8 @@ class Remesher {
   /// Whether `gone` may be merged into `keep` without a change of topology (link condition).
   bool link_allows(Index keep, Index gone, bool on_border) const {
     if (border_[gone] && !on_border) return false;
+    // Earlier collapses may have removed one of the vertices.
+    if (around_[keep].empty() || around_[gone].empty()) return false;
     const std::vector<Index> a = neighbours(keep), b = neighbours(gone);
     if (!std::binary_search(a.begin(), a.end(), gone)) return false;
     std::vector<Index> common;
