@@ -164,7 +164,8 @@ class Engine {
   double step_ = 0;                                 // h [s]
   std::span<const Vec3> x_t0_;                      // start of the step
   std::vector<PinchedPairs::Push> pinched_pushes_;  // pushes of pinched cloth in this step
-  std::vector<CornerPair> pushed_pairs_;  // failing() at each call of push_apart() in this step, if not exempt
+  std::vector<CornerPair> pushed_pairs_;  // failing() at each call of push_apart() in this step, if not exempt; a pair
+                                          // that was pushed n times gets n contacts at each corner
   std::vector<Proximity> proximities_;    // near pairs at the expected end of the step, or at its start
   std::span<const CornerPair> failing_;   // of the last call of find_failing()
 };
