@@ -220,9 +220,7 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
   // of the energy: positive before the minimum along delta, negative after it. If contacts begin or compressed edges
   // come under tension on the way, the product becomes strongly negative; full steps would then oscillate. If friction
-  // and compression make the matrix too stiff, the product hardly decreases. Then the search lengthens the step by 1 +
-  // `slope_left`, which multiplies the error of forces with an exact derivative by -`slope_left`. (A factor of 2 would
-  // only change the sign of this error, iteration after iteration.)
+  // and compression make the matrix too stiff, the product hardly decreases.
   const std::size_t n = x_.size();
   const double start_slope = dot(residual_, delta_);
   line_start_.swap(x_);
@@ -241,7 +239,7 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
       low = fraction, low_slope = slope;
     if (high == 0) {
       if (trial == numerics.newton.line_trials / 2) break;
-      fraction *= 1 + numerics.newton.slope_left;
+      fraction *= 2;
     } else {
       // Regula falsi, kept away from the ends of the bracket.
       const double guess = low + (high - low) * low_slope / (low_slope - high_slope);
