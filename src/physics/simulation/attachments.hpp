@@ -53,7 +53,7 @@ class Attachments {
   /// The load of each attachment at the end of the last accepted step.
   std::vector<AttachmentLoad> measure() const;
 
-  /// Copies the state of attachments of the same name. `cloths[k]`: number, in this object, of cloth k of `there`.
+  /// Copies the state of attachments of the same name. Cloth k of `there` has the number `cloths[k]` in this object.
   void copy_state_from(const Attachments& there, std::span<const std::size_t> cloths);
 
   template <class Archive>

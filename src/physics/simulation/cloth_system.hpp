@@ -26,11 +26,11 @@ struct LockLinearisation;
 
 namespace weft::simulation {
 
-/// Numbers the particles of all cloths consecutively, in the order of the model. After them come four particles for
-/// each body that forces move: its frame (mesh::RigidFrame). A part is a cloth or such a frame. Besides their
-/// arguments, forces depend on state that update_rest_shapes(), update_enclosed_air(), set_held_particles() and
-/// accept() update: rest shapes of cloth that is being sewn, rope lengths, ties, enclosed air, and the set of held
-/// particles.
+/// Numbers the particles of all cloths consecutively, in the order of the model. After them come the four particles of
+/// the frame (mesh::RigidFrame) of each body that forces move. A part is a cloth or such a frame. Forces depend on
+/// their arguments and on a state: rest shapes of cloth that is being sewn, rope lengths, ties, enclosed air, and the
+/// set of held particles. update_rest_shapes(), finish_step(), update_enclosed_air(), set_held_particles() and accept()
+/// update this state.
 class ClothSystem {
  public:
   explicit ClothSystem(const model::Model& model);
@@ -63,8 +63,8 @@ class ClothSystem {
   /// Number of ranges that ranges() would have with an unlimited number of threads.
   std::size_t largest_range_count() const;
 
-  /// Adds the forces on the part with number `part` (or on its range `at.range`), without their
-  /// weight. `at` has positions and velocities of all particles.
+  /// Adds the forces on the part with number `part` (or on its range `at.range`), except weight and the force of
+  /// enclosed air. `at` has positions and velocities of all particles.
   void add_forces(std::size_t part, const forces::Evaluation& at) const;
 
   /// Per cloth, the linearisation of the forces that limit its extension (thread locks, forces::StretchLimit); empty
@@ -77,24 +77,26 @@ class ClothSystem {
   void add_lock_differences(std::span<const Vec3> x, const LockLinearisations& linearisations,
                             std::span<Vec3> force) const;
 
-  /// Fills `assembly` with rate² M and the stiffness that does not depend on positions. Only set_held_particles() and
-  /// update_rest_shapes() change this stiffness.
+  /// Fills `assembly` with the masses times rate² (`rate` in 1/s) and the stiffness that does not depend on positions.
+  /// Held particles and rope lengths determine this stiffness; set_held_particles() and update_rest_shapes() return
+  /// whether it may have changed.
   void fill_constant(double rate, solver::Assembly& assembly) const;
 
   /// An empty system with the sparsity pattern of these forces.
   solver::LinearSystem make_linear_system() const;
 
-  /// Before a step: updates rope lengths, ties, and the rest shapes of cloth that is being sewn to time t of its stage
-  /// (integrator::Stepper) [s since the start of the run]. Returns whether the constant part of the stiffness has
-  /// changed since the last call.
+  /// Call it before a step. `t`: time of the step's stage (integrator::Stepper) [s since the start of the run]. Updates
+  /// rope lengths, ties, and the rest shapes of cloth that is being sewn to this time. Returns whether the constant
+  /// part of the stiffness has changed since the last call.
   bool update_rest_shapes(double t);
-  /// After a step that ends at time t [s since the start of the run]: as update_rest_shapes(t); also updates given
-  /// pressures and amounts of air. With the midpoint rule, the stage is earlier than t.
+  /// Call it after a step that ends at time t [s since the start of the run]. Updates the same values as
+  /// update_rest_shapes(t), because the stage of the midpoint rule is earlier than the end of the step. Also updates
+  /// the pressures and amounts of air that the model gives.
   void finish_step(double t);
 
   /// Whether rope lengths, sewing, ties, and given pressures or amounts of air are the same at t0 and t1, and no
-  /// triangle catches up after the sewing. Both are scene times [s]; update_rest_shapes() takes the time since the
-  /// start of the run.
+  /// triangle catches up (see accept()). `t0` and `t1` are scene times [s], but update_rest_shapes() takes the time
+  /// since the start of the run.
   bool is_constant_between(double t0, double t1) const;
 
   /// Updates the enclosed air for the step with its stage at time t [s since the start of the run]; call it after
@@ -103,25 +105,25 @@ class ClothSystem {
   const Inflation& inflation() const { return inflation_; }
   Inflation& inflation() { return inflation_; }
 
-  /// Sets which particles pins hold. Returns whether this set, and with it the bending stiffness beside pins, has
-  /// changed.
+  /// Sets the particles that pins hold. Returns whether this set has changed; the bending stiffness beside pins depends
+  /// on it.
   bool set_held_particles(std::span<const integrator::HeldParticle> pinned);
 
   /// Cloth that was sewn wider than its pattern, because its threads would have locked.
   struct Widening {
     std::size_t cloth;  ///< number of the cloth
     double fraction;    ///< TriangleMembrane::Widening::fraction
-    Vec3 place;         ///< of the particle of this widening [m]
+    Vec3 place;         ///< position of TriangleMembrane::Widening::particle [m]
   };
-  /// Accepts a step over h [s] that ends with particles at x [m]: updates which ties of tearable
-  /// seams hold, tears overloaded ones, and stops the sewing of triangles whose threads lock. After
-  /// the sewing, triangles whose threads are no longer locked catch up. Returns the cloths whose
-  /// sewing ended with this step, if they were widened.
+  /// Accepts a step over h [s] that ends with particles at x [m]. Updates the states of the ties of tearable seams
+  /// (Ties::accept()). Stops the sewing of triangles whose threads lock. If the threads of such a triangle no longer
+  /// lock, the triangle catches up: its rest shape approaches the pattern, also after the end of the sewing. Returns
+  /// the cloths whose sewing ended with this step, if they were widened.
   std::vector<Widening> accept(std::span<const Vec3> x, double h);
   /// The load of each seam that can tear.
   std::vector<AttachmentLoad> measure_seams(std::span<const Vec3> x) const;
-  /// Copies the state of sewing, and which ties of seams hold or are torn. `cloths[k]`: number, in this object, of
-  /// cloth k of `there`.
+  /// Copies the state of sewing, and which ties of seams hold or are torn. Cloth k of `there` has the number
+  /// `cloths[k]` in this object.
   void copy_sewing_from(const ClothSystem& there, std::span<const std::size_t> cloths);
 
   /// Saves or restores rope lengths, the progress of sewing, torn seams, and enclosed air.
@@ -143,7 +145,7 @@ class ClothSystem {
     std::size_t cloth;  ///< number of the cloth
     double ratio;       ///< extension / limit of the cloth; 0 if no thread is extended
     double extension;   ///< length / rest length − 1
-    Vec3 place;
+    Vec3 place;         ///< [m]
   };
   /// One per cloth that has a limit of extension, in the order of the model.
   std::vector<Overstretch> overstretch(std::span<const Vec3> x) const;
@@ -161,7 +163,7 @@ class ClothSystem {
   void divide_into_ranges();
   void set_rest_time(double t);
 
-  std::vector<Index> first_;  // of each part, then the number of all particles
+  std::vector<Index> first_;  // first particle of each part, then the number of all particles
   std::vector<double> masses_;
   std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per part
   std::vector<Range> ranges_;                                                // in the order of particles
@@ -172,7 +174,7 @@ class ClothSystem {
   struct Sewing {
     std::size_t cloth;
     double begin, duration;  // [s]; begin: since the start of the run
-    double progress = -1;    // of the rest shape: 0: start shape, 1: flat panels; −1: not set yet
+    double progress = -1;    // of the rest shape, from 0 (start shape) to 1 (flat panels); −1: not set yet
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;                      // nullptr if the cloth has none
     forces::StretchLimit* limit;               // nullptr if the cloth has none
@@ -188,7 +190,7 @@ class ClothSystem {
   struct KeyedRope {
     forces::RopeForce* force;
     double length;              // rest length at construction [m]
-    motion::Spline<1> lengths;  // over time
+    motion::Spline<1> lengths;  // rest length [m] over scene time [s]
   };
   std::vector<KeyedRope> keyed_ropes_;
   // Whether the constant part of the stiffness has changed since the last update_rest_shapes().

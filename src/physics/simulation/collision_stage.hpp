@@ -55,8 +55,8 @@ class CollisionStage {
   void untangle(std::span<const integrator::HeldParticle> held, std::span<const std::size_t> put_on,
                 SystemState& start);
 
-  /// Copies which cloth is pinched from a stage that this one replaces. `cloths[k]`: number, in
-  /// this stage, of cloth k of `before`.
+  /// Copies which cloth is pinched from a stage that this one replaces. Cloth k of `before` has the
+  /// number `cloths[k]` in this stage.
   void copy_state_from(const CollisionStage& before, std::span<const std::size_t> cloths);
 
   /// Begins a step, before its solve. Places bodies at t in `now` and at t + h in `next`. Predicts the particles of

@@ -36,13 +36,13 @@ struct FrameReport {
   int steps = 0;              ///< number of accepted steps
   int rejected_steps = 0;     ///< number of steps that were rejected and repeated as shorter ones
   int inexact_steps = 0;      ///< number of steps that were accepted although their error exceeded time.tolerance
-  double error_estimate = 0;  ///< estimated sum over the steps of the local errors of positions [m]
-  double solver_error = 0;    ///< estimated sum over the steps of the errors of the solver [m]
+  double error_estimate = 0;  ///< sum, over the steps, of the estimated local errors of positions [m]
+  double solver_error = 0;    ///< sum, over the steps, of the estimated position errors due to the solver [m]
   int newton_iterations = 0;
   int linear_iterations = 0;
   /// Number of near pairs of features (within the detection distance) in the last step; see Engine::proximities().
   int proximities = 0;
-  int constraints = 0;          ///< number of contacts and held particles in the last step
+  int constraints = 0;          ///< number of contacts with a force, plus number of held particles, in the last step
   double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
   double max_strain = 0;        ///< largest |length / rest length - 1| of weft and warp in any step
   double stretch_ratio = 0;     ///< largest ratio of extension to material.max_stretch in any step

@@ -54,7 +54,7 @@ class Inflation {
   double energy(std::span<const Vec3> x) const;
   std::vector<EnclosedAir> measure(std::span<const Vec3> x) const;
 
-  /// Copies the enclosed air from another simulation. `numbers[k]`: number, in this model, of cloth k of `there`.
+  /// Copies the enclosed air from another simulation. Cloth k of `there` has the number `numbers[k]` in this model.
   void copy_state_from(const Inflation& there, std::span<const std::size_t> numbers);
 
   template <class Archive>

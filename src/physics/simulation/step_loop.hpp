@@ -29,7 +29,7 @@ class StepLoop {
   StepLoop& operator=(const StepLoop&) = delete;
 
   /// Before the first advance(): takes over the state of the cloths of `before`, a loop that this one replaces.
-  /// `cloths[k]`: number, in this loop, of cloth k of `before`.
+  /// Cloth k of `before` has the number `cloths[k]` in this loop.
   void copy_state_from(const StepLoop& before, std::span<const std::size_t> cloths);
   /// Before the first advance(): untangles cloths that touch or intersect at the start, if the model allows it.
   /// Cloths that were taken over stay as they are.
