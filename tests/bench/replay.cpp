@@ -1,4 +1,4 @@
-// Runs each heuristic on recorded meshes of a scene.
+// Measures the options of BroadPhase, and CoherentDetection, on recorded meshes of a scene.
 #include <map>
 #include <optional>
 #include <set>
@@ -36,7 +36,7 @@ struct Recording {
   int steps() const { return static_cast<int>(frames.size() - 1) * kSteps; }
 };
 
-/// Whether the shape changes from the first frame to the last. Such an object counts as cloth.
+/// Whether the first side of any triangle has different lengths in both meshes. If so, the object counts as cloth.
 bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   for (const auto& t : first.triangles) {
     const auto length = [&](const support::PlyMesh& m) {
@@ -151,8 +151,8 @@ void print_row(const std::string& name, const std::vector<Costs>& runs, int step
              runs[0].found / static_cast<std::size_t>(steps));
 }
 
-/// Counts the pairs that normal cones skip, in every second frame, and how many of these are within the detection
-/// distance.
+/// In every second frame, counts the pairs that normal cones skip, and those of them that are closer than `reach` [m],
+/// the detection distance. Prints both sums.
 void count_skipped_pairs(const Recording& recording, double reach) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
   std::size_t left_out = 0, missed = 0;
