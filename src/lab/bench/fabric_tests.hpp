@@ -23,7 +23,8 @@ struct Specimen {
 
 /// A disc of concentric rings of vertices; ring k has 6 k vertices. `free` rings lie outside of the plates; the
 /// outermost held ring lies on the edge of the plates. Vertices of the free rings are displaced by up to 0.15 of the
-/// spacing (on the border only along it), so that no direction is preferred. `seed` selects the displacements.
+/// spacing, so that no direction is preferred; vertices on the border of the disc move only along this border. `seed`
+/// selects the displacements.
 Specimen rings(int free, int seed);
 
 /// A scene with the specimen alone. Writes the specimen to `file` (OBJ), from which the scene reads it.
@@ -36,17 +37,17 @@ std::vector<scene::Pin> pins_at(const std::vector<Vec3>& x, const std::vector<st
 /// Result of the drape test.
 struct Drape {
   double coefficient = 0;     ///< area of the overhang as seen from above / area of the flat overhang
-  double strain = 0;          ///< largest strain along weft or warp in the last frame
+  double strain = 0;          ///< largest |strain| along weft or warp in any step of the last frame
   double kinetic_energy = 0;  ///< in the last frame [J]
   double cpu_s = 0;
 };
 
-/// Accuracy of the solver. It affects the drape, because bending friction holds cloth in the shape in which it first
-/// comes to rest. `exactly`: newton_tolerance is 0.01; a third of this value was measured to change the drape
-/// coefficient by at most 0.003. `with_default_tolerance`: newton_tolerance is that of `scene`.
+/// Accuracy of the solver. It affects the drape, because bending friction holds cloth in the shape in which the cloth
+/// first comes to rest. `exactly`: newton_tolerance is 0.01. (Measured: a third of 0.01 changes the drape coefficient
+/// by at most 0.003.) `with_default_tolerance`: newton_tolerance is that of `scene`.
 enum class Solved { exactly, with_default_tolerance };
 
-/// Simulates how the specimen, level at first, falls and comes to rest, for 1.5 s. Throws Error(simulation_failed).
+/// Simulates the specimen for 1.5 s: from level, it falls and comes to rest. Throws Error(simulation_failed).
 Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved = Solved::exactly);
 
 }  // namespace cusick

@@ -21,7 +21,7 @@ struct PeerRun {
   double size = 1;           ///< see SpeedSetting::size
   std::string failure = {};  ///< why there is no comparison; empty if there is one
   std::int64_t particles = 0;
-  double weft_ms = 0, peer_ms = 0;  ///< CPU time of a frame: mean over the frames, median over the turns [ms]
+  double weft_ms = 0, peer_ms = 0;  ///< CPU time of a frame: mean over the frames, median over repeated runs [ms]
   FramePairs weft_pairs = {}, peer_pairs = {};
 
   bool failed() const { return !failure.empty(); }
@@ -43,8 +43,8 @@ Table speed_table(const std::vector<SpeedRun>& runs);
 std::vector<const SpeedRun*> over_sizes(const std::vector<SpeedRun>& runs);
 /// Successful runs with this size and the scene's step, in order of the number of threads.
 std::vector<const SpeedRun*> over_threads(const std::vector<SpeedRun>& runs, double size);
-/// Successful runs that have the size and number of threads of the first run whose step is not the scene's, from the
-/// longest step to the shortest; empty if all runs have the scene's step.
+/// Successful runs with one size and one number of threads, from the longest step to the shortest. Both values are
+/// those of the first run whose step is not the scene's. Empty if all runs have the scene's step.
 std::vector<const SpeedRun*> over_steps(const std::vector<SpeedRun>& runs);
 
 /// Exponent with which a value grows with the number of particles between two runs; nullopt unless `large` has more
