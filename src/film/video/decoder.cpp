@@ -27,8 +27,8 @@ int check_read(int code, const std::filesystem::path& file) {
   fail_to_read(file, reason.data());
 }
 
-// Makes the converter of frames to RGB. It uses the colour matrix that the file names, or BT.709 if it names none; a
-// wrong matrix changes colours by tens of levels (of 255).
+// Makes the converter of frames to RGB. The converter uses the colour matrix that `frame` names, or BT.709 if `frame`
+// names none. A wrong matrix changes colours by tens of levels (of 255).
 ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   ScalerPtr scaler(sws_getContext(
       frame.width, frame.height, static_cast<AVPixelFormat>(frame.format), frame.width, frame.height, AV_PIX_FMT_RGB24,
