@@ -44,8 +44,8 @@ struct EnclosedAir {
 };
 
 /// Cost of computing a frame, and quantities measured in it. The report of frame 0 is that of the
-/// last frame of the preroll. Without a preroll, it has the energies, distances and strains at the
-/// start, and no time steps.
+/// last frame of the preroll. Without a preroll, it has the energies, enclosed air and strains at the
+/// start, but no time steps and no distances.
 struct Report {
   double wall_s = 0, cpu_s = 0;  ///< time of simulating this frame: wall time, and CPU time of the
                                  ///< calling thread alone [s]
@@ -54,7 +54,7 @@ struct Report {
   int newton_iterations = 0;
   int linear_iterations = 0;    ///< iterations of conjugate gradients
   int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, in the last step
-  int constraints = 0;          ///< number of contacts that push plus number of held particles, in the last step
+  int constraints = 0;          ///< number of contacts with a force, plus number of held particles, in the last step
   double min_distance = 0;      ///< smallest distance of the near pairs [m]; infinite if there are none
   double max_strain = 0;        ///< largest |length / rest length - 1| of threads at the end of any step
   double stretch_ratio = 0;     ///< largest ratio of extension to the fabric's `max_stretch` at the end of any step
@@ -64,9 +64,9 @@ struct Report {
   double air_energy = 0;        ///< of enclosed air [J]
   double pin_work = 0;          ///< work of pins on the cloth in this frame [J]
   double error_estimate = 0;    ///< sum, over the steps, of the estimated local errors of positions [m]
-  double solver_error = 0;  ///< sum, over the steps, of the estimated errors of positions that the solver leaves [m]
-  /// Largest number, in any step, of pinched triangles of cloth: obstacles leave them no space. A
-  /// triangle that several limbs of a character pinch counts once per limb.
+  double solver_error = 0;      ///< sum, over the steps, of the estimated position errors due to the solver [m]
+  /// Largest number, in any step, of pinched triangles of cloth (triangles to which obstacles leave
+  /// no space). A triangle that several limbs of a character pinch counts once per limb.
   int pinched_pairs = 0;
   int lagging_particles = 0;              ///< largest number, in any step, of pinned particles that an obstacle
                                           ///< or cloth keeps from their targets

@@ -29,8 +29,7 @@ struct Material {
   double bend_viscosity = 1e-6;  ///< moment per width and rate of curvature [N·m·s]
   double bend_friction = 5e-4;   ///< moment per width against a change of curvature [N]
   double thickness = 0.002;      ///< distance at which two layers of this fabric begin to push each
-                                 ///< other [m]; at most a quarter of the particle spacing has an
-                                 ///< effect
+                                 ///< other [m]; limited to a quarter of the particle spacing
   double friction = 0.3;         ///< Coulomb coefficient; a contact uses the geometric mean of both coefficients
   double drag = 1;               ///< drag coefficient, for motion normal to the cloth; 0: no air resistance
 };

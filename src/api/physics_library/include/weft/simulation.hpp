@@ -56,7 +56,7 @@ class WEFT_API Simulation {
   void move(std::string_view body, const Pose& pose);
 
   /// Sets gravity [m/s²] and the velocity of the air [m/s] from the next frame on. These values
-  /// replace those of the model or scene and the keys of the scene; gusts and fans of a scene stay.
+  /// replace those of the model or scene, and the scene's `physics.keys`; gusts and fans of a scene stay.
   /// Throws std::invalid_argument if a component of gravity is not within ±1e5 m/s², or a component
   /// of the velocity is not within ±1000 m/s.
   void set_weather(const Vector& gravity, const Vector& wind);
