@@ -12,8 +12,8 @@ namespace weft {
 /// computer detection and correction of spelling errors", 1964).
 int edit_distance(std::string_view from, std::string_view to);
 
-/// Considers those names of `known` whose edit distance from `name` is less than half the length of
-/// the longer of both. Returns the first with the smallest distance; empty if there is none.
+/// Considers the names in `known` whose edit distance from `name` is less than half the length of the
+/// longer one of the two names. Returns the first name with the smallest distance; empty if there is none.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 }  // namespace weft
