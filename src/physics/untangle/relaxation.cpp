@@ -9,7 +9,7 @@ namespace weft::untangle {
 namespace {
 
 constexpr int kSweepsPerRaise = 5;  // number of sweeps between calls of raise()
-// Fraction of its error by which a bending link (UntangleInput::Link::is_bend) is corrected.
+// relax() corrects this fraction of the error of a bending link (UntangleInput::Link::is_bend).
 constexpr double kBendFraction = 0.2;
 constexpr std::size_t kParticlesPerTask = 256;
 

@@ -16,8 +16,8 @@ namespace {
 constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, relative to the larger thickness of the two: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
-// Two surfaces coincide if they are at most this far apart [m]: it is then undefined on which side of the other each
-// is.
+// Two surfaces coincide if their distance is at most this value [m]. Neither surface then has a definite side of the
+// other.
 constexpr double kTouchDistance = 1e-9;
 constexpr int kMaxRounds = 400;
 // After kPatience rounds in which the number of crossing pairs does not reach a new minimum, the
