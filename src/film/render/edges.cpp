@@ -24,7 +24,7 @@ std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
   return edges;
 }
 
-/// Position of a vertex in the picture [pixels], and 1 / distance [1/m].
+/// Position of a vertex in the picture [pixels], and 1 / distance along the view axis [1/m].
 struct Place {
   double x, y, nearness;
 };
@@ -35,7 +35,7 @@ class Canvas {
   Canvas(int width, int height, std::span<const Seen> seen, std::span<std::uint64_t> picture)
       : width_(width), height_(height), seen_(seen), picture_(picture) {}
 
-  /// Darkens the pixels along the line from a to b at which `surface`, a number as in Seen, is visible.
+  /// Darkens the pixels along the line from a to b that show the surface with the number `surface` (see Seen).
   void line(Place a, Place b, float surface) {
     const bool steep = std::abs(b.y - a.y) > std::abs(b.x - a.x);
     const auto along = [&](const Place& p) { return steep ? p.y : p.x; };
