@@ -166,8 +166,8 @@ bool has_all_limbs(const std::vector<Index>& joints) {
 /// minimal skeleton.
 constexpr std::size_t kMinRigNodes = 15;
 
-/// Minimum length of a prefix or suffix without a separator. Names have shorter ones in common by chance, or they name
-/// the sides of a body.
+/// Minimum length of a prefix or suffix without a separator. Names have shorter prefixes and suffixes in common by
+/// chance, or as names of the sides of a body.
 constexpr std::size_t kMinPrefixLength = 3;
 
 /// Prefixes that end with a separator and that at least kMinRigNodes nodes have in common, longest first.
@@ -184,7 +184,7 @@ std::vector<std::string> prefixes_with_separator(std::span<const Node> nodes) {
 }
 
 /// Prefixes without a separator ("Ethan" in "EthanHips", "EthanLeftArm") that at least kMinRigNodes names have in
-/// common, longest first. Omits a prefix if as many names have a longer prefix that begins with it.
+/// common, longest first. Omits a prefix if a longer prefix begins with it and the same number of names have both.
 std::vector<std::string> prefixes_without_separator(const std::vector<std::string>& names) {
   std::map<std::string, std::size_t> counts;
   for (const std::string& name : names)
