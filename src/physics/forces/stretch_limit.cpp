@@ -104,11 +104,10 @@ Vec3 StretchLimit::derivative(const Piece& piece, const OfCorners& weights,
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, corner_forces, block_of) for each crossing that is beyond its onset at x, and
-// for each piece of a thread whose stress at x is positive, exact or linearised at its extension in `linearisation`.
-// block_of(a, b) returns the block of −∂f/∂x for corners a and b. The blocks of threads are
-// linearised at the extensions in `linearisation`, or at x if it is null; those of crossings are linearised at x. For
-// `exact` see lock().
+// Calls body(piece, corner_forces, block_of) for each crossing that is beyond its onset at x, and for each piece of a
+// thread whose exact or linearised stress at x is positive. block_of(a, b) returns the block of −∂f/∂x for corners a
+// and b. Threads are linearised at the extensions in `linearisation` or, if `linearisation` is null, at x. Crossings
+// are linearised at x. For `exact` see lock().
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLinearisation* linearisation,
                                  const Body& body) const {
@@ -226,7 +225,8 @@ void StretchLimit::add_linearisation_difference(std::span<const Vec3> x, const L
   }
 }
 
-// If `exact`, uses the whole second derivative of the shear; else only its positive square, as Shear does.
+// The second derivative of the shear is a positive square plus a negative one (see Shear::add_stiffness()). If `exact`,
+// uses both; else only the positive one.
 template <class Body>
 void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);
