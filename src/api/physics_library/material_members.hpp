@@ -1,4 +1,4 @@
-// Table of the members of a material: public member, member of the physics, bounds.
+// For each value of a material: its member in weft::Material, its member in model::Material, and its bounds.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@ namespace weft::library {
 struct MaterialMember {
   double Material::*given;
   double model::Material::*physics;
-  double low, high;  ///< bounds, the same as for scenes (src/film/scene/material_rules.cpp)
+  double low, high;  ///< allowed range, as in scenes (src/film/scene/material_rules.cpp)
   const char* what;  ///< name and unit of the value, for messages
 };
 
-inline constexpr double kAboveZero = 1e-12;  ///< lower bound of a value that must be positive
+inline constexpr double kAboveZero = 1e-12;  ///< lower bound of values for which scenes require > 0
 inline constexpr std::array kMaterialMembers = std::to_array<MaterialMember>({
     {&Material::density, &model::Material::density, kAboveZero, 1e5, "a density [kg/m²]"},
     {&Material::stretch_weft, &model::Material::stretch_weft, 0, 1e12, "a stretch_weft [N/m]"},

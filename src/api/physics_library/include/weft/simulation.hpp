@@ -23,9 +23,8 @@ struct SimulationOptions {
   std::string state{};  ///< result of Simulation::save() from which to continue; empty: begin at frame 0
 };
 
-/// A simulation, which advances frame by frame. Only one thread at a time may use a simulation;
-/// different simulations may run in different threads. Results have the same bits, whatever the
-/// number of threads (set_threads()).
+/// Only one thread at a time may use a simulation; different simulations may run in different
+/// threads. Results have the same bits for any number of threads (set_threads()).
 class WEFT_API Simulation {
  public:
   /// Begins the simulation of a model. Throws std::invalid_argument if a value of the model is not
@@ -41,7 +40,8 @@ class WEFT_API Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// The current frame.
+  /// The current frame. advance() replaces the frame to which the reference refers; to keep a frame,
+  /// copy it.
   const Frame& frame() const;
   /// Computes the next frame; also allowed after the last frame of a scene. Throws SimulationError
   /// if the simulation cannot continue. Throws SceneError if a cloth with a given amount of air is
