@@ -12,7 +12,7 @@ struct Installation {
   std::filesystem::path libraries;  ///< folder of the archive's libraries; empty outside of an archive
 };
 
-/// Location of this process. All paths are empty if /proc is not mounted.
+/// Location of this program. All paths are empty if /proc is not mounted.
 Installation own_installation();
 
 /// Sets the result of own_installation(). Tests that run the program's code in a child process need
