@@ -42,7 +42,7 @@ const std::vector<BodyPart> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// Whether a word in the name of a node is independent of side and joint. Such words occur in Biped, Rigify, Source,
+/// Whether a word in the name of a node means neither a side nor a joint. Such words occur in Biped, Rigify, Source,
 /// VRM, Character Creator, Meebits, and in Mixamo rigs from which a program has removed the colon.
 bool is_filler_word(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
@@ -50,8 +50,8 @@ bool is_filler_word(const std::string& word) {
   return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
 }
 
-// Decodes characters that FBX does not allow in a name. Programs write them as "FBXASC" and their code: "Arm.L" is
-// "ArmFBXASC046L".
+// Decodes characters that FBX does not allow in a name. Programs write such a character as "FBXASC" and its ASCII code,
+// with three decimal digits: "Arm.L" becomes "ArmFBXASC046L".
 std::string without_fbx_escapes(std::string name) {
   constexpr std::string_view kEscape = "FBXASC";
   constexpr std::size_t kDigits = 3;
@@ -90,7 +90,8 @@ std::vector<std::string> words_of(const std::string& written) {
   return words;
 }
 
-/// Side ("", "Left" or "Right") and the remaining words of a name, joined.
+/// The side in a name ("", "Left" or "Right"), and its remaining words without filler words, joined. Keeps
+/// the filler word "base" if it is not the first of the remaining words, as in "ToeBase".
 std::pair<std::string, std::string> side_and_part(const std::string& name) {
   std::string side, part;
   for (const std::string& word : words_of(name)) {
