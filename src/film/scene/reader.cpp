@@ -29,8 +29,8 @@ int batch_of(const toml::node& node) {
   return place_of(node.source()).batch;
 }
 
-/// Whether a later batch than that of the key of `rule` gives a key that excludes this key, and thus replaces it. For
-/// example, the file gives the key, and --set the other one.
+/// Whether another key replaces the key of `rule`: the two keys exclude each other, and the other one is in a later
+/// batch. For example, the file gives the key of `rule`, and --set gives the other one.
 bool is_replaced(const toml::table& table, const Rule& rule, const std::vector<Rule>& rules) {
   const toml::node* node = table.get(rule.key);
   return node != nullptr && std::ranges::any_of(rules, [&](const Rule& other) {

@@ -55,8 +55,8 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
   return true;
 }
 
-// Reports too many particles, and pieces that are too short at the start or at a key. `particles`: number of particles
-// of all ropes so far.
+// Reports too many particles, and pieces that are too short at the start or at a key frame. `particles`: number of
+// particles of all ropes so far.
 void check_pieces(const Scene& scene, const Rope& rope, const std::string& path, long& particles, Findings& findings) {
   const RopeShape shape = start_shape(rope, scene.up);
   particles += static_cast<long>(shape.places.size());

@@ -44,8 +44,8 @@ inline constexpr double kMinRopeSpan = 4;
 /// Whether the scene gives only the ends of a rope, and start_length() exceeds their distance.
 bool hangs_slack(const Rope& rope);
 
-/// Rest length at the start [m], as the scene gives it: `length` or, without it, the length of the first key. nullopt
-/// if the scene gives neither; the rest length is then that of the start shape.
+/// Rest length at the start [m], as the scene gives it: `length` or, without it, the length of the first key frame.
+/// nullopt if the scene gives neither; the rest length is then that of the start shape.
 std::optional<double> start_length(const Rope& rope);
 
 /// The one-dimensional cloth that is simulated for a rope.
