@@ -73,7 +73,7 @@ struct Decoder::Impl {
     // Excludes playlists: libav detects them by their content, and a playlist could make it open other files.
     AVDictionary* options = nullptr;
     av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
-    // The path is absolute, because libav takes the text before a colon of a relative path for a protocol.
+    // The path is absolute, because in a relative path, libav would read the text before a colon as a protocol.
     const int code = avformat_open_input(&opened, std::filesystem::absolute(file).c_str(), nullptr, &options);
     av_dict_free(&options);
     check_read(code, file);

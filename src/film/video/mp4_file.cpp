@@ -35,7 +35,7 @@ struct Dictionary {
 
 InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
   AVFormatContext* opened = nullptr;
-  // The path is absolute, because libav takes the text before a colon of a relative path for a protocol.
+  // The path is absolute, because in a relative path, libav would read the text before a colon as a protocol.
   check(avformat_open_input(&opened, std::filesystem::absolute(file).c_str(),
                             av_find_input_format(is_matroska(reported_file) ? "matroska" : "mp4"), nullptr),
         reported_file, "read the frames back");

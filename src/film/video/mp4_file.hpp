@@ -19,9 +19,9 @@ enum class Mp4Layout {
 /// Writes a video file, packet by packet.
 class VideoFileWriter {
  public:
-  /// Opens `file` and writes its header. The path must be absolute, because libav takes the text before a colon of a
-  /// relative path for a protocol. Packet times are in units of one frame, 1 / `rate` seconds. `reported_file`: the
-  /// name that the user has given; its extension selects the container, and errors name it. Throws
+  /// Opens `file` and writes its header. The path must be absolute, because in a relative path, libav would read the
+  /// text before a colon as a protocol. Packet times are in units of one frame, 1 / `rate` seconds. `reported_file`:
+  /// the name that the user has given; its extension selects the container, and errors name it. Throws
   /// Error(output_failed).
   VideoFileWriter(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
                   const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
