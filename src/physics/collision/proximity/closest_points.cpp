@@ -13,8 +13,8 @@ namespace {
 /// length of an edge; rounding moves it by a few times 1e-16 of that length.
 constexpr double kSnap = 1e-13;
 
-/// Rounding error of a squared distance, relative to it; also rounding error of a distance, relative to the edge
-/// lengths.
+/// Bound of two rounding errors: that of a squared distance, relative to the squared distance; and that of a distance,
+/// relative to the length of an edge.
 constexpr double kRounding = 2e-15;
 
 /// Parameter in [0, 1] of the point of the segment o + t e that is closest to o + w.
@@ -25,8 +25,9 @@ double along_segment(const Vec3& e, const Vec3& w) {
   return t < kSnap ? 0 : t > 1 - kSnap ? 1 : t;
 }
 
-/// Replaces `best` by this solution if it is closer. If both are equally close up to rounding, a solution inside an
-/// edge (0 < `parameter` < 1) wins, because it cannot be farther than the ends of its edge.
+/// Replaces `best` by the new solution (the other parameters) if the new one is closer. If their distances differ only
+/// by rounding, replaces `best` if the new solution is inside an edge (0 < `parameter` < 1), because the closest
+/// point inside an edge is never farther than the ends of this edge.
 void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, const Vec3& difference, double parameter) {
   const double distance_sq = difference.squaredNorm();
   const bool inner = parameter > 0 && parameter < 1;
@@ -39,8 +40,9 @@ ClosestPoints infinitely_far() {
 }
 
 /// Chooses between the boundary solution and the interior solution of a nearly degenerate pair.
-/// Chooses the interior solution only if it is closer by more than rounding, so that collinear
-/// points always give an end of an edge or a corner.
+/// Chooses the interior solution only if it is closer by more than the rounding error, so that collinear
+/// vertices always give the boundary solution. `length`: of the longer edge of an edge pair, or of the
+/// longer one of the two edges of a face at t0 [m].
 ClosestPoints choose_closer(const ClosestPoints& boundary, const ClosestPoints& inside, double length) {
   return std::sqrt(inside.distance_sq) < std::sqrt(boundary.distance_sq) - kRounding * length ? inside : boundary;
 }
@@ -70,7 +72,8 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
   keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2, s02);
   if (!inside) return best;
 
-  // The triangle is a needle: refine the solution by one step, from its residual.
+  // The triangle is a needle, so u1 and u2 have large rounding errors. Correct them by the solution for the residual
+  // `rest`.
   const Vec3 rest = w - u1 * e1 - u2 * e2;
   u1 = std::clamp(u1 + rest.cross(e2).dot(n) / n_sq, 0.0, 1.0);
   u2 = std::clamp(u2 + e1.cross(rest).dot(n) / n_sq, 0.0, 1 - u1);
@@ -103,7 +106,7 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1, s_q1);
   if (!inside) return best;
 
-  // The edges are nearly parallel: refine the solution as in closest_vertex_face().
+  // The edges are nearly parallel, so s and t have large rounding errors. Correct them as in closest_vertex_face().
   const Vec3 rest = w + t * e - s * d;
   s = std::clamp(s + rest.cross(e).dot(n) / n_sq, 0.0, 1.0);
   t = std::clamp(t + rest.cross(d).dot(n) / n_sq, 0.0, 1.0);

@@ -37,8 +37,9 @@ struct Proximity : FeaturePair {
 /// Every near pair that is not listed is represented by a listed pair that is at least as close. Proof: let the point
 /// of a face closest to a vertex lie on the edge or vertex S of the face. Every face around S contains that point, so
 /// the vertex is no farther from each of them. Likewise, if a closest point of an edge pair is an end of its edge, this
-/// end is no farther from the faces around the other edge. Repeat this step from the face found: distances never grow,
-/// and of equally distant faces the one with the lowest number is taken, so the repetition ends at a listed pair.
+/// end is no farther from the faces around the other edge. Repeat this step from the face found. Distances never grow,
+/// and the step chooses the face with the lowest number among equally distant faces. So the repetition ends at a listed
+/// pair.
 class ProximityFinder {
  public:
   ProximityFinder() = default;
