@@ -258,7 +258,7 @@ double StretchLimit::energy(std::span<const Vec3> x) const {
 }
 
 StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
-  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², −index: of equally long threads the first counts
+  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², −index: the first of several longest pieces counts
   const Longest none{1, 1},
       longest = parallel_max(threads_.size(), kGrainSize, none, [&](std::size_t begin, std::size_t end) {
         Longest longest_in_range = none;
