@@ -35,7 +35,7 @@ class Sliding {
 };
 
 /// Whether constraints hold a diagonal block against sliding. A wall along which the block slides leaves two directions
-/// free, and does not count.
+/// free, so it does not hold the block.
 bool is_held(const solver::DiagonalBlock& rows, std::span<const solver::ParticleConstraint> constraints);
 
 }  // namespace weft::integrator
