@@ -354,7 +354,7 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
   const auto is_still = [](const Object& object) {
     return std::ranges::all_of(object.targets, [](const Target& target) { return target.positions < 0; });
   };
-  // The number of weights is nearly the square of the number of frames: checks their size before they are allocated.
+  // The number of weights is nearly the square of the number of frames, so check their size before allocating them.
   const std::size_t targets = std::ranges::all_of(objects_, is_still) ? 0 : times_.size() - 1;
   check_size(file, bytes_.size() + sizeof(float) * targets * times_.size());
   std::vector<int> moving;

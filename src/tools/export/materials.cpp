@@ -20,9 +20,9 @@ namespace {
 using Alpha = frame::Paint::Alpha;
 using Wrap = frame::Paint::Wrap;
 
-// Of the name of a material. Blender keeps 63 bytes of a name, including the number that it adds to a name in use
-// (".001"), and its script finds materials by their names. The name of the object is cut first, so that the number of
-// the part remains.
+// Maximum lengths of the name of a material, and of the object's name in it [bytes]. Blender keeps 63 bytes of a name,
+// including the number that it adds to a name in use (".001"), and the exported script finds materials by their names.
+// The name of the object is cut first, so that the number of the part remains.
 constexpr std::size_t kMaxNameBytes = 59, kMaxObjectBytes = 48;
 
 const std::array<double, 256>& linear_of_bytes() {
