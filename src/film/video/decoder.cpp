@@ -58,7 +58,8 @@ struct Decoder::Impl {
   CodecPtr codec;
   PacketPtr packet{av_packet_alloc()};
   FramePtr frame{av_frame_alloc()};
-  ScalerPtr scaler;  // created for the first frame
+  ScalerPtr scaler;                  // created for the first frame
+  std::array<int, 3> first_shape{};  // width, height and pixel format of the first frame
   std::map<std::string, std::string> metadata;
   bool at_end = false;  // all packets of the file are read; the decoder may still hold frames
 
@@ -110,8 +111,13 @@ struct Decoder::Impl {
   }
 
   image::Image convert() {
-    if (frame->width != codec->width || frame->height != codec->height) fail_to_read(file, "its pictures change size");
-    if (!scaler) scaler = make_scaler(*frame, file);
+    const std::array<int, 3> shape{frame->width, frame->height, frame->format};
+    if (!scaler) {
+      scaler = make_scaler(*frame, file);
+      first_shape = shape;
+    }
+    // libav changes the size in `codec`, too; the scaler keeps that of the first frame.
+    if (shape != first_shape) fail_to_read(file, "its pictures change size or pixel format");
     image::Image image(frame->width, frame->height);
     std::uint8_t* const planes[4] = {image.rgb.data()};  // swscale reads four pointers
     const int strides[4] = {3 * image.width};
