@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <cstdlib>
+#include <optional>
 #include <random>
 #include <sstream>
 
@@ -122,12 +123,24 @@ struct Viewer {
 
 class DataPassesTest : public support::TestFolder {
  protected:
-  static void SetUpTestSuite() {
+  static Settings pass_settings() {
     Settings settings;
     settings.width = kPassWidth;
     settings.height = kPassHeight;
     settings.layers = true;
+    return settings;
+  }
+  // Layers of `now`, with the motion since `before`.
+  static image::Layers layers_of(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before,
+                                 std::optional<frame::Stage::Look> look = {}) {
+    Settings settings = pass_settings();
+    settings.look = look;
     Renderer renderer(settings);
+    renderer.draw(now, &before);
+    return renderer.layers();
+  }
+  static void SetUpTestSuite() {
+    Renderer renderer(pass_settings());
     first_ = moment(0, nullptr), second_ = moment(1, &first_);
     renderer.draw(first_);
     still_ = renderer.layers();
@@ -247,13 +260,7 @@ TEST_F(DataPassesTest, ACutOfTheCameraIsNoMotion) {
   frame::FrameSnapshot now = second_;
   now.cameras[0].shot = 1;
   now.cameras[0].position += Vec3(0.5, 0, 0);
-  Settings settings;
-  settings.width = kPassWidth;
-  settings.height = kPassHeight;
-  settings.layers = true;
-  Renderer renderer(settings);
-  renderer.draw(now, &second_);
-  const image::Layers layers = renderer.layers();
+  const image::Layers layers = layers_of(now, second_);
   for (const char* name : {"motion.X", "motion.Y"})
     for (int y = 0; y < kPassHeight; ++y)
       for (int x = 0; x < kPassWidth; ++x) ASSERT_NEAR(value(layers, name, x, y), 0, 1e-5);
@@ -266,14 +273,7 @@ TEST_F(DataPassesTest, MotionNeedsNoHeatOfTheFrameBefore) {
   stage->heat = frame::Stage::Heat::strain;
   before.stage = now.stage = stage;
   for (frame::SurfaceState& state : before.states) state.heat.clear();
-  Settings settings;
-  settings.width = kPassWidth;
-  settings.height = kPassHeight;
-  settings.layers = true;
-  settings.look = frame::Stage::Look::strain;
-  Renderer renderer(settings);
-  renderer.draw(now, &before);
-  const image::Layers layers = renderer.layers();
+  const image::Layers layers = layers_of(now, before, frame::Stage::Look::strain);
   for (const char* name : {"motion.X", "motion.Y"})
     for (int y = 0; y < kPassHeight; ++y)
       for (int x = 0; x < kPassWidth; ++x) ASSERT_EQ(value(layers, name, x, y), value(layers_, name, x, y));
@@ -287,13 +287,7 @@ TEST_F(DataPassesTest, WhatWasBehindTheCameraDoesNotMove) {
   before.cameras = {camera_at(Vec3::Zero(), Vec3(0, 2, 0), 40)};
   frame::FrameSnapshot now = before;
   now.cameras = {camera_at(Vec3(0, -1, 0), Vec3(0, 2, 0), 40)};
-  Settings settings;
-  settings.width = kPassWidth;
-  settings.height = kPassHeight;
-  settings.layers = true;
-  Renderer renderer(settings);
-  renderer.draw(now, &before);
-  const image::Layers layers = renderer.layers();
+  const image::Layers layers = layers_of(now, before);
   int count = 0;
   for (int y = 0; y < kPassHeight; ++y) {
     for (int x = 0; x < kPassWidth; ++x) {
