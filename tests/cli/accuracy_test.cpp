@@ -472,10 +472,6 @@ TEST_F(BenchAccuracy, WritesReportTableAndPlots) {
   }
 }
 
-TEST_F(BenchAccuracy, SceneInTheProgramIsTheOneInTheFolder) {
-  EXPECT_EQ(support::read_bytes(WEFT_SOURCE_DIR "/scenes/swinging_sheet.toml"), kSwingingSheet);
-}
-
 TEST_F(BenchAccuracy, ASceneWithoutAFrameAfterTheStartIsRefused) {
   const cli::Outcome outcome = cli::run_weft({"bench", "accuracy", "--set", "time.duration=0", "-o", "b"}, folder_);
   EXPECT_EQ(outcome.exit_code, 3);

@@ -350,9 +350,5 @@ TEST_F(BenchSpeed, MistakesShowBeforeAnythingIsMeasured) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
-TEST_F(BenchSpeed, SceneInTheProgramIsTheOneInTheFolder) {
-  EXPECT_EQ(support::read_bytes(WEFT_SOURCE_DIR "/scenes/sphere_drape.toml"), kSphereDrape);
-}
-
 }  // namespace
 }  // namespace weft::bench
