@@ -57,12 +57,6 @@ std::vector<Vec3> with_y_up(const frame::FrameSnapshot& snapshot, std::size_t su
   return positions;
 }
 
-void write_materials(const Request& request, const frame::Surface& surface) {
-  write_file(material_file(request, surface.name), mtl_text(surface), Flush::no);
-  for (const PictureFile& picture : materials_of(surface).pictures)
-    write_file(request.folder / picture.name, picture.png(), Flush::no);
-}
-
 void write_cut_ply(const Path& file, const frame::FrameSnapshot& snapshot, std::size_t number) {
   const frame::Surface& surface = *snapshot.surfaces[number];
   const std::vector<Vec3>& positions = snapshot.states[number].positions;
@@ -81,7 +75,6 @@ void write_cut_ply(const Path& file, const frame::FrameSnapshot& snapshot, std::
 void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) {
   for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
     const frame::Surface& surface = *snapshot.surfaces[s];
-    if (request.format == Format::obj && snapshot.frame == request.frames.front()) write_materials(request, surface);
     const Path file = frame_file(request, surface.name, snapshot.frame);
     if (request.format == Format::ply)
       write_cut_ply(file, snapshot, s);
@@ -137,7 +130,6 @@ class Sink {
       const frame::Surface& surface = *snapshot.surfaces[s];
       const std::vector<Vec3> positions = with_y_up(snapshot, s);
       if (first) {
-        write_materials(request_, surface);
         write_obj(shape_file(request_, surface.name), surface, positions);
         caches_.push_back(std::make_unique<PointCache>(cache_file(request_, surface.name), positions.size(),
                                                        snapshot.frame, step, request_.frames.size()));
@@ -198,7 +190,10 @@ bool write(const Request& request, const std::function<frame::SnapshotPtr(int)>&
   frame::Cords cords;
   for (int frame : request.frames) {
     if (stop()) return false;
-    sink.add(*cords.sweep(read(frame)));
+    const frame::SnapshotPtr snapshot = cords.sweep(read(frame));
+    if (frame == request.frames.front())
+      for (const auto& [file, content] : shared_files(request, *snapshot)) write_file(file, content, Flush::no);
+    sink.add(*snapshot);
   }
   sink.finish();
   return true;

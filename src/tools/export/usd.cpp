@@ -314,9 +314,6 @@ void UsdFile::write(const std::filesystem::path& file) const {
       for (const PictureFile& picture : object.materials.pictures) files.push_back({picture.name, picture.png()});
     return write_stored(file, files);
   }
-  for (const Object& object : objects_)
-    for (const PictureFile& picture : object.materials.pictures)
-      write_file(file.parent_path() / picture.name, picture.png(), Flush::no);
   TemporaryFile temporary(file);
   std::ofstream out(temporary.path(), std::ios::binary);
   write_all(out);

@@ -24,8 +24,8 @@ class UsdFile {
   /// Adds the next frame, starting with the first.
   void add(const frame::FrameSnapshot& snapshot, const std::vector<View>& views);
 
-  /// Writes .usda with its pictures beside it, or .usdz with its pictures inside, depending on the extension. Throws
-  /// Error(output_failed).
+  /// Writes .usda, which names pictures beside it (shared_files()), or .usdz with its pictures inside, depending on the
+  /// extension. Throws Error(output_failed).
   void write(const std::filesystem::path& file) const;
 
  private:
