@@ -24,19 +24,8 @@ std::string escaped(const std::string& field) {
 }
 
 const char* color_of(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::solved:
-      return "#7fbf7b";
-    case Verdict::refused:
-      return "#f1c453";
-    case Verdict::warned:
-      return "#e08f3c";
-    case Verdict::unbounded:
-      return "#d7503f";
-    case Verdict::not_finite:
-      return "#222222";
-  }
-  return "#ffffff";
+  constexpr const char* kFills[kVerdicts] = {"#7fbf7b", "#f1c453", "#e08f3c", "#d7503f", "#222222"};
+  return kFills[static_cast<std::size_t>(verdict)];
 }
 
 template <class Key>

@@ -223,21 +223,9 @@ std::string_view name_of(VariedParameter axis) {
 }
 
 std::string_view describe(TrialVerdict verdict) {
-  switch (verdict) {
-    case TrialVerdict::holds:
-      return "holds";
-    case TrialVerdict::warned:
-      return "warned of";
-    case TrialVerdict::refused:
-      return "refused";
-    case TrialVerdict::not_finite:
-      return "not finite";
-    case TrialVerdict::too_slow:
-      return "too slow";
-    case TrialVerdict::impossible:
-      return "impossible";
-  }
-  return "unknown";
+  constexpr std::string_view kNames[kTrialVerdicts] = {"holds",      "warned of", "refused",
+                                                       "not finite", "too slow",  "impossible"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 const std::vector<double>& factors_of(VariedParameter axis) {

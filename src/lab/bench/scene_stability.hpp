@@ -41,6 +41,7 @@ enum class TrialVerdict {
   too_slow,    ///< aborted, because it takes many times as long as the unchanged scene
   impossible,  ///< no scene with these values can be built; margins ignore the trial
 };
+inline constexpr std::size_t kTrialVerdicts = 6;
 std::string_view describe(TrialVerdict verdict);
 
 /// A run of the scene with other values, or of the unchanged scene.

@@ -13,21 +13,8 @@ namespace {
 constexpr double kTrialCell = 44, kTrialLeft = 90, kTrialTop = 50;
 
 const char* color_of(TrialVerdict verdict) {
-  switch (verdict) {
-    case TrialVerdict::holds:
-      return "#7fbf7b";
-    case TrialVerdict::warned:
-      return "#e08f3c";
-    case TrialVerdict::refused:
-      return "#f1c453";
-    case TrialVerdict::not_finite:
-      return "#222222";
-    case TrialVerdict::too_slow:
-      return "#9db7d9";
-    case TrialVerdict::impossible:
-      return "#dddddd";
-  }
-  return "#ffffff";
+  constexpr const char* kFills[kTrialVerdicts] = {"#7fbf7b", "#e08f3c", "#f1c453", "#222222", "#9db7d9", "#dddddd"};
+  return kFills[static_cast<std::size_t>(verdict)];
 }
 
 double newton_of(const Trial& trial) {
@@ -180,8 +167,8 @@ std::string trial_svg(const std::string& title, const SceneStability& stability)
   }
   y = kTrialTop + kVariedValues * (kTrialCell + 18) + 14;
   double key = kTrialLeft;
-  for (const auto verdict : {TrialVerdict::holds, TrialVerdict::warned, TrialVerdict::refused, TrialVerdict::not_finite,
-                             TrialVerdict::too_slow, TrialVerdict::impossible}) {
+  for (std::size_t v = 0; v < kTrialVerdicts; ++v) {
+    const auto verdict = static_cast<TrialVerdict>(v);
     body += fmt::format("<rect x='{:.0f}' y='{:.0f}' width='12' height='12' fill='{}'/>\n", key, y, color_of(verdict));
     body += label(key + 16, y + 10, "start", std::string(describe(verdict)));
     key += 90;

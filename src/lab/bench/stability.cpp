@@ -85,19 +85,8 @@ void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcom
 }  // namespace
 
 std::string_view describe(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::solved:
-      return "solved";
-    case Verdict::refused:
-      return "refused";
-    case Verdict::warned:
-      return "warned of";
-    case Verdict::unbounded:
-      return "unbounded";
-    case Verdict::not_finite:
-      return "not finite";
-  }
-  return "unknown";
+  constexpr std::string_view kNames[kVerdicts] = {"solved", "refused", "warned of", "unbounded", "not finite"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limit) {

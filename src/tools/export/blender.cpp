@@ -30,45 +30,27 @@ Json light_json(const frame::Light& light, double fraction) {
 }
 
 const char* extension(const Material& material) {
-  switch (material.wrap_u) {
-    case frame::Paint::Wrap::repeat:
-      return "REPEAT";
-    case frame::Paint::Wrap::mirror:
-      return "MIRROR";
-    case frame::Paint::Wrap::clamp:
-    case frame::Paint::Wrap::once:
-      return "EXTEND";
-  }
-  return "REPEAT";
+  constexpr const char* kNames[] = {"REPEAT", "EXTEND", "MIRROR"};  // no Material has Wrap::once
+  return kNames[static_cast<std::size_t>(material.wrap_u)];
 }
 
-// Picture and mapping of each material that has a picture, by name of the material. The script
-// contains them, since MTL cannot express every mapping.
-Json pictures_json(const frame::Surface& surface) {
-  Json result = Json::object();
+// An object with what MTL cannot express, by name of the material: `pictures`, the picture and its mapping, and
+// `backs`, Material::back.
+Json object_json(const frame::Surface& surface) {
+  Json pictures = Json::object(), backs = Json::object();
   const Materials materials = materials_of(surface);
   for (const MaterialGroup& group : group_by_look(surface, materials)) {
     const Material& material = materials.all[group.material];
+    if (material.back) backs[material.name] = list(*material.back);
     if (!material.has_picture()) continue;
     const auto& map = material.picture_from_uv;
-    result[material.name] = {{"file", materials.pictures[material.picture].name},
-                             {"across", {map(0, 0), map(0, 1), map(0, 2)}},
-                             {"up", {map(1, 0), map(1, 1), map(1, 2)}},
-                             {"extension", extension(material)},
-                             {"cutout", material.cutout}};
+    pictures[material.name] = {{"file", materials.pictures[material.picture].name},
+                               {"across", {map(0, 0), map(0, 1), map(0, 2)}},
+                               {"up", {map(1, 0), map(1, 1), map(1, 2)}},
+                               {"extension", extension(material)},
+                               {"cutout", material.cutout}};
   }
-  return result;
-}
-
-// Material::back of each material that has one, by name of the material.
-Json backs_json(const frame::Surface& surface) {
-  Json result = Json::object();
-  const Materials materials = materials_of(surface);
-  for (const MaterialGroup& group : group_by_look(surface, materials)) {
-    const Material& material = materials.all[group.material];
-    if (material.back) result[material.name] = list(*material.back);
-  }
-  return result;
+  return {{"name", surface.name}, {"visible", surface.visible}, {"pictures", pictures}, {"backs", backs}};
 }
 
 }  // namespace
@@ -86,11 +68,7 @@ BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& 
            {"cameras", Json::array()},
            {"lights", Json::array()},
            {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_fraction}}}};
-  for (const auto& surface : first.surfaces)
-    film_["objects"].push_back({{"name", surface->name},
-                                {"visible", surface->visible},
-                                {"pictures", pictures_json(*surface)},
-                                {"backs", backs_json(*surface)}});
+  for (const auto& surface : first.surfaces) film_["objects"].push_back(object_json(*surface));
   for (const frame::Light& light : lighting.lights)
     film_["lights"].push_back(light_json(light, 1 - lighting.sky_fraction));
 }

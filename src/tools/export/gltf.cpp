@@ -31,19 +31,11 @@ using nlohmann::json;
 // Constants of the glTF specification.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
 
-constexpr int kRepeat = 10497, kMirror = 33648, kClamp = 33071, kLinear = 9729, kLinearOfSizes = 9987;
+constexpr int kLinear = 9729, kLinearOfSizes = 9987;
 
 int wrap_number(frame::Paint::Wrap wrap) {
-  switch (wrap) {
-    case frame::Paint::Wrap::repeat:
-      return kRepeat;
-    case frame::Paint::Wrap::mirror:
-      return kMirror;
-    case frame::Paint::Wrap::clamp:
-    case frame::Paint::Wrap::once:
-      return kClamp;
-  }
-  return kRepeat;
+  constexpr int kNumbers[] = {10497, 33071, 33648};  // repeat, clamp, mirror; no Material has Wrap::once
+  return kNumbers[static_cast<std::size_t>(wrap)];
 }
 
 // Duplicates places (CutSurface) on creases, so that each place has one normal group (NormalGroups). Returns the group

@@ -80,16 +80,8 @@ std::string matrix_text(const Eigen::Matrix4d& matrix) {
 }
 
 const char* wrap_name(frame::Paint::Wrap wrap) {
-  switch (wrap) {
-    case frame::Paint::Wrap::repeat:
-      return "repeat";
-    case frame::Paint::Wrap::mirror:
-      return "mirror";
-    case frame::Paint::Wrap::clamp:
-    case frame::Paint::Wrap::once:
-      return "clamp";
-  }
-  return "repeat";
+  constexpr const char* kNames[] = {"repeat", "clamp", "mirror"};  // no Material has Wrap::once
+  return kNames[static_cast<std::size_t>(wrap)];
 }
 
 void write_picture(std::ostream& out, const Material& material, const std::string& file, const std::string& path) {
