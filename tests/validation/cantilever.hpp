@@ -19,6 +19,10 @@ struct ElasticaPoint {
 inline constexpr ElasticaPoint kHeavyElastica[] = {{0.1, 0.012500}, {1, 0.124562},  {2, 0.246673},  {5, 0.585721},
                                                    {10, 1.066802},  {20, 1.863930}, {50, 3.705561}, {100, 5.888105}};
 
+/// The meshes of a rectangle.
+inline constexpr scene::ClothShape kShapes[] = {scene::ClothShape::quads, scene::ClothShape::aligned_triangles,
+                                                scene::ClothShape::crossed_triangles};
+
 inline const char* name_of(scene::ClothShape shape) {
   if (shape == scene::ClothShape::quads) return "quads";
   return shape == scene::ClothShape::aligned_triangles ? "aligned" : "crossed";

@@ -52,9 +52,7 @@ TEST_P(Cantilever, ApproachesTheElasticaInSecondOrder) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Cantilever,
-                         ::testing::Values(ClothShape::quads, ClothShape::aligned_triangles,
-                                           ClothShape::crossed_triangles),
+INSTANTIATE_TEST_SUITE_P(Of, Cantilever, ::testing::ValuesIn(testing::kShapes),
                          [](const auto& instance) { return testing::name_of(instance.param); });
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
   for (const char* fabric : {"silk", "wool", "leather", "denim"}) {
     std::printf("%s, square:", fabric);
     double quads = 0;
-    for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
+    for (ClothShape shape : testing::kShapes) {
       const scene::Scene scene = square(shape, scene::find_fabric(fabric)->material);
       const model::Model model = environment::Environment(scene).model;
       const Drape d = drape_to_rest(scene, model.cloths[0].mesh.topology.triangles);

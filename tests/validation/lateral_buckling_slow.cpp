@@ -74,7 +74,7 @@ double onset(ClothShape shape, const Strip& cells) {
 // narrowest strip is within 3 % of theory, and the line through the onsets of the two narrowest strips meets the theory
 // at w = 0.
 TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
-  for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
+  for (ClothShape shape : testing::kShapes) {
     std::printf("%s: w/L, onset\n", testing::name_of(shape));
     Vec2 before = Vec2::Zero(), last = Vec2::Zero();
     for (int along : {20, 40, 80, 160}) {
@@ -90,7 +90,7 @@ TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
 }
 
 TEST(LateralBuckling, HardlyDependsOnTheCellsAcross) {
-  for (ClothShape shape : {ClothShape::quads, ClothShape::aligned_triangles, ClothShape::crossed_triangles}) {
+  for (ClothShape shape : testing::kShapes) {
     const double coarse = onset(shape, {40, 2}), middle = onset(shape, {80, 4}), fine = onset(shape, {160, 8});
     std::printf("%s: w/L 0.05, onset with 2, 4, 8 cells across: %.3f %.3f %.3f\n", testing::name_of(shape), coarse,
                 middle, fine);

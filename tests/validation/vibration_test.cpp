@@ -170,9 +170,7 @@ TEST(VibrationOfARun, HasThePhaseOfItsModes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Vibration,
-                         ::testing::Values(ClothShape::quads, ClothShape::aligned_triangles,
-                                           ClothShape::crossed_triangles),
+INSTANTIATE_TEST_SUITE_P(Of, Vibration, ::testing::ValuesIn(testing::kShapes),
                          [](const auto& instance) { return testing::name_of(instance.param); });
 
 }  // namespace
