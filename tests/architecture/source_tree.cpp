@@ -2,27 +2,20 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
 #include <sstream>
-#include <stdexcept>
+
+#include "core/input_file.hpp"
 
 namespace weft::architecture {
 namespace {
 
 namespace fs = std::filesystem;
 
-std::string read(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot read " + path.string());
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 std::vector<std::string> lines_of(const fs::path& path) {
-  std::istringstream text(read(path));
+  std::istringstream text(read_file(path));
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
@@ -82,7 +75,7 @@ struct Declaration {
 };
 
 std::vector<Declaration> read_declarations(const fs::path& root) {
-  const std::string text = read(root / "src/CMakeLists.txt");
+  const std::string text = read_file(root / "src/CMakeLists.txt");
   const std::regex pattern(R"re(\bweft_(room|module)\((\w+)(?:\s+DOES\s+"([^"]*)")?([^()]*)\))re");
   std::vector<Declaration> declarations;
   for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {

@@ -24,7 +24,7 @@ struct Module {
   std::filesystem::path folder() const { return std::filesystem::path(room) / name; }
 };
 
-// Rooms and modules in the order of the file. Both functions throw std::runtime_error if the file cannot be read.
+// Rooms and modules in the order of the file. Both functions throw Error if the file cannot be read.
 std::vector<Room> read_rooms(const std::filesystem::path& root);
 std::vector<Module> read_modules(const std::filesystem::path& root);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "architecture/source_tree.hpp"
+#include "core/input_file.hpp"
 #include "core/version.hpp"
 #include "docs/generated.hpp"
 #include "docs/markdown.hpp"

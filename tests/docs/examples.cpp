@@ -4,12 +4,13 @@
 #include <sys/wait.h>
 
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
 
+#include "core/input_file.hpp"
+#include "core/temporary_file.hpp"
 #include "docs/markdown.hpp"
 
 namespace weft::docs {
@@ -20,15 +21,9 @@ namespace fs = std::filesystem;
 const std::regex kFirstLineOfScript(R"(# ([\w.-]+\.py)\n[^]*)");
 const std::regex kFirstLine(R"(# ([\w.-]+\.toml)(?:: ([\w.-]+\.toml), and at its end)?\n[^]*)");
 
-void write(const fs::path& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
-}
-
 // Runs `commands` in a shell that stops at the first failure. `output` receives standard output and standard error.
 int run(const std::string& commands, const fs::path& folder, std::string& output) {
-  write(folder / "commands.sh", commands);
+  write_file(folder / "commands.sh", commands, Flush::no);
   FILE* pipe = ::popen(
       fmt::format("cd '{}' && PATH=$PWD/.bin:$PATH PYTHONPATH='" WEFT_BUILD_DIR "/python' sh -eu commands.sh 2>&1",
                   folder.string())
@@ -93,9 +88,10 @@ std::string run_section(const std::string& page, const std::string& section, con
     std::smatch match;
     if (std::regex_match(fence.text, match, kFirstLine)) {
       const std::string base = match[2].matched ? read_file(folder / match[2].str()) + "\n" : "";
-      write(folder / match[1].str(), base + fence.text);
+      write_file(folder / match[1].str(), base + fence.text, Flush::no);
     }
-    if (std::regex_match(fence.text, match, kFirstLineOfScript)) write(folder / match[1].str(), fence.text);
+    if (std::regex_match(fence.text, match, kFirstLineOfScript))
+      write_file(folder / match[1].str(), fence.text, Flush::no);
     if (fence.section != section) continue;
     if (fence.info == "sh") {
       output.clear();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/input_file.hpp"
 #include "docs/markdown.hpp"
 #include "support/test_folder.hpp"
 

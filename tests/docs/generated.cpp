@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "architecture/source_tree.hpp"
+#include "core/input_file.hpp"
 #include "core/version.hpp"
 #include "docs/markdown.hpp"
 #include "docs/scene_keys.hpp"

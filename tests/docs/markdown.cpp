@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
-#include <stdexcept>
 
 namespace weft::docs {
 namespace {
@@ -123,12 +120,6 @@ std::vector<fs::path> pages(const fs::path& root) {
   }
   std::sort(found.begin(), found.end());
   return found;
-}
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("cannot read " + file.string());
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace weft::docs

@@ -31,7 +31,4 @@ Page read_page(const std::string& text);
 /// All hand-written pages, relative to root, sorted by name.
 std::vector<std::filesystem::path> pages(const std::filesystem::path& root);
 
-/// Returns the bytes of a file; throws std::runtime_error if it cannot be read.
-std::string read_file(const std::filesystem::path& file);
-
 }  // namespace weft::docs

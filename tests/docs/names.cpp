@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 
+#include "core/input_file.hpp"
 #include "docs/markdown.hpp"
 
 namespace weft::docs {

@@ -1,8 +1,9 @@
 // Rewrites the generated parts of the documentation: weft_docs ROOT, or `ninja docs`.
 #include <cstdio>
 #include <exception>
-#include <fstream>
 
+#include "core/input_file.hpp"
+#include "core/temporary_file.hpp"
 #include "docs/generated.hpp"
 #include "docs/markdown.hpp"
 
@@ -15,11 +16,9 @@ int main(int argc, char** argv) {
   try {
     const std::filesystem::path root = argv[1];
     for (const auto& file : pages(root)) {
-      const std::string old_text = read_file(root / file), text = regenerated(root, file, old_text);
+      const std::string old_text = weft::read_file(root / file), text = regenerated(root, file, old_text);
       if (text == old_text) continue;
-      std::ofstream out(root / file, std::ios::binary);
-      out << text;
-      if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
+      weft::write_file(root / file, text);
       std::printf("%s\n", file.c_str());
     }
   } catch (const std::exception& error) {
