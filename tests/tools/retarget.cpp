@@ -32,6 +32,24 @@ double angle(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
+/// The times of the channel with the most keys [s].
+std::vector<double> key_times(const Clip& clip) {
+  std::vector<double> times;
+  for (const Channel& channel : clip.channels)
+    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  return times;
+}
+
+/// Turn about the vertical from where one skeleton faces to where another does.
+Quat turn_between(const Skeleton& a, const Posture& of_a, const Skeleton& b, const Posture& of_b) {
+  const auto left = [](const Skeleton& s, const Posture& p) -> Vec3 {
+    const Vec3 v = s.across_hips(p).normalized() + s.across_shoulders(p).normalized();
+    return v - v.dot(kUp) * kUp;
+  };
+  const Vec3 l0 = left(a, of_a), l1 = left(b, of_b);
+  return Quat(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
+}
+
 struct Follows {
   double angle = 0;                  // largest angle between a bone and the same bone of the motion [degrees]
   std::string bone;                  // the bone with that angle
@@ -78,9 +96,7 @@ Vec3 middle_of_skin(const Rig& body, Joint joint, const Pose& pose) {
 
 Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours) {
   const Skeleton a(body), b(motion);
-  std::vector<double> times;
-  for (const Channel& channel : ours.channels)
-    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  const std::vector<double> times = key_times(ours);
   std::vector<Posture> at, from;
   const double floor = lowest(body, rest_pose(body.character));
   for (const double t : times) {
@@ -89,13 +105,7 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   }
   Follows result;
   result.keys = times.size();
-  // The directions to the left of both skeletons at the first key.
-  const auto left = [](const Skeleton& s, const Posture& p) -> Vec3 {
-    const Vec3 v = s.across_hips(p).normalized() + s.across_shoulders(p).normalized();
-    return v - v.dot(kUp) * kUp;
-  };
-  const Vec3 l0 = left(b, from.front()), l1 = left(a, at.front());
-  const Quat face(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
+  const Quat face = turn_between(b, from.front(), a, at.front());
   const Footsteps steps = find_footsteps(b, from, times, kUp);
   std::vector<bool> standing(times.size(), false);
   const double ratio = a.leg_length(at.front()) / b.leg_length(from.front());
@@ -152,9 +162,7 @@ void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const
   const Skeleton a(body), b(motion);
   for (const Joint joint : {Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand, Joint::right_hand})
     if (!a.has(joint) || !b.has(joint)) return;
-  std::vector<double> times;
-  for (const Channel& channel : ours.channels)
-    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  const std::vector<double> times = key_times(ours);
   double trunk = 0;
   for (const double t : times) trunk = std::max(trunk, b.trunk(b.at(pose_at(motion.character, theirs, t))).norm());
   const Posture rest = a.at(rest_pose(body.character));
@@ -163,14 +171,7 @@ void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const
   double hands = 0, hips = 0;
   for (const double t : times) {
     const Posture p = a.at(pose_at(body.character, ours, t)), q = b.at(pose_at(motion.character, theirs, t));
-    if (t == times.front()) {
-      const auto left = [](const Skeleton& s, const Posture& at) -> Vec3 {
-        const Vec3 v = s.across_hips(at).normalized() + s.across_shoulders(at).normalized();
-        return v - v.dot(kUp) * kUp;
-      };
-      const Vec3 l0 = left(b, q), l1 = left(a, p);
-      face = Quat(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
-    }
+    if (t == times.front()) face = turn_between(b, q, a, p);
     const double arm = b.arm_length(q);
     const auto hand = [](const Posture& at, bool right) -> Vec3 {
       return at.places[joint_index(on_side(Joint::left_hand, right))];
@@ -206,9 +207,7 @@ void report_ranges(const Rig& body, const Rig& motion, const Clip& theirs, const
                          {"arm", Joint::left_upper_arm, {}},
                          {"leg", Joint::left_upper_leg, {}}};
   const Skeleton a(body), b(motion);
-  std::vector<double> times;
-  for (const Channel& channel : ours.channels)
-    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  const std::vector<double> times = key_times(ours);
   std::string text;
   for (const Bend& bend : kBends) {
     std::array<Vec2, 2> range{Vec2(180, 0), Vec2(180, 0)};
