@@ -1,5 +1,6 @@
 """The review page in headless Chromium, operated as by a reader. Usage: browser_test.py WEFT SOURCE_FOLDER"""
 
+import base64
 import json
 import os
 import pathlib
@@ -77,7 +78,7 @@ class Page(unittest.TestCase):
         (folder / "ref/plain.mp4").write_bytes((folder / "in/plain.mp4").read_bytes())
         weft(folder, "review", "in", "--reference", "ref", "-o", "page")
         cls.stills = [read_png((folder / f"in/stills/plain_{STEP * k:03}.png").read_bytes()) for k in range(PICTURES)]
-        cls.browser = webdriver.Browser(1280, 800)
+        cls.browser = webdriver.Browser()
 
     @classmethod
     def tearDownClass(cls):
@@ -109,7 +110,6 @@ class Page(unittest.TestCase):
 
     def shown(self, selector=".blend", size=SIZE):
         """The screen content, at the size of the video."""
-        import base64
         box = self.browser.run("const b = document.querySelector(arguments[0]).getBoundingClientRect();"
                                "return {x: b.x + scrollX, y: b.y + scrollY, width: b.width, height: b.height}", selector)
         clip = {**box, "scale": size[0] / box["width"]}

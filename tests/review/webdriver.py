@@ -1,6 +1,5 @@
 """Headless Chromium through chromedriver, with the standard library only."""
 
-import base64
 import json
 import shutil
 import socket
@@ -17,9 +16,9 @@ def missing():
 
 
 class Browser:
-    """A browser window. As a context manager, it ends the processes that it started."""
+    """A browser window; close() ends the processes that it started."""
 
-    def __init__(self, width, height, dark=False):
+    def __init__(self):
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             port = probe.getsockname()[1]
@@ -34,17 +33,9 @@ class Browser:
                             "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
             answer = self._call("POST", "/session", {"capabilities": {"alwaysMatch": capabilities}})
             self.session = f"/session/{answer['sessionId']}"
-            self.resize(width, height)
-            self.prefer(dark)
         except BaseException:
             self.close()
             raise
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
 
     def close(self):
         try:
@@ -82,7 +73,7 @@ class Browser:
 
     def press(self, *keys):
         """Presses keys one after the other: characters, or names such as ArrowLeft. Shift+X holds shift."""
-        codes = {"ArrowLeft": "\ue012", "ArrowRight": "\ue014", "ArrowDown": "\ue015", "Home": "\ue011", "End": "\ue010",
+        codes = {"ArrowLeft": "\ue012", "ArrowRight": "\ue014", "Home": "\ue011", "End": "\ue010",
                  "Escape": "\ue00c", "Enter": "\ue007", "Tab": "\ue004", "Space": " "}
         actions = []
         for key in keys:
@@ -98,11 +89,6 @@ class Browser:
         move = [{"type": "pointerMove", "duration": 20, "x": round(x), "y": round(y)} for x, y in points]
         actions = [move[0], {"type": "pointerDown", "button": 0}, *move[1:], {"type": "pointerUp", "button": 0}]
         self._call("POST", self.session + "/actions", {"actions": [{"type": "pointer", "id": "mouse", "actions": actions}]})
-
-    def screenshot(self, file, whole=False):
-        picture = self.devtools("Page.captureScreenshot", {"captureBeyondViewport": whole})["data"]
-        with open(file, "wb") as out:
-            out.write(base64.b64decode(picture))
 
     def complaints(self):
         """Console messages since the last call."""
