@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "physics/collision/proximity/closest_points.hpp"
@@ -66,7 +66,7 @@ void for_all_points(MotionQuery& q, const Change& change) {
 
 // Scales and shifts a query of size 1. With `exact`, coordinates that are multiples of 2⁻⁸ stay exact; otherwise they
 // are rounded.
-void place(MotionQuery& q, Random& random, bool exact = false) {
+void place(MotionQuery& q, Random& random, bool exact) {
   double size = random.decade(-6, 3);
   Vec3 shift = random.heads() ? Vec3(random.vector(random.decade(-6, 3))) : Vec3(Vec3::Zero());
   if (exact) {
@@ -283,70 +283,39 @@ MotionQuery grazing_rotation_query(Random& random) {
   return q;
 }
 
+/// How often a query has exact coordinates.
+enum class Exact { never, half, always };
+
+/// By QueryFamily.
+struct Family {
+  const char* name;
+  MotionQuery (*make)(Random& random);
+  Exact exact;
+};
+constexpr Family kFamilies[] = {{"random", random_query, Exact::never},
+                                {"touching", touching_query, Exact::always},
+                                {"nearly touching", nearly_touching_query, Exact::never},
+                                {"parallel edges", parallel_edges_query, Exact::half},
+                                {"one plane", one_plane_query, Exact::half},
+                                {"degenerate", degenerate_query, Exact::half},
+                                {"needles", needle_query, Exact::never},
+                                {"near misses", near_miss_query, Exact::never},
+                                {"fast", fast_query, Exact::never},
+                                {"grazing rotation", grazing_rotation_query, Exact::never}};
+static_assert(std::size(kFamilies) == kQueryFamilies.size());
+
 }  // namespace
 
 const char* name(QueryFamily family) {
-  switch (family) {
-    case QueryFamily::random:
-      return "random";
-    case QueryFamily::touching:
-      return "touching";
-    case QueryFamily::nearly_touching:
-      return "nearly touching";
-    case QueryFamily::parallel_edges:
-      return "parallel edges";
-    case QueryFamily::one_plane:
-      return "one plane";
-    case QueryFamily::degenerate:
-      return "degenerate";
-    case QueryFamily::needles:
-      return "needles";
-    case QueryFamily::near_misses:
-      return "near misses";
-    case QueryFamily::fast:
-      return "fast";
-    case QueryFamily::grazing_rotation:
-      return "grazing rotation";
-  }
-  throw std::logic_error("no such family");
+  return kFamilies[static_cast<std::size_t>(family)].name;
 }
 
 MotionQuery make_query(QueryFamily family, std::mt19937& engine) {
   Random random{engine};
-  MotionQuery q;
-  bool exact = false;
-  switch (family) {
-    case QueryFamily::random:
-      q = random_query(random);
-      break;
-    case QueryFamily::touching:
-      q = touching_query(random), exact = true;
-      break;
-    case QueryFamily::nearly_touching:
-      q = nearly_touching_query(random);
-      break;
-    case QueryFamily::parallel_edges:
-      q = parallel_edges_query(random), exact = random.heads();
-      break;
-    case QueryFamily::one_plane:
-      q = one_plane_query(random), exact = random.heads();
-      break;
-    case QueryFamily::degenerate:
-      q = degenerate_query(random), exact = random.heads();
-      break;
-    case QueryFamily::needles:
-      q = needle_query(random);
-      break;
-    case QueryFamily::near_misses:
-      return near_miss_query(random);
-    case QueryFamily::fast:
-      q = fast_query(random);
-      break;
-    case QueryFamily::grazing_rotation:
-      q = grazing_rotation_query(random);
-      break;
-  }
-  place(q, random, exact);
+  const Family& made = kFamilies[static_cast<std::size_t>(family)];
+  MotionQuery q = made.make(random);
+  if (family == QueryFamily::near_misses) return q;
+  place(q, random, made.exact == Exact::always || (made.exact == Exact::half && random.heads()));
   return q;
 }
 
