@@ -16,6 +16,7 @@
 #include "docs/markdown.hpp"
 #include "docs/scene_keys.hpp"
 #include "film/scene/fabrics.hpp"
+#include "lab/bench/report.hpp"
 #include "tools/cli/options.hpp"
 
 namespace weft::docs {
@@ -180,9 +181,9 @@ std::string modules(const fs::path& root) {
 
 // --- Measurements: tables as the programs of tests/bench printed them.
 
-std::vector<std::vector<std::string>> printed_table(const fs::path& file) {
+bench::Table printed_table(const fs::path& file) {
   std::istringstream text(read_file(file));
-  std::vector<std::vector<std::string>> rows;
+  bench::Table rows;
   for (std::string line; std::getline(text, line);) {
     if (!line.starts_with("| ")) {
       if (rows.empty() || line.starts_with("|-")) continue;
@@ -227,54 +228,41 @@ std::string origin(const fs::path& file) {
                      match[4].str(), match[5].str());
 }
 
-std::string side_by_side(const fs::path& folder, const std::string& arguments);
-
-// Arguments: "FILE" or "FILE FILE ...: COLUMN, COLUMN". Prints the origin of each file, then a table. Without columns,
-// this is the first table of the file. With columns, it has the rows that the first tables of all files have in common,
-// side by side.
-std::string measured(const fs::path& folder, const std::string& arguments) {
-  std::istringstream files(arguments.substr(0, arguments.find(": ")));
-  std::string text;
-  for (std::string file; files >> file;) text += origin(folder / file) + "\n\n";
-  if (arguments.find(": ") != std::string::npos) return text + side_by_side(folder, arguments);
-  const auto rows = printed_table(folder / arguments);
-  for (const auto& row : rows) {
-    text += fmt::format("| {} |\n", fmt::join(row, " | "));
-    if (&row != &rows.front()) continue;
-    for (std::size_t i = 0; i < row.size(); ++i) text += "|---";
-    text += "|\n";
-  }
-  return text;
-}
-
-std::string side_by_side(const fs::path& folder, const std::string& arguments) {
+// The rows that the first tables of all files have in common, side by side.
+bench::Table side_by_side(const fs::path& folder, const std::string& arguments) {
   const auto colon = arguments.find(": ");
   std::istringstream files(arguments.substr(0, colon)), names(arguments.substr(colon + 2));
   std::vector<std::string> columns;
   for (std::string name; std::getline(names >> std::ws, name, ',');) columns.push_back(name);
-  std::vector<std::pair<std::string, std::vector<std::string>>> lines;
+  bench::Table table;
   const bool several = arguments.find(' ') < colon;
   bool first = true;
   for (std::string file; files >> file; first = false) {
-    const auto rows = printed_table(folder / file);
+    const bench::Table rows = printed_table(folder / file);
     std::map<std::string, std::vector<std::string>> cells;
     for (const auto& row : rows) cells[row[0]] = select_cells(row, rows[0], columns);
     for (std::string& cell : cells[rows[0][0]]) cell = (several ? fs::path(file).stem().string() + ": " : "") + cell;
     if (first) {
-      for (const auto& row : rows) lines.push_back({row[0], {}});
+      for (const auto& row : rows) table.push_back({row[0]});
     }
-    std::erase_if(lines, [&](const auto& line) { return !cells.contains(line.first); });
-    for (auto& [name, line] : lines) line.insert(line.end(), cells[name].begin(), cells[name].end());
-  }
-  std::string table;
-  for (const auto& [name, line] : lines) {
-    table += fmt::format("| {} | {} |\n", name, fmt::join(line, " | "));
-    if (&line != &lines.front().second) continue;
-    table += "|---";
-    for (std::size_t i = 0; i < line.size(); ++i) table += "|---";
-    table += "|\n";
+    std::erase_if(table, [&](const auto& line) { return !cells.contains(line[0]); });
+    for (auto& line : table) {
+      const std::vector<std::string>& more = cells[line[0]];
+      line.insert(line.end(), more.begin(), more.end());
+    }
   }
   return table;
+}
+
+// Arguments: "FILE" or "FILE FILE ...: COLUMN, COLUMN". Prints the origin of each file, then a table: without columns,
+// the first table of the file; with columns, side_by_side().
+std::string measured(const fs::path& folder, const std::string& arguments) {
+  const auto colon = arguments.find(": ");
+  std::istringstream files(arguments.substr(0, colon));
+  std::string text;
+  for (std::string file; files >> file;) text += origin(folder / file) + "\n\n";
+  return text + bench::markdown(colon == std::string::npos ? printed_table(folder / arguments)
+                                                           : side_by_side(folder, arguments));
 }
 
 std::string print(const fs::path& root, const fs::path& file, const std::string& name) {
