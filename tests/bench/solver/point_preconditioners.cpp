@@ -9,22 +9,6 @@
 namespace weft::bench {
 namespace {
 
-// Applies `body` to vectors in the padded form of the program's inner loops.
-class InPaddedVec3s {
- public:
-  template <class Body>
-  void apply(std::span<const Vec3> r, std::span<Vec3> z, const Body& body) {
-    r_.clear();
-    for (const Vec3& v : r) r_.push_back(solver::padded<double>(v));
-    z_.resize(r.size());
-    body(std::span<const solver::PaddedVec3<double>>(r_), std::span<solver::PaddedVec3<double>>(z_));
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] = solver::vec3_of(z_[i]);
-  }
-
- private:
-  std::vector<solver::PaddedVec3<double>> r_, z_;
-};
-
 class OfTheProgram final : public Inverse {
  public:
   explicit OfTheProgram(bool levels) : levels_(levels) {}
@@ -38,14 +22,18 @@ class OfTheProgram final : public Inverse {
   }
   void apply(std::span<const Vec3> r, std::span<Vec3> z) override {
     const std::size_t all = 0;
-    vectors_.apply(r, z, [&](auto from, auto to) { preconditioner_.apply(from, to, {&all, 1}); });
+    r_.clear();
+    for (const Vec3& v : r) r_.push_back(solver::padded<double>(v));
+    z_.resize(r.size());
+    preconditioner_.apply(r_, z_, {&all, 1});
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] = solver::vec3_of(z_[i]);
   }
 
  private:
   bool levels_;
   solver::LinearSystem without_levels_;
   solver::Preconditioner<double> preconditioner_;
-  InPaddedVec3s vectors_;
+  std::vector<solver::PaddedVec3<double>> r_, z_;
 };
 
 // L Lᵀ with the pattern of the matrix, row by row; if a pivot fails, retries with a larger diagonal (Manteuffel, "An
