@@ -67,6 +67,16 @@ class Exported : public MadeFrames {
     EXPECT_EQ(there, expected.size());
   }
   std::filesystem::path file(const std::string& name) const { return request_.folder / name; }
+
+  /// The content of a file; valid until the next call.
+  const aiScene& read(const std::string& name) {
+    const aiScene* scene = importer_.ReadFile(file(name).string(), 0);
+    if (scene == nullptr) throw std::runtime_error(importer_.GetErrorString());
+    return *scene;
+  }
+
+ private:
+  Assimp::Importer importer_;
 };
 
 void expect_points(const std::vector<Vec3>& expected, const aiVector3D* came, bool turned) {
@@ -82,11 +92,7 @@ TEST_F(Exported, PlyFilesHoldEachObjectOfEachFrame) {
   for (int k : request_.frames) {
     const auto shown = snapshot(k);
     for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-      Assimp::Importer importer;
-      const auto name = file(fmt::format("{}_{:05}.ply", surfaces_[s]->name, k));
-      const aiScene* scene = importer.ReadFile(name.string(), 0);
-      ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-      const aiMesh& mesh = *scene->mMeshes[0];
+      const aiMesh& mesh = *read(fmt::format("{}_{:05}.ply", surfaces_[s]->name, k)).mMeshes[0];
       ASSERT_EQ(mesh.mNumVertices, shown->states[s].positions.size());
       EXPECT_EQ(mesh.mNumFaces, surfaces_[s]->triangles.size());
       expect_points(shown->states[s].positions, mesh.mVertices, false);
@@ -96,10 +102,8 @@ TEST_F(Exported, PlyFilesHoldEachObjectOfEachFrame) {
 
 TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
   write(Format::obj, {3});
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file("cloth_00003.obj").string(), 0);
-  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-  const aiMesh& mesh = *scene->mMeshes[0];
+  const aiScene& scene = read("cloth_00003.obj");
+  const aiMesh& mesh = *scene.mMeshes[0];
   ASSERT_EQ(mesh.mNumFaces, 2u);
   const frame::Surface& cloth = *surfaces_[0];
   const std::vector<Vec3> positions = snapshot(3)->states[0].positions;
@@ -126,13 +130,12 @@ TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
 
 // Two panels that are sewn along their common edge; in the drawing, the right panel lies apart.
 TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
-  frame::Surface garment = *surfaces_[0];
+  frame::Surface& garment = *surfaces_[0];
   garment.quads.clear();
   garment.paint_uv = {{Vec2(0, 0), Vec2(0.1, 0), Vec2(0.1, 0.1)},
                       {Vec2(0, 0), Vec2(0.1, 0.1), Vec2(0, 0.1)},
                       {Vec2(0.5, 0.7), Vec2(0.6, 0.7), Vec2(0.6, 0.8)},
                       {Vec2(0.5, 0.7), Vec2(0.6, 0.8), Vec2(0.5, 0.8)}};
-  surfaces_[0] = std::make_shared<frame::Surface>(garment);
   for (const auto& [format, name] :
        {std::pair(Format::obj, "cloth_00003.obj"), std::pair(Format::ply, "cloth_00003.ply"),
         std::pair(Format::gltf, "flutter.glb")}) {
@@ -150,18 +153,15 @@ TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
 
 // A picture of two pixels, the right one half transparent. It occurs once, rotated by 90 degrees, 0.1 m wide.
 TEST_F(Exported, PicturesLieAndLookAsOurs) {
-  frame::Surface printed = *surfaces_[0];
+  frame::Surface& printed = *surfaces_[0];
   frame::Paint& paint = printed.appearance.paint;
   paint.texture = std::make_shared<frame::Texture>(frame::Texture{2, 1, {255, 0, 0, 255, 0, 0, 255, 128}});
   paint.texture_from_uv << 0, 10, 0, -20, 0, 1;
   paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
   paint.alpha = frame::Paint::Alpha::over_color;
-  surfaces_[0] = std::make_shared<frame::Surface>(printed);
   write(Format::gltf, {3});
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
-  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-  const aiMesh& mesh = *scene->mMeshes[0];
+  const aiScene& scene = read("flutter.glb");
+  const aiMesh& mesh = *scene.mMeshes[0];
   ASSERT_TRUE(mesh.HasTextureCoords(1));
   for (std::size_t v = 0; v < 6; ++v) {
     const Vec2& uv = printed.uv[v];
@@ -170,8 +170,8 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
     EXPECT_NEAR(mesh.mTextureCoords[1][v].y, (1 - 20 * uv.x() + 1) / 3, 4 * kSingle);
     EXPECT_NEAR(mesh.mTextureCoords[0][v].x, uv.x(), kSingle);
   }
-  ASSERT_EQ(scene->mNumTextures, 1U);
-  const aiTexture& held = *scene->mTextures[0];
+  ASSERT_EQ(scene.mNumTextures, 1U);
+  const aiTexture& held = *scene.mTextures[0];
   const image::Picture picture =
       image::decode_picture({reinterpret_cast<const char*>(held.pcData), static_cast<std::size_t>(held.mWidth)});
   ASSERT_EQ(std::pair(picture.width, picture.height), std::pair(4, 3));
@@ -191,11 +191,10 @@ TEST_F(Exported, PicturesLieAndLookAsOurs) {
 
 // Weft draws such a picture opaque, and the colour of the surface around it.
 TEST_F(Exported, PictureWhoseAlphaIsIgnoredStaysOpaqueIfItOccursOnce) {
-  frame::Surface printed = *surfaces_[0];
+  frame::Surface& printed = *surfaces_[0];
   frame::Paint& paint = printed.appearance.paint;
   paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {0, 0, 255, 128}});
   paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
-  surfaces_[0] = std::make_shared<frame::Surface>(printed);
   write(Format::obj, {3});
   const image::Picture picture = image::read_picture(file("cloth.png"));
   ASSERT_EQ(std::pair(picture.width, picture.height), std::pair(3, 3));
@@ -207,12 +206,11 @@ TEST_F(Exported, PictureWhoseAlphaIsIgnoredStaysOpaqueIfItOccursOnce) {
 
 // MTL files also name a picture that is repeated and not rotated; its alpha cuts holes.
 TEST_F(Exported, MaterialFilesNameThePicture) {
-  frame::Surface lace = *surfaces_[0];
+  frame::Surface& lace = *surfaces_[0];
   frame::Paint& paint = lace.appearance.paint;
   paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 255, 255, 128}});
   paint.texture_from_uv << 4, 0, 0.5, 0, 8, 0.25;
   paint.alpha = frame::Paint::Alpha::cutout;
-  surfaces_[0] = std::make_shared<frame::Surface>(lace);
   write(Format::obj, {3});
   const std::string text = support::read_bytes(file("cloth.mtl"));
   for (const char* line : {"map_Kd -s 4 8 1 -o 0.5 0.25 0 cloth.png\n", "map_d -s 4 8 1 -o 0.5 0.25 0 cloth.png\n"})
@@ -223,10 +221,9 @@ TEST_F(Exported, MaterialFilesNameThePicture) {
 
 // Readers of MTL repeat a picture along both axes, or clamp it along both; they cannot mirror it.
 TEST_F(Exported, MaterialFilesSayThatAPictureIsMirrored) {
-  frame::Surface mirrored = *surfaces_[0];
+  frame::Surface& mirrored = *surfaces_[0];
   mirrored.appearance.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
   mirrored.appearance.paint.wrap_v = frame::Paint::Wrap::mirror;
-  surfaces_[0] = std::make_shared<frame::Surface>(mirrored);
   write(Format::obj, {3});
   const std::string text = support::read_bytes(file("cloth.mtl"));
   EXPECT_NE(text.find("# cloth.png is mirrored"), std::string::npos) << text;
@@ -234,10 +231,9 @@ TEST_F(Exported, MaterialFilesSayThatAPictureIsMirrored) {
 
 // Without texture coordinates, a picture has no place on the surface.
 TEST_F(Exported, SurfacesWithoutTextureCoordinatesHaveTheirColorAlone) {
-  frame::Surface bare = *surfaces_[0];
+  frame::Surface& bare = *surfaces_[0];
   bare.uv.clear();
   bare.appearance.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 0, 0, 255}});
-  surfaces_[0] = std::make_shared<frame::Surface>(bare);
   write(Format::obj, {3});
   const std::string text = support::read_bytes(file("cloth.mtl"));
   EXPECT_EQ(text.find("cloth.png"), std::string::npos) << text;
@@ -251,15 +247,13 @@ TEST_F(Exported, EveryPictureHasAFileOfItsOwn) {
   const auto painted = [](frame::Appearance& look, std::uint8_t red) {
     look.paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {red, 0, 0, 255}});
   };
-  frame::Surface cloth = *surfaces_[0], other = *surfaces_[1];
+  frame::Surface &cloth = *surfaces_[0], &other = *surfaces_[1];
   cloth.parts = {{"front", cloth.appearance}, {"back", cloth.appearance}};
   cloth.part_of_triangle = {0, 0, 1, 1};
   painted(cloth.parts[0].appearance, 10);
   painted(cloth.parts[1].appearance, 20);
   other.name = "cloth_2";
   painted(other.appearance, 30);
-  surfaces_[0] = std::make_shared<frame::Surface>(cloth);
-  surfaces_[1] = std::make_shared<frame::Surface>(other);
   write(Format::obj, {3});
 }
 
@@ -318,19 +312,11 @@ Vec3 normal_at(const frame::Surface& surface, const std::vector<Vec3>& x, Index 
   return sum.normalized();
 }
 
-void make_smooth(std::shared_ptr<const frame::Surface>& surface) {
-  frame::Surface smooth = *surface;
-  smooth.crease_angle = 180;  // as for drawn cloth
-  surface = std::make_shared<frame::Surface>(smooth);
-}
-
 TEST_F(Exported, ObjFilesHaveNormalsAndAMaterial) {
-  make_smooth(surfaces_[0]);
+  surfaces_[0]->crease_angle = 180;  // as for drawn cloth
   write(Format::obj, {3, 4});
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file("cloth_00003.obj").string(), 0);
-  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-  const aiMesh& mesh = *scene->mMeshes[0];
+  const aiScene& scene = read("cloth_00003.obj");
+  const aiMesh& mesh = *scene.mMeshes[0];
   ASSERT_TRUE(mesh.HasNormals());
   const frame::Surface& cloth = *surfaces_[0];
   const std::vector<Vec3> x = snapshot(3)->states[0].positions;
@@ -339,7 +325,7 @@ TEST_F(Exported, ObjFilesHaveNormalsAndAMaterial) {
       const aiVector3D& n = mesh.mNormals[mesh.mFaces[f].mIndices[c]];
       EXPECT_LT((Vec3(n.x, n.y, n.z) - normal_at(cloth, x, cloth.quads[f][c])).norm(), 1e-6) << f << c;
     }
-  const aiMaterial& material = *scene->mMaterials[mesh.mMaterialIndex];
+  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
   EXPECT_EQ(std::string(material.GetName().C_Str()), "cloth");
   aiColor3D color;
   ASSERT_EQ(material.Get(AI_MATKEY_COLOR_DIFFUSE, color), aiReturn_SUCCESS);
@@ -350,12 +336,10 @@ TEST_F(Exported, ObjFilesHaveNormalsAndAMaterial) {
 }
 
 TEST_F(Exported, GltfNormalsMoveWithTheFrames) {
-  make_smooth(surfaces_[0]);
+  surfaces_[0]->crease_angle = 180;  // as for drawn cloth
   write(Format::gltf, {2, 3});
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
-  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-  const aiMesh& mesh = *scene->mMeshes[0];
+  const aiScene& scene = read("flutter.glb");
+  const aiMesh& mesh = *scene.mMeshes[0];
   ASSERT_EQ(mesh.mNumVertices, 6u);
   ASSERT_EQ(mesh.mNumAnimMeshes, 1u);
   const auto expect_normals = [&](int frame, const aiVector3D* normals) {
@@ -411,11 +395,9 @@ std::vector<Vec3> morphed(const aiMesh& mesh, const std::vector<double>& weights
 
 TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
   write(Format::gltf, {2, 3, 4, 5});
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
-  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-  ASSERT_EQ(scene->mNumMeshes, 2u) << "what is not visible is left out";
-  const aiMesh &cloth = *scene->mMeshes[0], &floor = *scene->mMeshes[1];
+  const aiScene& scene = read("flutter.glb");
+  ASSERT_EQ(scene.mNumMeshes, 2u) << "what is not visible is left out";
+  const aiMesh &cloth = *scene.mMeshes[0], &floor = *scene.mMeshes[1];
   EXPECT_EQ(std::string(cloth.mName.C_Str()), "cloth");
   EXPECT_EQ(cloth.mNumFaces, 4u);
   EXPECT_EQ(cloth.mNumAnimMeshes, 3u);
@@ -423,8 +405,8 @@ TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
   expect_points(snapshot(2)->states[1].positions, floor.mVertices, true);
   EXPECT_NEAR(cloth.mTextureCoords[0][5].x, 0.2, kSingle);
 
-  ASSERT_EQ(scene->mNumAnimations, 1u);
-  const aiAnimation& animation = *scene->mAnimations[0];
+  ASSERT_EQ(scene.mNumAnimations, 1u);
+  const aiAnimation& animation = *scene.mAnimations[0];
   ASSERT_EQ(animation.mNumMorphMeshChannels, 1u);
   const aiMeshMorphAnim& channel = *animation.mMorphMeshChannels[0];
   EXPECT_EQ(std::string(channel.mName.C_Str()), "cloth");
@@ -458,10 +440,8 @@ TEST_F(Exported, GltfWithTooManyFramesIsRefusedBeforeItsWeightsAreAllocated) {
 
 TEST_F(Exported, GltfMaterialsHaveTheColoursInLinearLight) {
   write(Format::gltf, {0});
-  Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
-  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
-  const aiMaterial& material = *scene->mMaterials[scene->mMeshes[0]->mMaterialIndex];
+  const aiScene& scene = read("flutter.glb");
+  const aiMaterial& material = *scene.mMaterials[scene.mMeshes[0]->mMaterialIndex];
   aiColor4D color;
   ASSERT_EQ(material.Get(AI_MATKEY_BASE_COLOR, color), aiReturn_SUCCESS);
   const Vec3 expected = image::linear_from_srgb(surfaces_[0]->appearance.color);

@@ -36,7 +36,7 @@ class MadeFrames : public support::TestFolder {
     snapshot->frame = k;
     snapshot->time = k / request_.fps;
     snapshot->stage = stage_;
-    snapshot->surfaces = surfaces_;
+    snapshot->surfaces.assign(surfaces_.begin(), surfaces_.end());
     for (const auto& of_surface : positions(k)) snapshot->states.push_back({of_surface, {}});
     snapshot->states.push_back(snapshot->states.back());
     return snapshot;
@@ -44,7 +44,7 @@ class MadeFrames : public support::TestFolder {
 
   Request request_;
   std::shared_ptr<const frame::Stage> stage_ = std::make_shared<frame::Stage>();
-  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
+  std::vector<std::shared_ptr<frame::Surface>> surfaces_;
 };
 
 }  // namespace weft::exporter

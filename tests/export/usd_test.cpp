@@ -61,6 +61,13 @@ class Staged : public MadeFrames {
     EXPECT_TRUE(exporter::write(request_, [&](int k) { return snapshot(k); }));
     return support::read_bytes(request_.folder / name);
   }
+
+  /// The data in the script for Blender.
+  nlohmann::json written_film() {
+    const std::string text = written(Format::blender, "1st film.py");
+    const auto start = text.find("r\"\"\"") + 4;
+    return nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  }
 };
 
 /// The text between the braces after `head`.
@@ -140,9 +147,8 @@ TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
 }
 
 TEST_F(Staged, UsdMaterialsOfPartsHaveNamesThatNoObjectHas) {
-  frame::Surface body = *surfaces_[1];
+  frame::Surface& body = *surfaces_[1];
   body.name = "red_dress_0_front";
-  surfaces_[1] = std::make_shared<frame::Surface>(body);
   const std::string text = written(Format::usd, "1st film.usda");
   const std::regex material("def Material \"(\\w+)\"");
   std::vector<std::string> names;
@@ -155,12 +161,11 @@ TEST_F(Staged, UsdMaterialsOfPartsHaveNamesThatNoObjectHas) {
 }
 
 TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
-  frame::Surface dress = *surfaces_[0];
+  frame::Surface& dress = *surfaces_[0];
   frame::Paint& paint = dress.parts[1].appearance.paint;
   paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {10, 20, 30, 255}});
   paint.texture_from_uv << 0, 2, 1, -3, 0, 1;
   paint.alpha = frame::Paint::Alpha::over_color;
-  surfaces_[0] = std::make_shared<frame::Surface>(dress);
   const std::string text = written(Format::usd, "1st film.usda");
   const std::string back = block(text, "def Material \"red_dress_1_back\"");
   EXPECT_NE(back.find("asset inputs:file = @red-dress.png@"), std::string::npos);
@@ -229,9 +234,7 @@ TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {
 }
 
 TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
-  const std::string text = written(Format::blender, "1st film.py");
-  const auto start = text.find("r\"\"\"") + 4;
-  auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  auto film = written_film();
   EXPECT_EQ(film["fps"], 23.976);
   EXPECT_EQ(film["size"], nlohmann::json({400, 200}));
   EXPECT_EQ(film["frames"], nlohmann::json({2, 3, 4}));
@@ -248,13 +251,10 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
 }
 
 TEST_F(Staged, PanelsThatDifferInTheirBacksAloneHaveBothInTheScriptForBlender) {
-  frame::Surface dress = *surfaces_[0];
+  frame::Surface& dress = *surfaces_[0];
   dress.parts[1].appearance = dress.appearance;
   dress.parts[1].appearance.back_color = {0, 0, 1};
-  surfaces_[0] = std::make_shared<frame::Surface>(dress);
-  const std::string text = written(Format::blender, "1st film.py");
-  const auto start = text.find("r\"\"\"") + 4;
-  auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  auto film = written_film();
   nlohmann::json& backs = film["objects"][0]["backs"];
   ASSERT_EQ(backs.size(), 2u) << backs;
   EXPECT_NEAR(backs["red-dress"][1].get<double>(), std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-9);
@@ -264,14 +264,11 @@ TEST_F(Staged, PanelsThatDifferInTheirBacksAloneHaveBothInTheScriptForBlender) {
 
 // Blender keeps 63 bytes of the name of a material, with ".001" behind it if the name is in use.
 TEST_F(Staged, MaterialsOfLongNamesKeepTheirNumberInTheScriptForBlender) {
-  frame::Surface dress = *surfaces_[0];
+  frame::Surface& dress = *surfaces_[0];
   dress.name = std::string(64, 'a');
   dress.parts = {{std::string(40, 'p'), dress.appearance}, {std::string(40, 'p'), dress.appearance}};
   for (std::size_t p = 0; p < 2; ++p) dress.parts[p].appearance.back_color = {0, 0, 0.5 + 0.1 * static_cast<double>(p)};
-  surfaces_[0] = std::make_shared<frame::Surface>(dress);
-  const std::string text = written(Format::blender, "1st film.py");
-  const auto start = text.find("r\"\"\"") + 4;
-  const auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  const auto film = written_film();
   const nlohmann::json& backs = film["objects"][0]["backs"];
   ASSERT_EQ(backs.size(), 2u) << backs;
   for (std::size_t p = 0; p < 2; ++p) {
