@@ -64,10 +64,6 @@ bool has_word(const std::string& line, const std::string& word) {
   return false;
 }
 
-}  // namespace
-
-namespace {
-
 // A weft_room() or weft_module() of src/CMakeLists.txt.
 struct Declaration {
   std::string kind, name, does;

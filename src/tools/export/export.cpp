@@ -28,9 +28,6 @@ Path frame_file(const Request& request, const std::string& object, int frame) {
 Path shape_file(const Request& request, const std::string& object) {
   return request.folder / (object + ".obj");
 }
-Path material_file(const Request& request, const std::string& object) {
-  return request.folder / (object + ".mtl");
-}
 Path cache_file(const Request& request, const std::string& object) {
   return request.folder / (object + ".pc2");
 }
@@ -40,10 +37,6 @@ Path gltf_file(const Request& request) {
 
 Path usd_file(const Request& request) {
   return request.folder / (request.name + (request.format == Format::usdz ? ".usdz" : ".usda"));
-}
-// Whether the format has materials and pictures in files beside the meshes.
-bool has_materials_beside(Format format) {
-  return format == Format::obj || format == Format::pc2 || format == Format::blender;
 }
 Path script_file(const Request& request) {
   return request.folder / (request.name + ".py");
@@ -173,11 +166,12 @@ std::vector<Path> files(const Request& request, const frame::FrameSnapshot& firs
 
 std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first) {
   std::vector<SharedFile> result;
-  const bool beside = has_materials_beside(request.format);
+  const bool beside =  // materials and pictures are in files beside the meshes
+      request.format == Format::obj || request.format == Format::pc2 || request.format == Format::blender;
   if (!beside && request.format != Format::usd) return result;
   for (const auto& surface : first.surfaces) {
     if (!beside && !surface->visible) continue;
-    if (beside) result.push_back({material_file(request, surface->name), mtl_text(*surface)});
+    if (beside) result.push_back({request.folder / (surface->name + ".mtl"), mtl_text(*surface)});
     for (const PictureFile& picture : materials_of(*surface).pictures)
       result.push_back({request.folder / picture.name, picture.png()});
   }
