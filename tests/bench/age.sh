@@ -8,7 +8,6 @@ for file in *.md; do
   case $file in
     build.md | distances.md | falling_band.md | multi_sheet*.md | wound_ball.md) modules=collision ;;
     linear_solvers.md) modules=solver ;;
-    drawing.md) modules="render simulation solver collision" ;;
     build_time.md) modules= ;;
     *) modules="simulation solver collision integrator forces bench" ;;
   esac

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <numbers>
 #include <utility>
+#include <vector>
 
-#include "physics/collision/proximity/closest_points.hpp"
+#include "collision/hierarchy/feature_distance.hpp"
 
 namespace weft::support {
 namespace {
@@ -321,27 +321,13 @@ MotionQuery make_query(QueryFamily family, std::mt19937& engine) {
 
 double distance_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
   // An edge counts as a triangle whose second end occurs twice.
-  std::array<Corners, 2> x;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const MovingSimplex& s = side == 0 ? a : b;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t corner = std::min(k, static_cast<std::size_t>(s.count) - 1);
-      x[side][k] = (1 - t) * s.t0[corner] + t * s.t1[corner];
+  std::vector<Vec3> x;
+  for (const MovingSimplex* s : {&a, &b})
+    for (int k = 0; k < 3; ++k) {
+      const int corner = std::min(k, s->count - 1);
+      x.emplace_back((1 - t) * s->t0[corner] + t * s->t1[corner]);
     }
-  }
-  double min_distance_sq = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t side = 0; side < 2; ++side) {
-      const Corners& face = x[1 - side];
-      min_distance_sq =
-          std::min(min_distance_sq, collision::closest_vertex_face(x[side][i], face[0], face[1], face[2]).distance_sq);
-    }
-    for (std::size_t j = 0; j < 3; ++j) {
-      const auto points = collision::closest_edge_edge(x[0][i], x[0][(i + 1) % 3], x[1][j], x[1][(j + 1) % 3]);
-      min_distance_sq = std::min(min_distance_sq, points.distance_sq);
-    }
-  }
-  return std::sqrt(min_distance_sq);
+  return collision::testing::feature_distance({0, 1, 2}, {3, 4, 5}, x);
 }
 
 }  // namespace weft::support
