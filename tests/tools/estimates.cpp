@@ -66,10 +66,9 @@ const Case kCases[] = {
 
 scene::Scene scene_of(const Case& one) {
   const std::string text = fmt::format(
-      "[time]\nduration = 0.48\nfps = 25\nstep = 0.01\n{}\n[[cloth]]\nname = \"sheet\"\nsize = 0.4\n"
+      "[time]\nduration = 0.48\nfps = 25\nstep = 0.01\n\n[[cloth]]\nname = \"sheet\"\nsize = 0.4\n"
       "particles = 9\n{}{}\n{}\n",
-      std::string_view(one.rest).starts_with("[contact]") ? one.rest : "", kSoft, one.cloth,
-      std::string_view(one.rest).starts_with("[contact]") ? "" : one.rest);
+      kSoft, one.cloth, one.rest);
   scene::LoadResult loaded = scene::load_text(text, std::string(one.name) + ".toml");
   if (!loaded.ok()) throw Error(ExitCode::internal, "{}", loaded.describe());
   return loaded.scene;
