@@ -19,7 +19,7 @@ const ExtremeCase& case_named(const std::string& name) {
 
 Outcome outcome_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
   const ExtremeCase& extreme = case_named(name);
-  return try_scene(support::scene_of_text(extreme.text, overrides), std::min(extreme.frames, 10), extreme.limit);
+  return try_scene(support::scene_of_text(extreme.text, overrides), std::min(extreme.frames, 10), extreme.driven);
 }
 
 TEST(Stability, EveryExtremeCaseIsAScene) {
@@ -67,7 +67,7 @@ TEST(Stability, MoreEnergyThanDrivesItIsUnbounded) {
   const ExtremeCase& jump = case_named("pin_jumps");
   // The stretch limit is off; with it, the run would give a warning.
   const scene::Scene scene = support::scene_of_text(jump.text, {"cloth.sheet.material.max_stretch=0"});
-  EXPECT_EQ(try_scene(scene, 10, {.driven = 1e-3}).verdict, Verdict::unbounded);
+  EXPECT_EQ(try_scene(scene, 10, 1e-3).verdict, Verdict::unbounded);
 }
 
 TEST(Stability, PeriodsAreThoseOfAPlateAndOfAChain) {

@@ -78,7 +78,7 @@ void add_contact_cases(const Add& add) {
 std::vector<ExtremeCase> make_cases() {
   std::vector<ExtremeCase> cases;
   const auto add = [&](std::string name, std::string what, std::string text, int frames, double driven = 0) {
-    cases.push_back({std::move(name), std::move(what), std::move(text), frames, {driven}});
+    cases.push_back({std::move(name), std::move(what), std::move(text), frames, driven});
   };
   add("light", "density 1e-4 kg/m²", hanging("material = { density = 1e-4 }\n"), 25);
   add("heavy", "density 1e4 kg/m²", hanging("material = { density = 1e4 }\n"), 25);

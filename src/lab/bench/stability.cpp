@@ -11,8 +11,8 @@
 namespace weft::bench {
 namespace {
 
-// Increase of energy that is allowed in addition to EnergyLimit: kSolverEnergyRatio times the energies in play, for
-// errors of the solver, plus kEnergyRounding [J].
+// Increase of energy that is allowed in addition to the driven energy: kSolverEnergyRatio times the energies in play,
+// for errors of the solver, plus kEnergyRounding [J].
 constexpr double kSolverEnergyRatio = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
@@ -22,8 +22,8 @@ double mechanical_energy(const simulation::FrameReport& report) {
 /// Checks positions and energy of a run in each frame, and records the largest speed and energy gain.
 class RunMonitor {
  public:
-  RunMonitor(const scene::Scene& scene, const production::SceneSimulation& simulation, const EnergyLimit& limit)
-      : cloths_(scene.cloths.size()), fps_(scene.time.fps), limit_(limit), before_(simulation.snapshot()) {
+  RunMonitor(const scene::Scene& scene, const production::SceneSimulation& simulation, double driven)
+      : cloths_(scene.cloths.size()), fps_(scene.time.fps), driven_(driven), before_(simulation.snapshot()) {
     const simulation::FrameReport start = simulation.initial_report();
     start_energy_ = mechanical_energy(start);
     largest_energy_ = start.kinetic_energy + start.elastic_energy;
@@ -49,22 +49,21 @@ class RunMonitor {
     potential_low_ = std::min(potential_low_, report.potential_energy);
     potential_high_ = std::max(potential_high_, report.potential_energy);
     const double allowed =
-        limit_.driven + kEnergyRounding + kSolverEnergyRatio * (largest_energy_ + potential_high_ - potential_low_);
+        driven_ + kEnergyRounding + kSolverEnergyRatio * (largest_energy_ + potential_high_ - potential_low_);
     outcome.energy_gain = std::max(outcome.energy_gain, (energy - start_energy_) / allowed);
     return true;
   }
 
  private:
   std::size_t cloths_;
-  double fps_;
-  EnergyLimit limit_;
+  double fps_, driven_;
   frame::SnapshotPtr before_;
   double start_energy_ = 0, largest_energy_ = 0, potential_low_ = 0, potential_high_ = 0;
 };
 
-void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcome& outcome) {
+void run(const scene::Scene& scene, int frames, double driven, Outcome& outcome) {
   production::SceneSimulation simulation(scene);
-  RunMonitor monitor(scene, simulation, limit);
+  RunMonitor monitor(scene, simulation, driven);
   bool warned = false;
   for (int k = 0; k < frames; ++k) {
     const simulation::FrameReport report = simulation.advance();
@@ -89,11 +88,11 @@ std::string_view describe(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
-Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limit) {
+Outcome try_scene(const scene::Scene& scene, int frames, double driven) {
   Outcome outcome;
   const double start = thread_cpu_seconds();
   try {
-    run(scene, frames, limit, outcome);
+    run(scene, frames, driven, outcome);
   } catch (const Error& error) {
     outcome.verdict = Verdict::refused;
     outcome.reason = error.what();

@@ -30,15 +30,11 @@ struct Outcome {
   double cpu_s = 0;
 };
 
-/// The allowed increase of energy. For errors of the solver, 0.1 times the energies in play (stability.cpp) is allowed
-/// in addition.
-struct EnergyLimit {
-  double driven = 0;  ///< largest energy that moving pins and bodies can add [J]; 0: none move
-};
-
 /// Simulates `frames` frames, or fewer if a position or the energy is not finite. If the simulation
-/// throws Error, returns Verdict::refused.
-Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limit = {});
+/// throws Error, returns Verdict::refused. `driven`: largest energy that moving pins and bodies can add [J]; 0: none
+/// move. The energy may increase by this and, for errors of the solver, by 0.1 times the energies in play
+/// (stability.cpp).
+Outcome try_scene(const scene::Scene& scene, int frames, double driven = 0);
 
 /// A scene with extreme parameters.
 struct ExtremeCase {
@@ -46,7 +42,7 @@ struct ExtremeCase {
   std::string what;
   std::string text;  ///< the scene as TOML
   int frames = 0;
-  EnergyLimit limit;
+  double driven = 0;  ///< see try_scene() [J]
 };
 const std::vector<ExtremeCase>& extreme_cases();
 

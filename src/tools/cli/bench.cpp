@@ -32,7 +32,7 @@ namespace {
 bench::Outcome try_case(const bench::ExtremeCase& extreme) {
   scene::LoadResult loaded = scene::load_text(extreme.text, extreme.name + ".toml");
   if (!loaded.ok()) throw Error(ExitCode::internal, "{}", loaded.describe());
-  return bench::try_scene(loaded.scene, extreme.frames, extreme.limit);
+  return bench::try_scene(loaded.scene, extreme.frames, extreme.driven);
 }
 
 bench::Table try_cases(const std::filesystem::path& folder, bench::Tally& count) {
