@@ -21,9 +21,10 @@ std::string size_problem(int width, int height, int test_width, int test_height)
   return fmt::format("{}x{} pixels, the reference has {}x{}", test_width, test_height, width, height);
 }
 
-// Reads a mask. A pixel is white if the mean of its channels is at least 128. Throws Error(asset_unreadable) if the
-// file cannot be read, has another size or has no white pixel.
-Mask read_mask(const std::filesystem::path& file, int width, int height) {
+// Reads a mask; none if `file` is empty. A pixel is white if the mean of its channels is at least 128. Throws
+// Error(asset_unreadable) if the file cannot be read, has another size or has no white pixel.
+std::optional<Mask> read_mask(const std::filesystem::path& file, int width, int height) {
+  if (file.empty()) return std::nullopt;
   const image::Image picture = image::read_png(file);
   if (picture.width != width || picture.height != height) {
     throw Error(ExitCode::asset_unreadable, "{}: expected a mask of {}x{} pixels, got {}x{}", file.string(), width,
@@ -75,10 +76,6 @@ Outcome outcome_of(const FileComparison& result) {
   return result.worst.figures.pixels_changed > 0 ? Outcome::within : Outcome::same;
 }
 
-std::optional<Mask> mask_of(const std::filesystem::path& file, int width, int height) {
-  return file.empty() ? std::nullopt : std::optional<Mask>(read_mask(file, width, height));
-}
-
 void compare_pictures(FileComparison& result, const Limits& limits, const std::filesystem::path& mask) {
   image::Image reference = image::read_png(result.reference), test = image::read_png(result.test);
   if (reference.width != test.width || reference.height != test.height) {
@@ -86,7 +83,7 @@ void compare_pictures(FileComparison& result, const Limits& limits, const std::f
     result.problem = size_problem(reference.width, reference.height, test.width, test.height);
     return;
   }
-  const std::optional<Mask> where = mask_of(mask, reference.width, reference.height);
+  const std::optional<Mask> where = read_mask(mask, reference.width, reference.height);
   add_frame(result, std::move(reference), std::move(test), limits, where);
   result.outcome = outcome_of(result);
 }
@@ -105,7 +102,7 @@ void compare_videos(FileComparison& result, const Limits& limits, const std::fil
     result.problem = size_problem(reference.width(), reference.height(), test.width(), test.height());
     return;
   }
-  const std::optional<Mask> where = mask_of(mask, reference.width(), reference.height());
+  const std::optional<Mask> where = read_mask(mask, reference.width(), reference.height());
   std::optional<image::Image> a, b;
   std::vector<Figures> figures;
   while ((a = reference.next()), (b = test.next()), a && b)
