@@ -229,18 +229,10 @@ std::string_view describe(TrialVerdict verdict) {
 }
 
 const std::vector<double>& factors_of(VariedParameter axis) {
-  static const std::vector<double> kDecades{1e-3, 1e-2, 0.1, 1, 10, 100, 1e3}, kDoubles{0.125, 0.25, 0.5, 1, 2, 4, 8},
-      kFriction{0, 0.25, 0.5, 1, 2, 4, 8}, kMesh{0.25, 0.5, 1, 2};
-  switch (axis) {
-    case VariedParameter::step:
-      return kDoubles;
-    case VariedParameter::friction:
-      return kFriction;
-    case VariedParameter::mesh:
-      return kMesh;
-    default:
-      return kDecades;
-  }
+  static const std::vector<double> kDecades{1e-3, 1e-2, 0.1, 1, 10, 100, 1e3};
+  static const std::array<std::vector<double>, kVariedValues> kFactors{
+      {kDecades, {0.125, 0.25, 0.5, 1, 2, 4, 8}, kDecades, {0, 0.25, 0.5, 1, 2, 4, 8}, kDecades, {0.25, 0.5, 1, 2}}};
+  return kFactors[index_of(axis)];
 }
 
 const Trial* SceneStability::find(const Factors& factors) const {
