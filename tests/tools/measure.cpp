@@ -1,5 +1,7 @@
 // weft_measure: simulates scenes without rendering and prints cost and measures of each frame. With --table, prints one
 // row per scene, as Markdown.
+#include "bench/measure.hpp"
+
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -42,10 +44,7 @@ double median_after_contact_ms(const std::vector<MeasuredFrame>& frames) {
   const auto first = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.report.proximities > 0; });
   std::vector<double> ms;
   for (auto frame = first; frame != frames.end(); ++frame) ms.push_back(1e3 * frame->report.simulate.cpu_s);
-  if (ms.empty()) return 0;
-  const auto middle = ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2);
-  std::nth_element(ms.begin(), middle, ms.end());
-  return *middle;
+  return ms.empty() ? 0 : weft::bench::median(ms);
 }
 
 // Sums and worst values of a run.

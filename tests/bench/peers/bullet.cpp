@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "bench/measure.hpp"
 #include "core/memory.hpp"
 #include "core/timer.hpp"
 #include "physics/mesh/ply.hpp"
@@ -126,13 +127,6 @@ void write_meshes(const Request& request, const frame::FrameSnapshot& start, con
   }
 }
 
-double middle_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 void run(const Request& request) {
   const scene::Scene scene = support::scene_of(request.scene, request.overrides);
   if (scene.cloths.size() != 1 || !scene.characters.empty())
@@ -159,7 +153,8 @@ void run(const Request& request) {
   }
   std::printf("%zu particles, %d frames of %d steps: %.2f CPU ms a frame, %.1f (median) after first contact; %.0f MB\n",
               start.particles(), request.end - 1, request.steps, all / std::max(1, request.end - 1),
-              middle_of(after_contact), 1e-6 * static_cast<double>(peak_memory_bytes()));
+              after_contact.empty() ? 0 : bench::median(after_contact),
+              1e-6 * static_cast<double>(peak_memory_bytes()));
 }
 
 }  // namespace
