@@ -142,7 +142,17 @@ int GltfFile::append(const void* data, std::size_t size, int target) {
   return static_cast<int>(document_["bufferViews"].size()) - 1;
 }
 
-// The next three functions append numbers to the buffer, and return the index of their accessor.
+// Appends `count` numbers of four bytes to the buffer. Returns the index of their accessor. `type`: SCALAR, VEC2 and so
+// on.
+int GltfFile::add_numbers(const void* numbers, std::size_t count, int component_type, const char* type, int target) {
+  const std::size_t each = type == std::string_view("SCALAR") ? 1 : type[3] - '0';
+  document_["accessors"].push_back({{"bufferView", append(numbers, 4 * count, target)},
+                                    {"componentType", component_type},
+                                    {"count", count / each},
+                                    {"type", type}});
+  return static_cast<int>(document_["accessors"].size()) - 1;
+}
+
 int GltfFile::add_vectors(const std::vector<float>& vectors) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::max());
@@ -151,27 +161,17 @@ int GltfFile::add_vectors(const std::vector<float>& vectors) {
     low[i % 3] = std::min(low[i % 3], vectors[i]);
     high[i % 3] = std::max(high[i % 3], vectors[i]);
   }
-  document_["accessors"].push_back({{"bufferView", append(vectors.data(), 4 * vectors.size(), kVertices)},
-                                    {"componentType", kFloat},
-                                    {"count", vectors.size() / 3},
-                                    {"type", "VEC3"},
-                                    {"min", low},
-                                    {"max", high}});
-  return static_cast<int>(document_["accessors"].size()) - 1;
+  const int accessor = add_numbers(vectors.data(), vectors.size(), kFloat, "VEC3", kVertices);
+  document_["accessors"].back()["min"] = low;
+  document_["accessors"].back()["max"] = high;
+  return accessor;
 }
 
-int GltfFile::add_values(const std::vector<float>& values, const char* type, bool with_bounds) {
-  const std::size_t each = type == std::string_view("SCALAR") ? 1 : type[3] - '0';  // VEC3, VEC4
-  json accessor{{"bufferView", append(values.data(), 4 * values.size(), 0)},
-                {"componentType", kFloat},
-                {"count", values.size() / each},
-                {"type", type}};
-  if (with_bounds) {
-    accessor["min"] = {values.front()};
-    accessor["max"] = {values.back()};
-  }
-  document_["accessors"].push_back(std::move(accessor));
-  return static_cast<int>(document_["accessors"].size()) - 1;
+int GltfFile::add_times() {
+  const int accessor = add_numbers(times_.data(), times_.size(), kFloat, "SCALAR", 0);
+  document_["accessors"].back()["min"] = {times_.front()};
+  document_["accessors"].back()["max"] = {times_.back()};
+  return accessor;
 }
 
 int GltfFile::add_places(const std::vector<Vec2>& places) {
@@ -180,11 +180,7 @@ int GltfFile::add_places(const std::vector<Vec2>& places) {
     uv.push_back(static_cast<float>(place.x()));
     uv.push_back(static_cast<float>(1 - place.y()));
   }
-  document_["accessors"].push_back({{"bufferView", append(uv.data(), 4 * uv.size(), kVertices)},
-                                    {"componentType", kFloat},
-                                    {"count", places.size()},
-                                    {"type", "VEC2"}});
-  return static_cast<int>(document_["accessors"].size()) - 1;
+  return add_numbers(uv.data(), uv.size(), kFloat, "VEC2", kVertices);
 }
 
 // Returns the index of the texture with the picture and the wrap modes of `material`. `images`: per
@@ -238,12 +234,9 @@ json GltfFile::primitives(const CutSurface& cut, const Object& object, const fra
     if (painted && look.cutout) material["alphaMode"] = "MASK";
     std::vector<std::array<Index, 3>> triangles;
     for (const std::size_t t : group.triangles) triangles.push_back(cut.triangles[t]);
-    document_["accessors"].push_back({{"bufferView", append(triangles.data(), 12 * triangles.size(), kIndices)},
-                                      {"componentType", kUnsignedInt},
-                                      {"count", 3 * triangles.size()},
-                                      {"type", "SCALAR"}});
+    const int indices = add_numbers(triangles.data(), 3 * triangles.size(), kUnsignedInt, "SCALAR", kIndices);
     result.push_back({{"attributes", attributes},
-                      {"indices", document_["accessors"].size() - 1},
+                      {"indices", indices},
                       {"material", document_["materials"].size()},
                       {"mode", kTriangles}});
     document_["materials"].push_back(std::move(material));
@@ -286,7 +279,7 @@ json GltfFile::animation(const std::vector<int>& nodes) {
   const std::size_t targets = times_.size() - 1;
   std::vector<float> weights(times_.size() * targets, 0.0F);
   for (std::size_t k = 0; k < targets; ++k) weights[(k + 1) * targets + k] = 1;
-  const int input = add_values(times_, "SCALAR", true), output = add_values(weights, "SCALAR");
+  const int input = add_times(), output = add_numbers(weights.data(), weights.size(), kFloat, "SCALAR", 0);
   for (int node : nodes)
     result["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
   result["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
@@ -332,12 +325,11 @@ void GltfFile::add_cameras(json& animation, double aspect) {
       const std::ptrdiff_t each = type[3] - '0';
       // A value that never changes needs no channel.
       if (std::equal(values->begin() + each, values->end(), values->begin())) continue;
-      const int input = animation["samplers"].empty() ? add_values(times_, "SCALAR", true)
-                                                      : animation["samplers"][0]["input"].get<int>();
+      const int input = animation["samplers"].empty() ? add_times() : animation["samplers"][0]["input"].get<int>(),
+                output = add_numbers(values->data(), values->size(), kFloat, type, 0);
       animation["channels"].push_back(
           {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
-      animation["samplers"].push_back(
-          {{"input", input}, {"output", add_values(*values, type)}, {"interpolation", "LINEAR"}});
+      animation["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
     }
   }
 }

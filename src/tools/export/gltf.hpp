@@ -62,7 +62,8 @@ class GltfFile {
   };
   int append(const void* data, std::size_t size, int target);
   int add_vectors(const std::vector<float>& vectors);
-  int add_values(const std::vector<float>& values, const char* type, bool with_bounds = false);
+  int add_numbers(const void* numbers, std::size_t count, int component_type, const char* type, int target);
+  int add_times();
   int add_places(const std::vector<Vec2>& places);
   nlohmann::json texture(const Materials& materials, const Material& material, std::vector<int>& images);
   nlohmann::json primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
