@@ -10,8 +10,8 @@
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
-#include "core/json.hpp"
 #include "core/toml.hpp"
+#include "film/scene/scene_values.hpp"
 #include "film/video/decoder.hpp"
 
 namespace weft::review {
@@ -25,46 +25,6 @@ Json rounded(const Json& value) {
   if (number == 0 || !std::isfinite(number)) return number == 0 ? Json(0) : Json(nullptr);
   // std::stod() would throw for numbers below 2.2e-308.
   return std::strtod(fmt::format("{:.6g}", number).c_str(), nullptr);
-}
-
-// Name of a list entry, or its index if it has none, as in --set.
-std::string entry_name(const toml::node& entry, std::size_t index) {
-  const toml::table* table = entry.as_table();
-  const toml::node* name = table != nullptr ? table->get("name") : nullptr;
-  return name != nullptr && name->is_string() ? name->ref<std::string>() : fmt::format("{}", index);
-}
-
-std::string value_text(const toml::node& node) {
-  if (const auto* text = node.as_string()) return json_text(text->get());
-  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
-  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
-  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
-  std::vector<std::string> parts;
-  if (const auto* list = node.as_array()) {
-    for (const toml::node& part : *list) parts.push_back(value_text(part));
-    return fmt::format("[{}]", fmt::join(parts, ", "));
-  }
-  return "?";  // dates, which no scene contains
-}
-
-bool has_tables(const toml::node& node) {
-  const toml::array* list = node.as_array();
-  return list != nullptr && !list->empty() && list->front().is_table();
-}
-
-void add_values(const toml::node& node, const std::string& path, Json& values) {
-  const std::string prefix = path.empty() ? "" : path + ".";
-  if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) add_values(value, prefix + std::string(key.str()), values);
-  } else if (has_tables(node)) {
-    std::size_t index = 0;
-    for (const toml::node& entry : *node.as_array()) {
-      add_values(entry, prefix + entry_name(entry, index), values);
-      ++index;
-    }
-  } else {
-    values[path] = value_text(node);
-  }
 }
 
 Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
@@ -183,7 +143,7 @@ PictureTimes picture_times(const RunFiles& run) {
 Json scene_values(const std::string& toml, const std::string& file) {
   try {
     Json values = Json::object();
-    add_values(parse_toml(toml), "", values);
+    scene::list_values(toml, [&](const std::string& key, const std::string& value) { values[key] = value; });
     return values;
   } catch (const toml::parse_error& error) {
     throw Error(ExitCode::asset_unreadable, "{}:{}: not readable as TOML: {}", file, error.source().begin.line,
