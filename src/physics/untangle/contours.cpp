@@ -8,6 +8,7 @@
 #include <set>
 #include <tuple>
 
+#include "core/disjoint_sets.hpp"
 #include "physics/collision/proximity/surface_point.hpp"
 #include "physics/untangle/forbidden_region.hpp"
 
@@ -21,23 +22,15 @@ constexpr double kFoldSine = 0.2588, kFoldCosine = 0.9659;
 // Returns the number of the island of each particle. An island is a connected component of the mesh without the edges
 // in `cut`.
 std::vector<Index> label_islands(const UntangleInput& input, const std::set<std::array<Index, 2>>& cut) {
-  std::vector<Index> island(static_cast<std::size_t>(input.particles()), -1);
-  std::vector<Index> stack;
+  DisjointSets joined(static_cast<std::size_t>(input.particles()));
+  for (Index i = 0; i < input.particles(); ++i)
+    for (const Index j : input.neighbours[i])
+      if (i < j && !cut.contains({i, j})) joined.join(i, j);
+  std::vector<Index> island;
   Index count = 0;
-  for (Index first = 0; first < input.particles(); ++first) {
-    if (island[first] >= 0) continue;
-    island[first] = count;
-    stack.assign(1, first);
-    while (!stack.empty()) {
-      const Index i = stack.back();
-      stack.pop_back();
-      for (const Index j : input.neighbours[i]) {
-        if (island[j] >= 0 || cut.contains({std::min(i, j), std::max(i, j)})) continue;
-        island[j] = count;
-        stack.push_back(j);
-      }
-    }
-    ++count;
+  for (Index i = 0; i < input.particles(); ++i) {
+    const Index first = joined.root(i);
+    island.push_back(first == i ? count++ : island[first]);
   }
   return island;
 }

@@ -77,18 +77,17 @@ bool reaches(const UntangleInput& input, const ForbiddenRegion& solid, std::span
   });
 }
 
-// All particles that are connected to this one.
-std::vector<Index> mesh_of(const UntangleInput& input, Index first) {
-  std::vector<Index> mesh{first};
-  std::vector<std::uint8_t> in(static_cast<std::size_t>(input.particles()), 0);
-  in[first] = 1;
-  for (std::size_t m = 0; m < mesh.size(); ++m)
-    for (const Index j : input.neighbours[mesh[m]])
-      if (!in[j]) {
-        in[j] = 1;
-        mesh.push_back(j);
+// The particle `first` and all that are connected to it by particles with a flag. Clears the flags of the result.
+std::vector<Index> take_connected(const UntangleInput& input, Index first, std::vector<std::uint8_t>& flags) {
+  std::vector<Index> members{first};
+  flags[first] = 0;
+  for (std::size_t m = 0; m < members.size(); ++m)
+    for (const Index j : input.neighbours[members[m]])
+      if (flags[j] != 0) {
+        flags[j] = 0;
+        members.push_back(j);
       }
-  return mesh;
+  return members;
 }
 
 }  // namespace
@@ -103,15 +102,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
   std::vector<InsideRegion> regions;
   for (Index first = 0; first < particles; ++first) {
     if (!inside[first]) continue;
-    // Collect the connected region of the first particle.
-    std::vector<Index> members{first};
-    inside[first] = 0;
-    for (std::size_t m = 0; m < members.size(); ++m)
-      for (const Index j : input.neighbours[members[m]])
-        if (inside[j]) {
-          inside[j] = 0;
-          members.push_back(j);
-        }
+    const std::vector<Index> members = take_connected(input, first, inside);
     if (!reaches(input, solid, members, x)) continue;
     InsideRegion region;
     region.cloth = input.bodies.body_of(first);
@@ -161,7 +152,8 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
       if (!(way <= kMaxWholeMeshRatio * region.size) || whole >= best) return;
       std::vector<Move> moves;
       std::size_t through = 0;
-      for (const Index i : mesh_of(input, members.front())) {
+      std::vector<std::uint8_t> all(static_cast<std::size_t>(particles), 1);
+      for (const Index i : take_connected(input, first, all)) {
         const Vec3 target = x[i] + way * d;
         if (!input.movable[i] || solid.contains(target)) return;
         through += move_of[i] < 0 && solid.crosses_surface(x[i], target);
