@@ -130,8 +130,7 @@ void CollisionStage::untangle(std::span<const integrator::HeldParticle> held, st
   }
 
   const untangle::UntangleInput input(bodies, std::move(kinds), x, rest, movable);
-  const untangle::Report report =
-      untangle::untangle(input, {model_.contact.self, order.size() > cloths - put_on.size()}, x);
+  const untangle::Report report = untangle::untangle(input, model_.contact.self, x);
   if (!report.locked_regions.empty()) {
     std::string regions;
     for (const untangle::InsideRegion& region : report.locked_regions) {

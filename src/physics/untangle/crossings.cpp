@@ -39,12 +39,12 @@ bool involves_solid(const UntangleInput& input, const Crossing& crossing) {
          is_solid(input, input.bodies.triangles()[crossing.triangle][0]);
 }
 
-CrossingFinder::CrossingFinder(const UntangleInput& input, std::span<const Vec3> x, bool self, bool obstacles)
+CrossingFinder::CrossingFinder(const UntangleInput& input, std::span<const Vec3> x, bool self)
     : input_(input), broad_phase_(input.bodies.surfaces(), x) {
   const collision::Bodies& bodies = input.bodies;
   for (std::size_t a = 0; a < bodies.size() && bodies[a].deformable; ++a)
     for (std::size_t b = a; b < bodies.size(); ++b)
-      if (bodies[b].deformable ? self : obstacles) tested_body_pairs_.push_back({a, b});
+      if (self || !bodies[b].deformable) tested_body_pairs_.push_back({a, b});
 }
 
 void CrossingFinder::collect(std::span<const Vec3> x, double margin) {

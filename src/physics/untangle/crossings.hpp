@@ -24,8 +24,8 @@ bool involves_solid(const UntangleInput& input, const Crossing& crossing);
 /// Finds crossings between surfaces of which at least one is SurfaceKind::cloth.
 class CrossingFinder {
  public:
-  /// `self`: cloth with cloth. `obstacles`: cloth with obstacles. The input must outlive the finder.
-  CrossingFinder(const UntangleInput& input, std::span<const Vec3> x, bool self, bool obstacles);
+  /// `self`: whether to test cloth with cloth, too. The input must outlive the finder.
+  CrossingFinder(const UntangleInput& input, std::span<const Vec3> x, bool self);
 
   /// All crossings at x [m], sorted by edge and triangle, each once. An edge that touches a triangle also crosses it,
   /// except if it lies in the triangle's plane.

@@ -50,12 +50,12 @@ constexpr int kMaxGapRounds = 60;
 
 class Untangling {
  public:
-  Untangling(const UntangleInput& input, const Options& options, std::span<Vec3> x)
-      : input_(input), x_(x), start_(x.begin(), x.end()), finder_(input, x, options.self, options.obstacles) {
+  Untangling(const UntangleInput& input, bool self, std::span<Vec3> x)
+      : input_(input), x_(x), start_(x.begin(), x.end()), finder_(input, x, self) {
     for (std::size_t b = 0; b < input.bodies.size(); ++b) {
       min_height_.push_back(kHeightInThicknesses * input.thickness[b]);
-      const bool solid = input.kinds[b] == SurfaceKind::solid || input.kinds[b] == SurfaceKind::floor;
-      if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, input.kinds[b], x);
+      if (input.kinds[b] == SurfaceKind::solid || input.kinds[b] == SurfaceKind::floor)
+        solids_.emplace_back(finder_.surfaces(), b, input.kinds[b], x);
     }
     const std::vector<ForbiddenRegion> bodies = solids_;
     for (std::size_t b = 0; b < input.bodies.size(); ++b)
@@ -302,8 +302,8 @@ class Untangling {
 
 }  // namespace
 
-Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x) {
-  return Untangling(input, options, x).run();
+Report untangle(const UntangleInput& input, bool self, std::span<Vec3> x) {
+  return Untangling(input, self, x).run();
 }
 
 }  // namespace weft::untangle

@@ -18,11 +18,6 @@
 
 namespace weft::untangle {
 
-struct Options {
-  bool self = true;       ///< separate cloth from cloth
-  bool obstacles = true;  ///< separate cloth from surfaces that do not move
-};
-
 struct Report {
   int pairs_before = 0, pairs_after = 0;  ///< crossing pairs of triangles
   int rounds = 0;                         ///< number of rounds that tried to reduce the number of crossings
@@ -31,10 +26,11 @@ struct Report {
   std::vector<InsideRegion> locked_regions;  ///< regions without a way out; if there are any, nothing was moved
 };
 
-/// Moves particles in x [m] until no triangle of cloth crosses another triangle (`options` select which kinds of pairs
-/// count), and the gap between any two surfaces is at least a tenth of the larger of their thicknesses. If crossings
-/// remain after a bounded number of rounds, keeps the state with the fewest crossing pairs. If only gaps remain too
-/// small, keeps the last state without crossings. If a region is locked, moves nothing. The result is deterministic.
-Report untangle(const UntangleInput& input, const Options& options, std::span<Vec3> x);
+/// Moves particles in x [m] until no triangle of cloth crosses another triangle, and the gap between any two surfaces
+/// is at least a tenth of the larger of their thicknesses. If `self` is false, pairs of two cloths do not count. If
+/// crossings remain after a bounded number of rounds, keeps the state with the fewest crossing pairs. If only gaps
+/// remain too small, keeps the last state without crossings. If a region is locked, moves nothing. The result is
+/// deterministic.
+Report untangle(const UntangleInput& input, bool self, std::span<Vec3> x);
 
 }  // namespace weft::untangle

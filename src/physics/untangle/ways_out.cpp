@@ -127,14 +127,12 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
         if (!moves.back().target.allFinite()) return;
         farthest = std::max(farthest, (moves.back().target - x[i]).norm());
       }
-      const double cost = stretch_cost(input, moves, x);
       const Threads threads = threads_after(input, solid, moves, move_of, x);
-      const double whole =
-          cost + kBlockedCost * threads.blocked + kDisplacementCost * farthest / std::max(region.size, height);
+      const double whole = stretch_cost(input, moves, x) + kBlockedCost * threads.blocked +
+                           kDisplacementCost * farthest / std::max(region.size, height);
       if (threads.free) region.shortest = std::min(region.shortest, farthest);
       if (whole >= best) return;
       best = whole;
-      region.cost = cost;
       region.blocked = threads.blocked;
       region.farthest = farthest;
       region.moves = std::move(moves);
@@ -164,7 +162,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
         for (const Index j : input.neighbours[move.particle])
           if (solid.midpoint_depth(move.target, x[j] + way * d) > kBlockedDepth) return;
       best = whole;
-      region.cost = region.blocked = 0;
+      region.blocked = 0;
       region.farthest = way;
       region.shortest = std::min(region.shortest, way);
       region.moves = std::move(moves);

@@ -21,7 +21,6 @@ struct InsideRegion {
   /// Smallest value of `farthest` among all ways out, chosen or not, after which no thread goes through the solid [m];
   /// infinite if there is no such way.
   double shortest = std::numeric_limits<double>::infinity();
-  double cost = 0;          ///< stretch_cost() of `moves`; 0 if the whole mesh moves
   double blocked = 0;       ///< fraction of its threads that would still go through the solid after the moves
   std::vector<Move> moves;  ///< out of the solid, to the height `min_height` over its surface
 };
