@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/collision/proximity/surface_point.hpp"
 #include "physics/collision/response/separating_plane.hpp"
 #include "physics/untangle/contours.hpp"
 #include "physics/untangle/crossings.hpp"
@@ -133,9 +134,7 @@ class Untangling {
   // only a: to the front of b or, if b is a piece of rope and has no front, against its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
-    const auto normal = [&](const collision::Triangle& of) {
-      return Vec3((x_[of[1]] - x_[of[0]]).cross(x_[of[2]] - x_[of[0]]).stableNormalized());
-    };
+    const auto normal = [&](const collision::Triangle& of) { return collision::face_normal(of, x_); };
     const auto move = [&](const collision::Triangle& corners, const Vec3& along) {
       for (const Index v : corners) normals[v] += along;
     };
@@ -175,7 +174,7 @@ class Untangling {
       smooth_around(smoothings);
       waited = 0;
     }
-    return_to_best();
+    std::ranges::copy(best_x_, x_.begin());
     report_.pairs_after = fewest_pairs_;
   }
 
@@ -235,7 +234,6 @@ class Untangling {
     best_x_.assign(x_.begin(), x_.end());
     return true;
   }
-  void return_to_best() { std::ranges::copy(best_x_, x_.begin()); }
 
   // Call if nothing crosses, but gaps may be too small: pushes close pairs apart until all gaps are
   // large enough, in at most kMaxGapRounds rounds. If this makes triangles cross, restores the last
@@ -266,9 +264,7 @@ class Untangling {
     const collision::ClosestFeatures closest = collision::closest_features(pair, x_);
     const double distance = std::sqrt(closest.points.distance_sq);
     if (distance >= wanted) return false;
-    const Vec3 n = distance > 0
-                       ? Vec3(closest.points.difference / distance)
-                       : (x_[pair.b[1]] - x_[pair.b[0]]).cross(x_[pair.b[2]] - x_[pair.b[0]]).stableNormalized();
+    const Vec3 n = distance > 0 ? Vec3(closest.points.difference / distance) : collision::face_normal(pair.b, x_);
     double sum_sq = 0;
     for (std::size_t k = 0; k < 4; ++k)
       if (input_.movable[closest.vertices[k]]) sum_sq += closest.points.weights[k] * closest.points.weights[k];
