@@ -1,6 +1,7 @@
 #include "physics/collision/proximity/gjk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "physics/collision/proximity/closest_points.hpp"
@@ -25,7 +26,7 @@ struct Support {
 /// Up to four corners of the Minkowski difference, and the point of their hull nearest to the origin.
 struct Simplex {
   std::array<Support, 4> corner{};
-  std::array<double, 4> weight{1, 0, 0, 0};
+  std::array<double, 4> weight{};
   std::size_t count = 0;
   Vec3 nearest = Vec3::Zero();
 
@@ -73,17 +74,12 @@ void try_face(Simplex& simplex, double& least_sq, std::size_t i, std::size_t j, 
   simplex.weight[k] -= points.weights[3];
 }
 
-/// Whether the origin is inside the tetrahedron; if so, sets the weights of the corners.
-bool try_inside(Simplex& simplex) {
+/// Whether the origin is inside the tetrahedron.
+bool contains_origin(const Simplex& simplex) {
   const auto w = [&](std::size_t i) -> const Vec3& { return simplex.corner[i].w; };
-  std::array<double, 4> volume{w(1).dot(w(2).cross(w(3))), -w(0).dot(w(2).cross(w(3))), w(0).dot(w(1).cross(w(3))),
-                               -w(0).dot(w(1).cross(w(2)))};
-  const auto [low, high] = std::minmax_element(volume.begin(), volume.end());
-  if (!(*low > 0 || *high < 0)) return false;
-  const double sum = volume[0] + volume[1] + volume[2] + volume[3];
-  for (std::size_t i = 0; i < 4; ++i) simplex.weight[i] = volume[i] / sum;
-  simplex.nearest = Vec3::Zero();
-  return true;
+  const auto [low, high] = std::minmax({w(1).dot(w(2).cross(w(3))), -w(0).dot(w(2).cross(w(3))),
+                                        w(0).dot(w(1).cross(w(3))), -w(0).dot(w(1).cross(w(2)))});
+  return low > 0 || high < 0;
 }
 
 void find_nearest(Simplex& simplex) {
@@ -96,7 +92,10 @@ void find_nearest(Simplex& simplex) {
     case 3:
       return try_face(simplex, least_sq, 0, 1, 2);
     default:
-      if (try_inside(simplex)) return;
+      if (contains_origin(simplex)) {
+        simplex.nearest.setZero();
+        return;
+      }
       try_face(simplex, least_sq, 0, 1, 2);
       try_face(simplex, least_sq, 0, 1, 3);
       try_face(simplex, least_sq, 0, 2, 3);
@@ -106,7 +105,7 @@ void find_nearest(Simplex& simplex) {
 
 }  // namespace
 
-ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
+Vec3 closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
   double size = 0;
   for (const Vec3& p : a) size = std::max(size, (p - b[0]).cwiseAbs().maxCoeff());
   for (const Vec3& p : b) size = std::max(size, (p - b[0]).cwiseAbs().maxCoeff());
@@ -115,11 +114,9 @@ ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
   simplex.corner[0].w = a[0] - b[0];
   simplex.count = 1;
   simplex.nearest = simplex.corner[0].w;
-  Simplex best = simplex;
-  double distance = best.nearest.norm(), lower_bound = 0;
-  int rounds = 0;
-  while (rounds < kMaxRounds && distance > kTolerance * size) {
-    ++rounds;
+  Vec3 best = simplex.nearest;
+  double distance = best.norm(), lower_bound = 0;
+  for (int round = 0; round < kMaxRounds && distance > kTolerance * size; ++round) {
     // The corner of a - b that is lowest along the direction to the nearest point gives a lower bound of the distance.
     const Vec3 towards = simplex.nearest;
     const std::size_t i = furthest(a, -towards), j = furthest(b, towards);
@@ -133,16 +130,9 @@ ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b) {
     const double reached = simplex.nearest.norm();
     if (!(reached < distance)) break;
     distance = reached;
-    best = simplex;
-    if (simplex.count == 4) break;  // the origin is inside
+    best = simplex.nearest;
   }
-
-  ConvexClosest result{{}, {}, best.nearest, distance, std::min(lower_bound, distance), rounds};
-  for (std::size_t c = 0; c < best.count; ++c) {
-    result.weights_a[best.corner[c].a] += best.weight[c];
-    result.weights_b[best.corner[c].b] += best.weight[c];
-  }
-  return result;
+  return best;
 }
 
 }  // namespace weft::collision

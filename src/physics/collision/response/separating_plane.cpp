@@ -28,7 +28,7 @@ struct Sides {
 
   /// From the closest point of b to that of a; zero if they intersect.
   const Vec3& closest() {
-    if (!known_closest) known_closest = closest_convex(a, b).difference;
+    if (!known_closest) known_closest = closest_convex(a, b);
     return *known_closest;
   }
   std::optional<Vec3> known_closest = std::nullopt;
