@@ -64,19 +64,6 @@ struct alignas(32) KDop {
   double side(int d) const {
     return (-static_cast<double>(row[2 * d]) - static_cast<double>(row[2 * d + 1])) / kDirections<K>.length[2 * d];
   }
-
-  /// Largest distance between two opposite faces [m].
-  double longest_side() const {
-    double longest = side(0);
-    for (int d = 1; d < K / 2; ++d) longest = std::max(longest, side(d));
-    return longest;
-  }
-
-  bool overlaps(const KDop& other) const {
-    for (int r = 0; r < K; ++r)
-      if (row[r] + other.row[r ^ 1] > 0) return false;
-    return true;
-  }
 };
 
 /// The k-DOP of the segment from p to q, the trajectory of a vertex in one step, enlarged by `margin` [m] on every

@@ -18,10 +18,6 @@ constexpr std::size_t kGroupSize = 128;
 /// that the cones stay small.
 constexpr int kReferenceUpdates = 64;
 
-void append(const PairList& from, PairList& to) {
-  to.grow(std::copy(from.begin(), from.end(), to.reserve_more(from.size())));
-}
-
 std::size_t surface_of(Index vertex, std::span<const Surface> surfaces) {
   const auto holds = [&](const Surface& s) {
     return vertex >= s.first_vertex && vertex < s.first_vertex + s.vertex_count;
@@ -149,8 +145,7 @@ void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, Broa
     } else {
       broad_phase.pairs(a, b, kept.candidates);
     }
-    append(kept.candidates.apart, all.apart);
-    append(kept.candidates.one_shared, all.one_shared);
+    append(all, kept.candidates);
     for (const Group& group : groups_[a]) kept.groups_a.push_back({group.low, group.high, group.cone});
     for (const Group& group : groups_[b]) kept.groups_b.push_back({group.low, group.high, group.cone});
   }
@@ -169,10 +164,7 @@ void CoherentDetection::search_again(const std::vector<std::size_t>& pairs, Broa
   }
 
   candidates_.clear();
-  for (const KeptResult& kept : kept_) {
-    append(kept.candidates.apart, candidates_.apart);
-    append(kept.candidates.one_shared, candidates_.one_shared);
-  }
+  for (const KeptResult& kept : kept_) append(candidates_, kept.candidates);
 }
 
 void CoherentDetection::append_proximities(const KeptResult& kept, std::span<const Vec3> x) {
