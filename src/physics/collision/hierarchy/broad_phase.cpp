@@ -93,30 +93,4 @@ std::unique_ptr<BroadPhase::Trees> make_trees(std::span<const Surface> surfaces,
 BroadPhase::BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options)
     : surfaces_(surfaces.begin(), surfaces.end()), trees_(make_trees(surfaces, x, options)) {}
 
-void BroadPhase::refit(std::size_t surface, const Motion& motion, double margin) {
-  trees_->refit(surface, motion, margin);
-}
-
-void BroadPhase::self_pairs(std::size_t surface, CandidatePairs& out) {
-  trees_->self_pairs(surface, out);
-}
-
-void BroadPhase::pairs(std::size_t a, std::size_t b, CandidatePairs& out) {
-  trees_->pairs(a, b, out);
-}
-
-void BroadPhase::nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
-                                   std::vector<Index>& out) const {
-  trees_->nearest_triangles(surface, p, distance_sq, out);
-}
-
-void BroadPhase::triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high,
-                                  std::vector<Index>& out) const {
-  trees_->triangles_in_box(surface, low, high, out);
-}
-
-void BroadPhase::forget() {
-  trees_->forget();
-}
-
 }  // namespace weft::collision

@@ -71,21 +71,25 @@ class BroadPhase {
   /// As Tree::refit, or with `velocity_cones` as Tree::refit_lazily; `margin` in [m]. Afterwards, self_pairs() and
   /// pairs() list all pairs of triangles that meet on any motion whose starts and ends differ from those of `motion` by
   /// at most the margin: in Euclidean distance or, with 6 directions, along each axis.
-  void refit(std::size_t surface, const Motion& motion, double margin);
+  void refit(std::size_t surface, const Motion& motion, double margin) { trees_->refit(surface, motion, margin); }
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     refit(surface, {x_t0, x_t1}, margin);
   }
 
   /// Appends pairs of different triangles of one surface, a < b.
-  void self_pairs(std::size_t surface, CandidatePairs& out);
+  void self_pairs(std::size_t surface, CandidatePairs& out) { trees_->self_pairs(surface, out); }
 
   /// Appends pairs (a of surface a, b of surface b).
-  void pairs(std::size_t a, std::size_t b, CandidatePairs& out);
+  void pairs(std::size_t a, std::size_t b, CandidatePairs& out) { trees_->pairs(a, b, out); }
 
   /// As collision::nearest_triangles and triangles_in_box (query.hpp) for one surface, at positions inside its bounds.
   void nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
-                         std::vector<Index>& out) const;
-  void triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high, std::vector<Index>& out) const;
+                         std::vector<Index>& out) const {
+    trees_->nearest_triangles(surface, p, distance_sq, out);
+  }
+  void triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high, std::vector<Index>& out) const {
+    trees_->triangles_in_box(surface, low, high, out);
+  }
 
   std::size_t size() const { return surfaces_.size(); }
   const Surface& surface(std::size_t number) const { return surfaces_[number]; }
@@ -93,7 +97,7 @@ class BroadPhase {
   /// Whether the bounds or the order of the pairs depend on earlier steps.
   static bool remembers(const BroadPhaseOptions& options) { return options.separation_list || options.velocity_cones; }
   /// Makes the bounds and the order of the pairs independent of earlier steps.
-  void forget();
+  void forget() { trees_->forget(); }
 
   /// Interface that hides the number of directions, a template parameter of the trees.
   struct Trees {
