@@ -96,49 +96,9 @@ TEST(FailedStep, InTheMiddleOfAFrameTakesBackWhatWasTied) {
   EXPECT_TRUE(before == after);
 }
 
-// kJaws: two jaws close on a hanging sheet until they overlap. kPinIntoABox: pins move the edge of a sheet into a box.
-constexpr const char* kJaws = R"(
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [11, 11]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-pin = [{ low = [0, 1], high = [1, 1] }]
-[[obstacle]]
-name = "left"
-shape = "box"
-size = [0.2, 0.016, 0.2]
-interpolation = "linear"
-keys = [{ time = 0, position = [0.02, -0.108, 0.55] }, { time = 0.2, position = [0.02, -0.003, 0.55] }]
-[[obstacle]]
-name = "right"
-shape = "box"
-size = [0.2, 0.016, 0.2]
-interpolation = "linear"
-keys = [{ time = 0, position = [-0.02, 0.108, 0.53] }, { time = 0.2, position = [-0.02, 0.003, 0.53] }]
-)";
-constexpr const char* kPinIntoABox = R"(
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [9, 9]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-[[cloth.pin]]
-low = [0, 1]
-interpolation = "linear"
-keys = [{ time = 0 }, { time = 0.2, offset = [0, 0.3, 0] }]
-[[obstacle]]
-name = "box"
-shape = "box"
-size = [0.6, 0.4, 0.6]
-position = [0, 0.35, 0.6]
-)";
-
 // Each frame is computed, taken back to its start as after a failure, and computed again.
 TEST(FailedStep, TakesBackPinchedClothAndPinsThatLag) {
-  for (const char* text : {kJaws, kPinIntoABox}) {
+  for (const char* text : {testing::kThinJaws, testing::kLaggingPin}) {
     const model::Model model = environment::Environment(support::scene_of_text(text)).model;
     StepLoop steps(model, 0);
     const auto advance = [&](int frame) {
@@ -192,7 +152,7 @@ TEST(FailedStep, LeavesNoBodyWhereItWasDrivenThen) {
 
 // An early check finds that the box obstructs the pin; then the solve goes on, and takes too many iterations.
 TEST(FailedStep, ReleasesNoPinIfTheSolverIsTheReason) {
-  model::Model model = environment::Environment(support::scene_of_text(kPinIntoABox)).model;
+  model::Model model = environment::Environment(support::scene_of_text(testing::kLaggingPin)).model;
   model.cloths[0].pins[0].motion.keys[1].time = 0.01;
   model.solver.newton_iterations = 5;
   model.solver.newton_tolerance = 1e-12;

@@ -18,6 +18,7 @@ namespace {
 
 using testing::ContinuationResult;
 using testing::continue_runs;
+using testing::kThinJaws;
 
 // A sheet falls on a ball, folds down its sides, and touches itself and the floor.
 constexpr const char* kDrape = R"(
@@ -67,38 +68,6 @@ name = "wall"
 shape = "box"
 size = [0.02, 0.5, 0.2]
 position = [0.3, 0, 0.1]
-)";
-
-// Two jaws close on a hanging sheet until they overlap, and open. The jaws are thin, so that cloth inside a jaw may be
-// nearer to the back of the jaw than to its front.
-constexpr const char* kThinJaws = R"(
-[time]
-duration = 1
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [11, 11]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-pin = [{ low = [0, 1], high = [1, 1] }]
-[[obstacle]]
-name = "left"
-shape = "box"
-size = [0.2, 0.016, 0.2]
-interpolation = "linear"
-keys = [
-  { time = 0.0, position = [0.02, -0.108, 0.55] }, { time = 0.2, position = [0.02, -0.003, 0.55] },
-  { time = 0.4, position = [0.02, -0.003, 0.55] }, { time = 0.6, position = [0.02, -0.158, 0.55] },
-]
-[[obstacle]]
-name = "right"
-shape = "box"
-size = [0.2, 0.016, 0.2]
-interpolation = "linear"
-keys = [
-  { time = 0.0, position = [-0.02, 0.108, 0.53] }, { time = 0.2, position = [-0.02, 0.003, 0.53] },
-  { time = 0.4, position = [-0.02, 0.003, 0.53] }, { time = 0.6, position = [-0.02, 0.158, 0.53] },
-]
 )";
 
 // Two sheets are buttoned to each other and pegged to a rail; one peg breaks. There are a fan and keys for gravity and
@@ -248,27 +217,8 @@ TEST(SavedStates, OfPinchedClothKeepOriginsAndWarnings) {
   EXPECT_GT(pinched.pinched_pairs, 0);
 }
 
-// Pins move the upper edge of a sheet into a box: the pin lags from frame 4 to 13.
-constexpr const char* kLaggingPin = R"(
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [9, 9]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-[[cloth.pin]]
-low = [0, 1]
-interpolation = "linear"
-keys = [{ time = 0 }, { time = 0.2, offset = [0, 0.3, 0] }, { time = 0.3 }, { time = 0.45, offset = [0, 0, 0] }]
-[[obstacle]]
-name = "box"
-shape = "box"
-size = [0.6, 0.4, 0.6]
-position = [0, 0.35, 0.6]
-)";
-
 TEST(SavedStates, OfAPinThatLagsKnowThatItDoes) {
-  const ContinuationResult lagging = continue_runs(support::scene_of_text(kLaggingPin), {16, {3, 5, 9, 14}});
+  const ContinuationResult lagging = continue_runs(support::scene_of_text(testing::kLaggingPin), {16, {3, 5, 9, 14}});
   EXPECT_EQ(lagging.difference, "");
 }
 

@@ -69,6 +69,57 @@ inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3
   return made;
 }
 
+/// Two jaws close on a hanging sheet until they overlap, and open. The jaws are thin, so that cloth inside a jaw may be
+/// nearer to the back of the jaw than to its front.
+inline constexpr const char* kThinJaws = R"(
+[time]
+duration = 1
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [11, 11]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+[[obstacle]]
+name = "left"
+shape = "box"
+size = [0.2, 0.016, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [0.02, -0.108, 0.55] }, { time = 0.2, position = [0.02, -0.003, 0.55] },
+  { time = 0.4, position = [0.02, -0.003, 0.55] }, { time = 0.6, position = [0.02, -0.158, 0.55] },
+]
+[[obstacle]]
+name = "right"
+shape = "box"
+size = [0.2, 0.016, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [-0.02, 0.108, 0.53] }, { time = 0.2, position = [-0.02, 0.003, 0.53] },
+  { time = 0.4, position = [-0.02, 0.003, 0.53] }, { time = 0.6, position = [-0.02, 0.158, 0.53] },
+]
+)";
+
+/// Pins move the upper edge of a sheet into a box: the pin lags from frame 4 to 13.
+inline constexpr const char* kLaggingPin = R"(
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [9, 9]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+[[cloth.pin]]
+low = [0, 1]
+interpolation = "linear"
+keys = [{ time = 0 }, { time = 0.2, offset = [0, 0.3, 0] }, { time = 0.3 }, { time = 0.45, offset = [0, 0, 0] }]
+[[obstacle]]
+name = "box"
+shape = "box"
+size = [0.6, 0.4, 0.6]
+position = [0, 0.35, 0.6]
+)";
+
 /// Pattern of a tube skirt of two rectangles, each 0.33 m wide. Text appended to it belongs to its last seam.
 inline const std::string kTube = R"(
 depth = 0.14
