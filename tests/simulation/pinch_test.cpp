@@ -21,74 +21,48 @@
 namespace weft::simulation {
 namespace {
 
+const std::string kHangingSheet = R"(
+[time]
+duration = 1.6
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [21, 21]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+)";
+// The left jaw closes and stays; further keys and the end of their list follow.
+const std::string kLeftJaw = R"(
+[[obstacle]]
+name = "left"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [0.02, -0.25, 0.55] },
+  { time = 0.4, position = [0.02, -0.095, 0.55] },
+  { time = 0.8, position = [0.02, -0.095, 0.55] },
+)";
+// The right jaw closes, stays and opens.
+const std::string kRightJaw = R"(
+[[obstacle]]
+name = "right"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [-0.02, 0.25, 0.53] },
+  { time = 0.4, position = [-0.02, 0.095, 0.53] },
+  { time = 0.8, position = [-0.02, 0.095, 0.53] },
+  { time = 1.2, position = [-0.02, 0.25, 0.53] },
+]
+)";
 // Two jaws close on a hanging sheet until they overlap by 10 mm, stay, and open.
-constexpr const char* kJaws = R"(
-[time]
-duration = 1.6
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [21, 21]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-pin = [{ low = [0, 1], high = [1, 1] }]
-[[obstacle]]
-name = "left"
-shape = "box"
-size = [0.2, 0.2, 0.2]
-interpolation = "linear"
-keys = [
-  { time = 0.0, position = [0.02, -0.25, 0.55] },
-  { time = 0.4, position = [0.02, -0.095, 0.55] },
-  { time = 0.8, position = [0.02, -0.095, 0.55] },
-  { time = 1.2, position = [0.02, -0.25, 0.55] },
-]
-[[obstacle]]
-name = "right"
-shape = "box"
-size = [0.2, 0.2, 0.2]
-interpolation = "linear"
-keys = [
-  { time = 0.0, position = [-0.02, 0.25, 0.53] },
-  { time = 0.4, position = [-0.02, 0.095, 0.53] },
-  { time = 0.8, position = [-0.02, 0.095, 0.53] },
-  { time = 1.2, position = [-0.02, 0.25, 0.53] },
-]
-)";
-
+const std::string kJaws =
+    kHangingSheet + kLeftJaw + "  { time = 1.2, position = [0.02, -0.25, 0.55] },\n]\n" + kRightJaw;
 // Only the right jaw opens again: the cloth inside the left jaw has to be pushed out.
-constexpr const char* kOneJawStays = R"(
-[time]
-duration = 1.6
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [21, 21]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-pin = [{ low = [0, 1], high = [1, 1] }]
-[[obstacle]]
-name = "left"
-shape = "box"
-size = [0.2, 0.2, 0.2]
-interpolation = "linear"
-keys = [
-  { time = 0.0, position = [0.02, -0.25, 0.55] },
-  { time = 0.4, position = [0.02, -0.095, 0.55] },
-  { time = 0.8, position = [0.02, -0.095, 0.55] },
-]
-[[obstacle]]
-name = "right"
-shape = "box"
-size = [0.2, 0.2, 0.2]
-interpolation = "linear"
-keys = [
-  { time = 0.0, position = [-0.02, 0.25, 0.53] },
-  { time = 0.4, position = [-0.02, 0.095, 0.53] },
-  { time = 0.8, position = [-0.02, 0.095, 0.53] },
-  { time = 1.2, position = [-0.02, 0.25, 0.53] },
-]
-)";
+const std::string kOneJawStays = kHangingSheet + kLeftJaw + "]\n" + kRightJaw;
 
 // A stamp presses two sheets, one on the other, 5 mm into the floor, and rises.
 constexpr const char* kStamp = R"(
@@ -122,16 +96,7 @@ keys = [
 )";
 
 // A narrow jaw turns while it closes: the sheet is rolled, and pinched between an edge of the jaw and a wall.
-constexpr const char* kTurningJaw = R"(
-[time]
-duration = 1.6
-[[cloth]]
-name = "sheet"
-size = [0.4, 0.4]
-particles = [21, 21]
-position = [0, 0, 0.6]
-rotation = [90, 0, 0]
-pin = [{ low = [0, 1], high = [1, 1] }]
+const std::string kTurningJaw = kHangingSheet + R"(
 [[obstacle]]
 name = "wall"
 shape = "box"
