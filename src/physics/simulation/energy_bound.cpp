@@ -12,7 +12,7 @@
 namespace weft::simulation {
 namespace {
 
-// Whether pins alone drive the cloth, and StepWork includes all work of the pins.
+// Whether pins alone drive the cloth, and FrameReport::pin_work includes all work of the pins.
 bool is_driven_by_pins_alone(const model::Model& model) {
   for (const model::Cloth& cloth : model.cloths) {
     if (cloth.sewing > 0) return false;                // sewing does work

@@ -13,7 +13,6 @@
 #include "physics/simulation/collision_stage.hpp"
 #include "physics/simulation/simulation.hpp"
 #include "physics/simulation/step_problem.hpp"
-#include "physics/simulation/step_work.hpp"
 #include "physics/simulation/yielding_pins.hpp"
 
 namespace weft::simulation {
@@ -127,10 +126,7 @@ class StepLoop {
     return collisions_ && collisions_->obstacle_turns_too_far(t, h, progress_.now);
   }
   void accept(double h, FrameReport& report);
-  static void count_work(const StepWork& work, FrameReport& report) {
-    report.pin_work += work.pins;
-    report.solver_work += work.solver;
-  }
+  void measure_work(FrameReport& report) const;
   void measure_stretch(FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
