@@ -25,10 +25,7 @@ scene::Scene runaway() {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
   scene.time = {.duration = 10, .fps = 10, .step = 0.1, .integrator = scene::Integrator::implicit_midpoint};
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1e4;
-  scene::Pin left, right;
-  left.low = left.high = {0, 1};
-  right.low = right.high = {1, 1};
-  scene.cloths[0].pins = {left, right};
+  testing::pin_corners(scene.cloths[0], 1);
   return scene;
 }
 
@@ -189,10 +186,7 @@ TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
     cloth.material.shear = 0.1 * stiffness;
     cloth.material.bend = 1e-5;
     cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
-    scene::Pin left, right;
-    left.low = left.high = {0, 0};
-    right.low = right.high = {1, 0};
-    cloth.pins = {left, right};
+    testing::pin_corners(cloth, 0);
     production::SceneSimulation simulation(scene);
     std::vector<std::string> warnings;
     for (int k = 0; k < 12; ++k) std::ranges::copy(simulation.advance().warnings, std::back_inserter(warnings));
@@ -296,10 +290,7 @@ TEST(EnergyBound, ViscosityOnlyTakesEnergy) {
           scene.time.integrator = integrator;
           scene.cloths[0].shape = shape;
           scene.cloths[0].material.*of = viscosity;
-          scene::Pin left, right;
-          left.low = left.high = {0, 0};
-          right.low = right.high = {1, 0};
-          scene.cloths[0].pins = {left, right};
+          testing::pin_corners(scene.cloths[0], 0);
           // Tolerance: in each of 40 steps, the residual of the solver may add energy. (Measured: 0.)
           EXPECT_LT(largest_gain(scene, 10), 0.01)
               << name_of(integrator) << ", shape " << static_cast<int>(shape) << ", viscosity " << viscosity

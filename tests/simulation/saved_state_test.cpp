@@ -251,10 +251,7 @@ TEST(SavedStates, KeepTheBoundOfEnergy) {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
   scene.time = {.duration = 10, .fps = 10, .step = 0.02, .integrator = scene::Integrator::implicit_midpoint};
   scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 100;
-  scene::Pin left, right;
-  left.low = left.high = {0, 1};
-  right.low = right.high = {1, 1};
-  scene.cloths[0].pins = {left, right};
+  testing::pin_corners(scene.cloths[0], 1);
   const auto refusal = [](production::SceneSimulation& simulation, std::vector<std::string>* states) {
     for (int k = 0; k < 100; ++k) try {
         simulation.advance();

@@ -48,6 +48,43 @@ inline void solve_tightly(scene::Scene& scene) {
   scene.solver = {.newton_tolerance = 1e-9, .newton_iterations = 60, .linear_tolerance = 1e-9, .halvings = 0};
 }
 
+/// An obstacle without rotation and key frames.
+inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3& position = Vec3::Zero()) {
+  scene::Obstacle made;
+  made.name = name;
+  made.shape = std::move(shape);
+  made.pose.position = position;
+  return made;
+}
+
+/// A patch of 0.2 m on a plane that is inclined about the y axis by `angle` [rad]. There is no air, so only friction
+/// holds it.
+inline scene::Scene patch_on_slope(double angle, double friction) {
+  scene::Scene scene = sheet_alone(0.2, 11, 0);
+  scene.time.fps = 50;
+  scene.contact.self = scene.contact.obstacles = true;
+  scene.solver.newton_tolerance = 1e-4;  // relative to the weight; tests resolve 2 % of friction
+  scene.solver.linear_tolerance = 1e-3;
+  const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+  scene.obstacles.push_back(obstacle("slope", scene::Plane{}));
+  scene.obstacles[0].pose.rotation = turned;
+  scene.obstacles[0].friction = friction;
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.material.friction = friction;
+  cloth.material.drag = 0;
+  cloth.pose.rotation = turned;
+  cloth.pose.position = turned * Vec3(0, 0, 0.5 * cloth.material.thickness);
+  return scene;
+}
+
+/// Pins two corners of a cloth, those at this height along the warp: 0 or 1.
+inline void pin_corners(scene::Cloth& cloth, double height) {
+  scene::Pin left, right;
+  left.low = left.high = {0, height};
+  right.low = right.high = {1, height};
+  cloth.pins = {left, right};
+}
+
 /// Positions of the first cloth.
 inline const std::vector<Vec3>& sheet_of(const frame::SnapshotPtr& snapshot) {
   return snapshot->states[0].positions;
@@ -58,15 +95,6 @@ inline double lowest(const std::vector<Vec3>& x) {
   double minimum = x.front().z();
   for (const Vec3& point : x) minimum = std::min(minimum, point.z());
   return minimum;
-}
-
-/// An obstacle without rotation and key frames.
-inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3& position = Vec3::Zero()) {
-  scene::Obstacle made;
-  made.name = name;
-  made.shape = std::move(shape);
-  made.pose.position = position;
-  return made;
 }
 
 /// Two jaws close on a hanging sheet until they overlap, and open. The jaws are thin, so that cloth inside a jaw may be

@@ -19,22 +19,10 @@ scene::Scene with_velocity_constraints(scene::Scene scene) {
   return scene;
 }
 
-/// A patch of 0.2 m on a plane that is inclined about the y axis by `angle` [rad]; only friction holds it.
+/// The patch of testing::patch_on_slope(), in steps of 5 ms.
 scene::Scene patch_on_slope(double angle, double friction) {
-  scene::Scene scene = with_velocity_constraints(testing::sheet_alone(0.2, 11, 0));
-  scene.time.fps = 50;
+  scene::Scene scene = with_velocity_constraints(testing::patch_on_slope(angle, friction));
   scene.time.step = 0.005;
-  scene.solver.newton_tolerance = 1e-4;  // its effect is far below the tested 2 %
-  scene.solver.linear_tolerance = 1e-3;
-  const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
-  scene.obstacles.push_back(testing::obstacle("slope", scene::Plane{}));
-  scene.obstacles[0].pose.rotation = turned;
-  scene.obstacles[0].friction = friction;
-  scene::Cloth& cloth = scene.cloths[0];
-  cloth.material.friction = friction;
-  cloth.material.drag = 0;
-  cloth.pose.rotation = turned;
-  cloth.pose.position = turned * Vec3(0, 0, 0.5 * cloth.material.thickness);
   return scene;
 }
 

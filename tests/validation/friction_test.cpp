@@ -16,24 +16,11 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr double kStep = 0.002;  // [s]; Euler's method shortens the path v² / 2 μ g by v h / 2: 1 % of 0.1 m at 1 m/s
 
-/// A patch of 0.2 m on a plane inclined about the y axis. There is no air, so only friction holds it.
+/// The patch of testing::patch_on_slope(), which begins with this speed down the slope.
 scene::Scene patch_on_slope(double angle, double friction, double speed) {
-  scene::Scene scene = testing::sheet_alone(0.2, 11, 0);
-  scene.time.fps = 50;
+  scene::Scene scene = testing::patch_on_slope(angle, friction);
   scene.time.step = kStep;
-  scene.solver.newton_tolerance = 1e-4;  // relative to the weight; tests resolve 2 % of friction
-  scene.solver.linear_tolerance = 1e-3;
-  scene.contact.self = scene.contact.obstacles = true;
-  const Quat turned(Eigen::AngleAxisd(angle, Vec3::UnitY()));
-  scene.obstacles.push_back(testing::obstacle("slope", scene::Plane{}));
-  scene.obstacles[0].pose.rotation = turned;
-  scene.obstacles[0].friction = friction;
-  scene::Cloth& cloth = scene.cloths[0];
-  cloth.material.friction = friction;
-  cloth.material.drag = 0;
-  cloth.pose.rotation = turned;
-  cloth.pose.position = turned * Vec3(0, 0, 0.5 * cloth.material.thickness);
-  cloth.velocity = turned * Vec3(speed, 0, 0);
+  scene.cloths[0].velocity = scene.cloths[0].pose.rotation * Vec3(speed, 0, 0);
   return scene;
 }
 
