@@ -8,6 +8,7 @@
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
 #include "core/parallel_append.hpp"
+#include "physics/mesh/rigid_frame.hpp"
 
 namespace weft::collision {
 namespace {
@@ -22,18 +23,17 @@ double detection_distance_of(const Bodies& bodies) {
 
 // Lists the rigid bodies that have triangles and frame particles (mesh::RigidFrame).
 std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
-  constexpr Index kFrame = 4;
   std::vector<RigidGroup> groups;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const Index frame = bodies[b].frame;
     const Surface& surface = bodies.surfaces()[b];
     if (frame < 0 || surface.triangles.empty()) continue;
-    const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
+    const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), mesh::RigidFrame::kParticles);
     // The vertices of the body may begin with its frame particles, which belong to no triangle.
     Index first = bodies.vertex_count(), last = 0;
     for (const Triangle& corners : surface.triangles)
       for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
-    groups.push_back({first, last + 1 - first, frame, kFrame, std::accumulate(of_frame.begin(), of_frame.end(), 0.0)});
+    groups.push_back({first, last + 1 - first, frame, std::accumulate(of_frame.begin(), of_frame.end(), 0.0)});
   }
   return groups;
 }

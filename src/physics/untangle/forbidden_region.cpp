@@ -12,9 +12,6 @@ namespace {
 // Offset from a face at which the constructor tests whether the front of the face is inside another shell, relative to
 // the diagonal of the body's bounding box: smaller than any detail, larger than rounding errors.
 constexpr double kProbeOffset = 1e-6;
-// Barycentric weight of a corner up to which the nearest point of a face counts as on the opposite
-// edge.
-constexpr double kMaxZeroWeight = 1e-9;
 // Direction of rays that count windings: nearly along an axis, so that bounding boxes of rays are
 // thin; not exactly along an axis or diagonal, because rays must not hit edges of models, which
 // often have these directions.
@@ -105,7 +102,7 @@ ForbiddenRegion::Exit ForbiddenRegion::exit_of_layer(const Vec3& p) const {
   const Vec3 place = p - point.height * point.normal;
   bool beside = true;
   for (std::size_t c = 0; c < 3; ++c)
-    beside = beside && (point.weights[c] <= kMaxZeroWeight || on_border_[point.face[c]] != 0);
+    beside = beside && (point.weights[c] <= kRoundoff || on_border_[point.face[c]] != 0);
   if (!beside) return {place, outer_sign_ * point.normal, outer_sign_ * point.height};
   const Vec3 arm = p - place;
   return {place, arm.isZero() ? Vec3(outer_sign_ * point.normal) : arm.normalized(), arm.norm()};

@@ -11,13 +11,12 @@ namespace {
 constexpr int kSweepsPerRaise = 5;  // number of sweeps between calls of raise()
 // relax() corrects this fraction of the error of a bending link (UntangleInput::Link::is_bend).
 constexpr double kBendFraction = 0.2;
-constexpr std::size_t kParticlesPerTask = 256;
 
 }  // namespace
 
 void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
            std::span<Vec3> x) {
-  parallel_for(static_cast<std::size_t>(input.particles()), kParticlesPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(static_cast<std::size_t>(input.particles()), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!input.movable[i]) continue;
       const double height = min_height[input.bodies.body_of(static_cast<Index>(i))];

@@ -17,9 +17,6 @@ namespace {
 constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, relative to the larger thickness of the two: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
-// Two surfaces coincide if their distance is at most this value [m]. Neither surface then has a definite side of the
-// other.
-constexpr double kTouchDistance = 1e-9;
 constexpr int kMaxRounds = 400;
 // After kPatience rounds in which the number of crossing pairs does not reach a new minimum, the
 // cloth around the remaining crossings is smoothed, each time over a larger area, at most
@@ -128,20 +125,21 @@ class Untangling {
     return any;
   }
 
-  // Separates surfaces that coincide, so that each is on a definite side of the other. Of two triangles a and b of
-  // different bodies, let b be that of the later body. Moves b to the front of a (the side to which the normal of a
-  // points). If b has held particles, also moves a against its own normal. If the body of b cannot move at all, moves
-  // only a: to the front of b or, if b is a piece of rope and has no front, against its own normal.
+  // Separates surfaces that coincide (are at most kRoundoff [m] apart), so that each is on a definite side of the
+  // other. Of two triangles a and b of different bodies, let b be that of the later body. Moves b to the front of a
+  // (the side to which the normal of a points). If b has held particles, also moves a against its own normal. If the
+  // body of b cannot move at all, moves only a: to the front of b or, if b is a piece of rope and has no front, against
+  // its own normal.
   void separate_touching() {
     std::vector<Vec3> normals(static_cast<std::size_t>(input_.particles()), Vec3::Zero());
     const auto normal = [&](const collision::Triangle& of) { return collision::face_normal(of, x_); };
     const auto move = [&](const collision::Triangle& corners, const Vec3& along) {
       for (const Index v : corners) normals[v] += along;
     };
-    for (const collision::TrianglePair& pair : finder_.find_near_pairs(x_, kTouchDistance)) {
+    for (const collision::TrianglePair& pair : finder_.find_near_pairs(x_, kRoundoff)) {
       const collision::CornerPair corners{input_.bodies.triangles()[pair.a], input_.bodies.triangles()[pair.b]};
       if (input_.bodies.body_of(corners.a[0]) == input_.bodies.body_of(corners.b[0])) continue;
-      if (collision::closest_features(corners, x_).points.distance_sq > kTouchDistance * kTouchDistance) continue;
+      if (collision::closest_features(corners, x_).points.distance_sq > kRoundoff * kRoundoff) continue;
       if (input_.can_move[input_.bodies.body_of(corners.b[0])] == 0) {
         const Vec3 front = normal(corners.b);
         move(corners.a, front.isZero() ? Vec3(-normal(corners.a)) : front);

@@ -38,12 +38,14 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
 /// point. For parallel segments, returns one of the closest pairs, the same one for the same input.
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1);
 
+/// Factor on limits in the fast tests below, far above the rounding of their products.
+inline constexpr double kSafety = 1 + 1e-6;
+
 /// Fast test before closest_vertex_face: true only if the distance certainly exceeds √max_distance_sq. The
 /// test uses two lower bounds of the distance. One is the distance of p from the plane of the
 /// triangle. If p lies beyond an edge, the other is the distance of p from the plane through this
 /// edge perpendicular to the triangle.
 inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2, double max_distance_sq) {
-  constexpr double kSafety = 1 + 1e-6;  // far above the rounding of the products
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
   const Vec3 n = e1.cross(e2);
   const double n_sq = n.squaredNorm(), height = w.dot(n);
@@ -58,7 +60,6 @@ inline bool is_surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, con
 /// for nearly parallel edges.
 inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1,
                                      double max_distance_sq) {
-  constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0;
   const Vec3 n = d.cross(e);
   const double n_sq = n.squaredNorm(), height = (q0 - p0).dot(n);
@@ -71,7 +72,6 @@ inline bool are_edges_surely_farther(const Vec3& p0, const Vec3& p1, const Vec3&
 /// for nearly parallel edges.
 inline bool is_surely_not_interior(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1,
                                    double max_distance_sq) {
-  constexpr double kSafety = 1 + 1e-6;
   const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;
   const Vec3 n = d.cross(e);
   const double n_sq = n.squaredNorm(), height = w.dot(n);

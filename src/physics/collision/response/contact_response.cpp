@@ -12,7 +12,7 @@ namespace {
 // of this particle in Contact::particles. Otherwise −1.
 int single_particle(const Contact& contact) {
   if (!contact.against_obstacle) return -1;
-  const auto found = std::ranges::find_if(contact.weights, [](double w) { return std::abs(w) >= 1 - 1e-9; });
+  const auto found = std::ranges::find_if(contact.weights, [](double w) { return std::abs(w) >= 1 - kRoundoff; });
   return found == contact.weights.end() ? -1 : static_cast<int>(found - contact.weights.begin());
 }
 

@@ -8,6 +8,7 @@
 #include "core/numerics.hpp"
 #include "core/parallel.hpp"
 #include "core/stop.hpp"
+#include "physics/mesh/rigid_frame.hpp"
 
 namespace weft::collision {
 
@@ -28,7 +29,8 @@ void Separation::set_rigid(std::vector<RigidGroup> groups, Index vertices) {
 
 template <class Visit>
 void Separation::for_each_member(const RigidGroup& group, const Visit& visit) {
-  for (Index v = group.frame; v < group.frame + group.frame_count; ++v) visit(v);
+  constexpr Index kFrame = mesh::RigidFrame::kParticles;
+  for (Index v = group.frame; v < group.frame + kFrame; ++v) visit(v);
   for (Index v = group.first; v < group.first + group.count; ++v) visit(v);
 }
 

@@ -35,9 +35,9 @@ struct SeparationReport {
 
 /// Vertices that move only together: the surface vertices of a rigid body, and its frame particles (mesh::RigidFrame).
 struct RigidGroup {
-  Index first, count;        ///< surface vertices: the first one, and their number
-  Index frame, frame_count;  ///< frame particles: the first one, and their number
-  double mass;               ///< [kg]
+  Index first, count;  ///< surface vertices: the first one, and their number
+  Index frame;         ///< first of the frame particles
+  double mass;         ///< [kg]
 };
 
 /// Keeps triangles apart on the linear motion from x_t0 to x_t1, by separating planes (separating_plane.hpp). Pairs
