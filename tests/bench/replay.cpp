@@ -98,7 +98,7 @@ Costs run(const Recording& recording, const BroadPhaseOptions& options, double r
     x_t1 = recording.at(step + 1);
     add_ms(costs.refit, [&] {
       for (std::size_t s = 0; s < surfaces.size(); ++s)
-        if (recording.deformable[s] || step == 0) broad_phase.refit(s, x_t0, x_t1, reach / 2);
+        if (recording.deformable[s] || step == 0) broad_phase.refit(s, {x_t0, x_t1}, reach / 2);
     });
     candidates.clear();
     add_ms(costs.pairs, [&] {
@@ -161,7 +161,7 @@ void count_skipped_pairs(const Recording& recording, double reach) {
       if (!recording.deformable[s]) continue;
       const std::vector<Vec3>& x = recording.frames[f];
       Tree<6> tree(surfaces[s], x);
-      tree.refit(x, x, reach / 2);
+      tree.refit({x, x}, reach / 2);
       NormalCones<6> cones(tree);
       cones.update(tree, x, x, reach);
       CandidatePairs all, with_cones;

@@ -44,7 +44,7 @@ void build_row(const TestMesh& mesh, int children) {
   const int runs = mesh.triangles.size() > 200000 ? 3 : 7;
   Tree<K> tree;
   const double build = median_ms(runs, [&] { tree = Tree<K>(mesh.surface(), mesh.x, {.children = children}); });
-  const double refit = median_ms(runs, [&] { tree.refit(mesh.x, mesh.x, 0.001); });
+  const double refit = median_ms(runs, [&] { tree.refit({mesh.x, mesh.x}, 0.001); });
   fmt::print("| {} | {} | {} | {:.2f} | {:.3f} |\n", mesh.triangles.size(), K, children, build, refit);
 }
 
@@ -91,7 +91,7 @@ void wrapped_ball() {
         options.normal_cones = cones;
         BroadPhase broad_phase;
         const double build = median_ms(3, [&] { broad_phase = BroadPhase(std::span(&surface, 1), mesh.x, options); });
-        const double refit = median_ms(5, [&] { broad_phase.refit(0, mesh.x, mesh.x, kReach / 2); });
+        const double refit = median_ms(5, [&] { broad_phase.refit(0, {mesh.x, mesh.x}, kReach / 2); });
         CandidatePairs candidates;
         const double pairs = median_ms(5, [&] {
           candidates.clear();

@@ -48,7 +48,7 @@ CrossingFinder::CrossingFinder(const UntangleInput& input, std::span<const Vec3>
 }
 
 void CrossingFinder::collect(std::span<const Vec3> x, double margin) {
-  for (std::size_t b = 0; b < input_.bodies.size(); ++b) broad_phase_.refit(b, x, x, margin);
+  for (std::size_t b = 0; b < input_.bodies.size(); ++b) broad_phase_.refit(b, {x, x}, margin);
   candidates_.clear();
   for (const auto& [a, b] : tested_body_pairs_)
     a == b ? broad_phase_.self_pairs(a, candidates_) : broad_phase_.pairs(a, b, candidates_);

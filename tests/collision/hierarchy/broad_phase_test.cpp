@@ -98,7 +98,7 @@ TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTree
     min_count = std::min(min_count, expected[0].size());
     max_count = std::max(max_count, expected[0].size());
     for (std::size_t i = 0; i < settings.size(); ++i) {
-      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phases[i].refit(s, x_t0, x_t1, kMargin);
+      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phases[i].refit(s, {x_t0, x_t1}, kMargin);
       EXPECT_EQ(all_pairs(broad_phases[i], surfaces.size()), expected)
           << "step " << step << ", children " << settings[i].children << ", leaf " << settings[i].leaf << ", longer "
           << settings[i].open_longer_side << ", list " << settings[i].separation_list;
@@ -127,7 +127,7 @@ TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
       // The surfaces stand still in the last four of every eight steps.
       const auto at = [&](int s) { return motion.at(s % 8 < 4 ? s : s - s % 4); };
       const std::vector<Vec3> x_t0 = at(step), x_t1 = at(step + 1);
-      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x_t0, x_t1, kMargin);
+      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, {x_t0, x_t1}, kMargin);
       const BothLists required = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kRequiredMargin);
       const BothLists allowed = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kMargin * 1.13);
       const BothLists found = all_pairs(broad_phase, surfaces.size());
@@ -196,7 +196,7 @@ TEST(BroadPhase, DoesNotListWhatMovesAlongWithEachOther) {
   for (Vec3& place : far) place += Vec3(3, -2, 5);
   BroadPhase broad_phase(surfaces, x);
   const auto pairs_to = [&](std::span<const Vec3> x_t1) {
-    for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x, x_t1, kMargin);
+    for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, {x, x_t1}, kMargin);
     return all_pairs(broad_phase, surfaces.size());
   };
   EXPECT_EQ(pairs_to(far), pairs_to(x));

@@ -128,7 +128,7 @@ TYPED_TEST(HierarchyPairs, OfAMovingMeshEqualBruteForceAfterEachRefit) {
     std::vector<Vec3> x_t1 = mesh.x;
     for (Vec3& p : x_t1) p += motion * random_vec(generator);
     for (const double margin : {0.0, 0.01}) {
-      tree.refit(mesh.x, x_t1, margin);
+      tree.refit({mesh.x, x_t1}, margin);
       expect_self_pairs<TypeParam>(mesh, tree, x_t1, margin);
     }
   }
@@ -152,8 +152,8 @@ TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
   for (std::size_t v = 0; v < cloth.x.size(); ++v) x_t1[v] += Vec3{0.1, -0.2, 0.05};
 
   typename TypeParam::TreeType tree_a(a, both.x, TypeParam::kShape), tree_b(b, both.x, TypeParam::kShape);
-  tree_a.refit(both.x, x_t1, 0.01);
-  tree_b.refit(both.x, x_t1, 0.02);
+  tree_a.refit({both.x, x_t1}, 0.01);
+  tree_b.refit({both.x, x_t1}, 0.02);
   CandidatePairs found;
   pairs(tree_a, tree_b, found);
   EXPECT_TRUE(found.one_shared.empty());
@@ -208,8 +208,8 @@ TYPED_TEST(HierarchyPairs, ComeInTheSameOrderEveryTime) {
   self_pairs(tree, first);
   self_pairs(again, second);
   EXPECT_TRUE(std::ranges::equal(first.apart.view(), second.apart.view()));
-  tree.refit(mesh.x, mesh.x, 0.05);
-  tree.refit(mesh.x, mesh.x, 0);
+  tree.refit({mesh.x, mesh.x}, 0.05);
+  tree.refit({mesh.x, mesh.x}, 0);
   second.clear();
   self_pairs(tree, second);
   EXPECT_TRUE(std::ranges::equal(first.one_shared.view(), second.one_shared.view()));
@@ -241,7 +241,7 @@ TEST(Hierarchy, ListsPairsInTheSameOrderOnAnyNumberOfThreads) {
   // Three layers, with enough leaves for several threads.
   const TestMesh sheet = folded_sheet(64, 3, 0.01);
   Tree<6> tree(sheet.surface(), sheet.x), other = tree;
-  tree.refit(sheet.x, sheet.x, 0.004);
+  tree.refit({sheet.x, sheet.x}, 0.004);
   const auto listed = [&](int threads) {
     set_thread_count(threads);
     CandidatePairs pairs;

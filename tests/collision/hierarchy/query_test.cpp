@@ -56,9 +56,9 @@ void for_all_fits(const Check& check) {
       for (int step = 0; step < 24; step += 4) {
         const std::vector<Vec3> x_t0 = motion.at(step), x_t1 = motion.at(step + 2);
         if (step % 8 == 0)
-          tree.refit(x_t0, x_t1, kMargin);
+          tree.refit({x_t0, x_t1}, kMargin);
         else
-          tree.refit_lazily(x_t0, x_t1, kMargin);
+          tree.refit_lazily({x_t0, x_t1}, kMargin);
         std::vector<Vec3> x = motion.at(step);
         for (std::size_t v = 0; v < x.size(); ++v)
           x[v] += step / 24.0 * (x_t1[v] - x_t0[v]) + 0.99 * kMargin * random_vec(generator).stableNormalized();

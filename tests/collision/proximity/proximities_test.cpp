@@ -73,7 +73,7 @@ struct AllPairs {
 /// Finds near pairs. `shuffle`: puts the candidates into a random order, and swaps the two triangles of half of them.
 std::vector<Proximity> find(const TestMesh& mesh, double reach, std::mt19937* shuffle = nullptr) {
   Tree<6> tree(mesh.surface(), mesh.x);
-  tree.refit(mesh.x, mesh.x, reach / 2);
+  tree.refit({mesh.x, mesh.x}, reach / 2);
   CandidatePairs candidates;
   self_pairs(tree, candidates);
   if (shuffle != nullptr)

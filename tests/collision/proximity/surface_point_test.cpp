@@ -46,7 +46,7 @@ struct Fitted {
     broad_phase = BroadPhase(surfaces, x);
     std::vector<Vec3> x_t1 = x;
     for (Vec3& p : x_t1) p += motion * random_vec(generator);
-    for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x, x_t1, margin);
+    for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, {x, x_t1}, margin);
     for (std::size_t v = 0; v < x.size(); ++v)
       x[v] += 0.7 * (x_t1[v] - x[v]) + 0.99 * margin * random_vec(generator).stableNormalized();
   }

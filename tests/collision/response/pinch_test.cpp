@@ -43,7 +43,7 @@ class PinchedTriangle : public ::testing::Test {
   }
   void move_cloth_to(double z) {
     for (int v = 0; v < 3; ++v) x_[v][2] = z;
-    for (std::size_t b = 0; b < surfaces_.size(); ++b) broad_phase_.refit(b, x_, x_, 0.001);
+    for (std::size_t b = 0; b < surfaces_.size(); ++b) broad_phase_.refit(b, {x_, x_}, 0.001);
   }
 
   testing::MovingScene scene_;
@@ -243,7 +243,7 @@ TEST(PinchedByAnOpenLimb, IsOnItsSideBeyondTheBorderButNotInTheBody) {
   for (const auto& [shift, is_pinched] : {std::pair(-0.11, true), std::pair(0.0, false)}) {
     std::vector<Vec3> moved = x;
     for (std::size_t v = 0; v < 3; ++v) moved[v].x() += shift;
-    for (std::size_t b = 0; b < 2; ++b) broad_phase.refit(b, moved, moved, 0.001);
+    for (std::size_t b = 0; b < 2; ++b) broad_phase.refit(b, {moved, moved}, 0.001);
     pinched.update_exempted(cloth, broad_phase, moved);
     EXPECT_EQ(!pinched.empty(), is_pinched) << shift;
   }

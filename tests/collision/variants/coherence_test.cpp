@@ -86,7 +86,7 @@ class CoherentDetectionTest : public ::testing::Test {
             CandidatePairs& candidates, std::vector<Proximity>& out) {
     candidates.clear();
     std::vector<Surface> with_themselves;
-    for (std::size_t s = 0; s < surfaces_.size(); ++s) fresh_.broad_phase.refit(s, x_t0, x_t1, kWidestReach / 2);
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) fresh_.broad_phase.refit(s, {x_t0, x_t1}, kWidestReach / 2);
     for (const auto& [a, b] : wanted) {
       if (a == b) {
         fresh_.broad_phase.self_pairs(a, candidates);

@@ -44,7 +44,7 @@ template <int K>
 SkippedPairs find_skipped_pairs(const Surface& surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                 double reach, const TreeShape& shape) {
   Tree<K> tree(surface, x_t0, shape);
-  tree.refit(x_t0, x_t1, reach / 2);
+  tree.refit({x_t0, x_t1}, reach / 2);
   NormalCones<K> cones(tree);
   cones.update(tree, x_t0, x_t1, reach);
   CandidatePairs all, with_cones;

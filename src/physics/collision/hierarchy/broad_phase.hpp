@@ -2,7 +2,7 @@
 // Options that are known only at run time select how hierarchies are refitted and traversed.
 //
 //   BroadPhase broad_phase(surfaces, x, options);      // once; surface s is surfaces[s]
-//   broad_phase.refit(s, x_t0, x_t1, margin);          // in each step, for each surface that has moved
+//   broad_phase.refit(s, {x_t0, x_t1}, margin);        // in each step, for each surface that has moved
 //   broad_phase.self_pairs(s, candidates);             // appends pairs; as often as needed
 //   broad_phase.pairs(a, b, candidates);
 //
@@ -72,9 +72,6 @@ class BroadPhase {
   /// pairs() list all pairs of triangles that meet on any motion whose starts and ends differ from those of `motion` by
   /// at most the margin: in Euclidean distance or, with 6 directions, along each axis.
   void refit(std::size_t surface, const Motion& motion, double margin) { trees_->refit(surface, motion, margin); }
-  void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
-    refit(surface, {x_t0, x_t1}, margin);
-  }
 
   /// Appends pairs of different triangles of one surface, a < b.
   void self_pairs(std::size_t surface, CandidatePairs& out) { trees_->self_pairs(surface, out); }

@@ -64,16 +64,12 @@ class Tree {
   /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. Triangles that come
   /// closer than 2 · margin at any time of the motion then have overlapping bounds.
   void refit(const Motion& motion, double margin);
-  void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
   /// As refit, but enlarges the bound of a slow vertex by a slack that suffices for a few steps (see kMaxSlackFraction
   /// in tree.cpp), and keeps this bound while the vertex stays within the slack. Refits only leaves and nodes above
   /// vertices with a new bound. If the margin has changed, renews all bounds. Bounds are never smaller than after
   /// refit.
   void refit_lazily(const Motion& motion, double margin);
-  void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
-    refit_lazily({x_t0, x_t1}, margin);
-  }
 
   /// Makes the next lazy refit renew all bounds.
   void forget() { resting_margin_ = -1; }

@@ -72,7 +72,7 @@ int CoherentDetection::update(BroadPhase& broad_phase, ProximityFinder& finder, 
   for (std::size_t w = 0; w < surface_pairs_.size(); ++w)
     if (!is_still_valid(surface_pairs_[w], kept_[w])) outdated.push_back(w);
   for (std::size_t s = 0; s < surfaces_.size(); ++s)
-    broad_phase.refit(s, x_t0, x_t1, 0.5 * (parameters_.detection_distance + parameters_.budget));
+    broad_phase.refit(s, {x_t0, x_t1}, 0.5 * (parameters_.detection_distance + parameters_.budget));
   if (!outdated.empty()) search_again(outdated, broad_phase, finder, x_t0);
   proximities_.clear();
   largest_motion_ = 0;
