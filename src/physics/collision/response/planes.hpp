@@ -24,7 +24,6 @@ namespace weft::collision {
 /// test. This saves time while pairs are pushed apart, because each round moves few vertices.
 class Planes {
  public:
-  Planes() = default;
   /// Vertices from `obstacles_from` on belong to obstacles.
   explicit Planes(std::span<const Triangle> triangles, Index obstacles_from = 0)
       : triangles_(triangles), obstacles_from_(obstacles_from) {}

@@ -63,7 +63,6 @@ struct RigidGroup {
 /// from obstacles and from each other, the lighter body farther.
 class Separation {
  public:
-  Separation() = default;
   /// `triangles`: of all surfaces, by global number. `deformable`: surfaces that can collide with themselves. `masses`:
   /// of the particles [kg]; if empty, all are equal. `triangles` and `masses` must outlive it.
   Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,

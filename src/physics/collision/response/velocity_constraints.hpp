@@ -49,7 +49,6 @@ class VelocityConstraints {
   /// Force that the constraint of this particle exerted in the last solve [N].
   using ForceOn = std::function<Vec3(Index)>;
 
-  VelocityConstraints() = default;
   explicit VelocityConstraints(std::vector<double> masses);  ///< of the particles [kg]
 
   /// Call before adding the walls of a step over h [s].

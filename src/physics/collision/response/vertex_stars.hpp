@@ -29,7 +29,6 @@ namespace weft::collision {
 /// are tested pair by pair; so are closed stars that fail this test.
 class VertexStars {
  public:
-  VertexStars() = default;
   /// `surfaces`: the deformable ones, with triangles counter-clockwise seen from the front.
   explicit VertexStars(std::span<const Surface> surfaces);
 

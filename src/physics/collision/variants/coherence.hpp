@@ -46,7 +46,6 @@ struct CoherenceParameters {
 
 class CoherentDetection {
  public:
-  CoherentDetection() = default;
   /// `surfaces`: numbered as in the broad phase and the finder. `surface_pairs`: the pairs of surfaces to search.
   CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> surface_pairs, std::span<const Vec3> x,
                     const CoherenceParameters& parameters);

@@ -39,7 +39,6 @@ namespace weft::collision {
 template <int K>
 class NormalCones {
  public:
-  NormalCones() = default;
   /// Reads the tree, but keeps no reference to it.
   explicit NormalCones(const Tree<K>& tree);
 
