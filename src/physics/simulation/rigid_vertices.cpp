@@ -38,6 +38,7 @@ void RigidVertices::place(std::span<Vec3> x) const {
 }
 
 void RigidVertices::gather(std::span<const Vec3> of_all, std::span<Vec3> force) const {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(first_); ++i) force[i] += of_all[i];
   for (Index v = first_; v < end(); ++v) {
     const Vec3& of_vertex = of_all[static_cast<std::size_t>(v)];
     if (of_vertex == Vec3::Zero()) continue;
@@ -46,6 +47,7 @@ void RigidVertices::gather(std::span<const Vec3> of_all, std::span<Vec3> force) 
 }
 
 void RigidVertices::gather(std::span<const double> of_all, std::span<double> magnitudes) const {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(first_); ++i) magnitudes[i] += of_all[i];
   for (Index v = first_; v < end(); ++v)
     if (const double of_vertex = of_all[static_cast<std::size_t>(v)]; of_vertex != 0)
       for_each_weight(v, [&](Index i, double w) { magnitudes[static_cast<std::size_t>(i)] += w * of_vertex; });

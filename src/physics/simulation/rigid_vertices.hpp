@@ -27,7 +27,8 @@ class RigidVertices {
 
   /// Computes the vertices in x from the frame particles in x.
   void place(std::span<Vec3> x) const;
-  /// force[frame particle] += weight · of_all[vertex], for all vertices.
+  /// force[particle] += of_all[particle], for all particles; force[frame particle] += weight · of_all[vertex], for all
+  /// vertices.
   void gather(std::span<const Vec3> of_all, std::span<Vec3> force) const;
   /// As above for magnitudes of forces. The sum over a frame is that over the vertices of its body, which the weights,
   /// with a sum of 1, preserve; single entries may be negative.

@@ -74,7 +74,6 @@ void StepProblem::add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3
   if (vertices_ == nullptr) return add(x_end, force);
   std::vector<Vec3> of_all(static_cast<std::size_t>(vertices_->end()), Vec3::Zero());
   add(with_vertices(x_end), of_all);
-  for (std::size_t i = 0; i < masses().size(); ++i) force[i] += of_all[i];
   vertices_->gather(of_all, force);
 }
 
@@ -122,14 +121,10 @@ bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec
   std::vector<double> normal_force_of_all(all, 0), limit_of_all = normal_force_of_all;
   contacts_->add_normal_and_friction_forces(with_vertices(at.x_end), memory_.contacts, push_of_all, friction_of_all,
                                             normal_force_of_all, limit_of_all);
-  const auto add = [&](const auto& of_all, const auto& of_particles) {
-    for (std::size_t i = 0; i < masses().size(); ++i) of_particles[i] += of_all[i];
-    vertices_->gather(of_all, of_particles);
-  };
-  add(push_of_all, push);
-  add(friction_of_all, friction);
-  add(normal_force_of_all, normal_force);
-  add(limit_of_all, limit);
+  vertices_->gather(push_of_all, push);
+  vertices_->gather(friction_of_all, friction);
+  vertices_->gather(normal_force_of_all, normal_force);
+  vertices_->gather(limit_of_all, limit);
   return true;
 }
 
@@ -144,7 +139,6 @@ bool StepProblem::find_impacts(const integrator::StagePoint& at, const StepStart
   std::vector<Vec3> of_all(x.size(), Vec3::Zero());
   const bool any = contacts_->add_impacts(with_vertices(at.x_end), memory_.contacts,
                                           {start.h, x, v, start.h_before, x_before, v_before}, of_all, system);
-  for (std::size_t i = 0; i < masses().size(); ++i) right_side[i] += of_all[i];
   vertices_->gather(of_all, right_side);
   vertices_->spread(system);
   return any;
