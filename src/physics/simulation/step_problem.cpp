@@ -49,16 +49,6 @@ void StepProblem::set_air_velocity(SolveMemory::PaddedVec3s air) {
   air_ = std::move(air);
 }
 
-void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force) {
-  add_cloth_forces(at, force);
-  cloth_.inflation().add_forces(at.x, force);
-  add_pulls(at, force);
-  if (contacts_ == nullptr) return;
-  add_contact_forces(at.x_end, force, [&](std::span<const Vec3> x, std::span<Vec3> of_all) {
-    contacts_->add_forces(x, memory_.contacts, of_all);
-  });
-}
-
 // The given positions or velocities of the particles, followed by those of the vertices of dynamic bodies.
 std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> of_particles) const {
   std::vector<Vec3> of_all(static_cast<std::size_t>(vertices_->end()));
@@ -77,14 +67,15 @@ void StepProblem::add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3
   vertices_->gather(of_all, force);
 }
 
-void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
+void StepProblem::add_forces(collision::ForceLaw law, const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
-  if (!memory_.locks.empty()) cloth_.add_lock_differences(at.x, memory_.locks, force);
+  if (law == collision::ForceLaw::tangent && !memory_.locks.empty())
+    cloth_.add_lock_differences(at.x, memory_.locks, force);
   cloth_.inflation().add_forces(at.x, force);
   add_pulls(at, force);
   if (contacts_ == nullptr) return;
   add_contact_forces(at.x_end, force, [&](std::span<const Vec3> x, std::span<Vec3> of_all) {
-    contacts_->add_linear_forces(x, memory_.contacts, of_all);
+    contacts_->add_forces(law, x, memory_.contacts, of_all);
   });
 }
 

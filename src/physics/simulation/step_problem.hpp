@@ -85,8 +85,12 @@ class StepProblem final : public integrator::System {
 
   std::span<const double> masses() const override { return cloth_.masses(); }
   void constant_forces(std::span<Vec3> force) const override { cloth_.cancel_weight_of_sewn_cloth(force); }
-  void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
-  void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
+  void forces(const integrator::StagePoint& at, std::span<Vec3> force) override {
+    add_forces(collision::ForceLaw::exact, at, force);
+  }
+  void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override {
+    add_forces(collision::ForceLaw::tangent, at, force);
+  }
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
   bool contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                       std::span<double> normal_force, std::span<double> limit) const override;
@@ -97,6 +101,7 @@ class StepProblem final : public integrator::System {
  private:
   void reset_memory();
   void restart_terms(const integrator::StagePoint& at);
+  void add_forces(collision::ForceLaw law, const integrator::StagePoint& at, std::span<Vec3> force);
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool update_positions(std::size_t part, const integrator::StagePoint& at);

@@ -87,7 +87,7 @@ ContactStates states_at_start(const ContactSet& contacts, const std::vector<Vec3
 
 std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const ContactStates& states) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.add_forces(x, states, f);
+  contacts.add_forces(ForceLaw::exact, x, states, f);
   return f;
 }
 std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
@@ -199,7 +199,7 @@ TEST(ContactSet, FrictionFollowsTheNormalForceOfTheLastUpdateAndFinallyKeepsIt) 
   x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // depth 0.2 kRange
   const auto tangential = [&] {
     std::vector<Vec3> forces(x.size(), Vec3::Zero());
-    contacts.add_linear_forces(x, states, forces);
+    contacts.add_forces(ForceLaw::tangent, x, states, forces);
     const Vec3 f = forces[0];
     return (f - pair.contact.normal.dot(f) * pair.contact.normal).norm();
   };
@@ -261,7 +261,7 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
 // Contact forces in the linear system [N], linearised at the initial depths.
 std::vector<Vec3> linear_forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.add_linear_forces(x, states_at_start(contacts, x), f);
+  contacts.add_forces(ForceLaw::tangent, x, states_at_start(contacts, x), f);
   return f;
 }
 
@@ -334,7 +334,7 @@ struct Slipping : VertexOnFace {
   /// Friction in the linear system at this slip, relative to the normal force.
   Vec3 friction(double slip, double sideways = 0) const {
     std::vector<Vec3> f(x.size(), Vec3::Zero());
-    contacts.add_linear_forces(slipped(slip, sideways), states, f);
+    contacts.add_forces(ForceLaw::tangent, slipped(slip, sideways), states, f);
     return (f[0] - contact.normal.dot(f[0]) * contact.normal) / normal_force_at(0.6);
   }
   Mat3 stiffness(double slip) const {
@@ -475,7 +475,7 @@ TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   std::vector<Vec3> x = pair.x;
   x[0] -= 0.3 * kRange * pair.contact.normal;
   std::vector<Vec3> f(4, Vec3::Zero());
-  contacts.add_linear_forces(x, states, f);
+  contacts.add_forces(ForceLaw::tangent, x, states, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
   EXPECT_LT(f[0].norm(), normal_force_at(0.9));
   // The next tangent is taken at the depth whose exact force equals this force, not at the depth of the iterate.
@@ -487,7 +487,7 @@ TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   for (int k = 0; k < 8; ++k) contacts.update(x, states);
   EXPECT_NEAR(states.depths[0], 0.9 * kRange, 1e-8 * kRange);
   std::fill(f.begin(), f.end(), Vec3::Zero());
-  contacts.add_linear_forces(x, states, f);
+  contacts.add_forces(ForceLaw::tangent, x, states, f);
   EXPECT_NEAR(f[0].norm(), normal_force_at(0.9), 1e-14 * normal_force_at(0.9));
   // The vertex is lifted off: the normal force is zero, not negative, and the next tangent is taken at depth zero.
   x[0] += kRange * pair.contact.normal;

@@ -69,9 +69,9 @@ void ContactResponse::accept() {
   if (walls_) walls_->accept();
 }
 
-void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactStates& states,
+void ContactResponse::add_forces(ForceLaw law, std::span<const Vec3> x_end, const ContactStates& states,
                                  std::span<Vec3> force) const {
-  springs_.add_forces(x_end, states, force);
+  springs_.add_forces(law, x_end, states, force);
   if (walls_) walls_->add_forces(x_end, force);
 }
 
@@ -80,12 +80,6 @@ void ContactResponse::add_normal_and_friction_forces(std::span<const Vec3> x_end
                                                      std::span<double> normal_force, std::span<double> limit) const {
   springs_.add_normal_and_friction_forces(x_end, states, push, friction, normal_force, limit);
   if (walls_) walls_->add_normal_and_friction_forces(x_end, push, friction, normal_force, limit);
-}
-
-void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states,
-                                        std::span<Vec3> force) const {
-  springs_.add_linear_forces(x_end, states, force);
-  if (walls_) walls_->add_forces(x_end, force);
 }
 
 void ContactResponse::linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states,

@@ -51,7 +51,7 @@ class ContactResponse {
   /// As the functions of ContactSet. Forces and derivatives include the friction of the walls. update(), add_impacts()
   /// and count_active() concern springs only.
   void update(std::span<const Vec3> x_end, ContactStates& states) const { springs_.update(x_end, states); }
-  void add_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
+  void add_forces(ForceLaw law, std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
   bool add_impacts(std::span<const Vec3> x_end, const ContactStates& states, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const {
     return springs_.add_impacts(x_end, states, start, right_side, system);
@@ -59,7 +59,6 @@ class ContactResponse {
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> push,
                                       std::span<Vec3> friction, std::span<double> normal_force,
                                       std::span<double> limit) const;
-  void add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
   int count_active(std::span<const Vec3> x_end) const { return springs_.count_active(x_end); }

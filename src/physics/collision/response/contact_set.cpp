@@ -214,7 +214,7 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactStates& states) cons
   ++states.updates;
 }
 
-ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<const Vec3> x_end,
+ContactSet::Response ContactSet::respond(std::size_t index, ForceLaw law, std::span<const Vec3> x_end,
                                          const ContactStates& states) const {
   const Contact& contact = contacts_[index];
   const Vec3 relative = relative_end(contact, x_end);
@@ -223,20 +223,20 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   if (depth <= 0) return response;
 
   response.active = true;
-  NormalForce normal_force = normal_force_at(contact, law == Law::exact ? depth : states.depths[index]);
-  if (law == Law::tangent) {
+  NormalForce normal_force = normal_force_at(contact, law == ForceLaw::exact ? depth : states.depths[index]);
+  if (law == ForceLaw::tangent) {
     normal_force.force = tangent_force(normal_force, states.depths[index], depth);
     if (normal_force.force == 0) normal_force.slope = 0;
   }
   response.slope = normal_force.slope;
   response.force = normal_force.force * contact.normal;
-  const bool follows = law == Law::exact && states.updates < numerics.newton.slow_after;
+  const bool follows = law == ForceLaw::exact && states.updates < numerics.newton.slow_after;
   const double friction_normal_force = follows ? normal_force.force : states.normal_forces[index];
   if (contact.static_friction == 0 || friction_normal_force == 0) return response;
 
   const FrictionState& friction = states.frictions[index];
   const Vec3 slip = slip_of(contact, relative) / stick_slip_;
-  const bool sticks = law == Law::tangent && friction.sticks;
+  const bool sticks = law == ForceLaw::tangent && friction.sticks;
   response.slip = sticks ? sticking_slip(contact, friction.relative_friction) : slip;
   response.friction_per_slip = friction_normal_force / stick_slip_;
   Vec3 w = friction_over_normal_force(contact, response.slip);
@@ -245,16 +245,7 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   return response;
 }
 
-void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const {
-  add_forces(Law::exact, x_end, states, force);
-}
-
-void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states,
-                                   std::span<Vec3> force) const {
-  add_forces(Law::tangent, x_end, states, force);
-}
-
-void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactStates& states,
+void ContactSet::add_forces(ForceLaw law, std::span<const Vec3> x_end, const ContactStates& states,
                             std::span<Vec3> force) const {
   struct Push {
     const Contact* contact;
@@ -275,7 +266,7 @@ void ContactSet::add_normal_and_friction_forces(std::span<const Vec3> x_end, con
                                                 std::span<double> normal_force, std::span<double> limit) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(c, Law::exact, x_end, states);
+    const Response response = respond(c, ForceLaw::exact, x_end, states);
     if (!response.active) continue;
     const double along = contact.normal.dot(response.force);
     const Vec3 normal_part = along * contact.normal;
@@ -301,7 +292,7 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
   parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = contacts_[c];
-      const Response response = respond(c, Law::tangent, x_end, states);
+      const Response response = respond(c, ForceLaw::tangent, x_end, states);
       if (!response.active) continue;
       Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
       if (response.friction_per_slip > 0)
@@ -322,7 +313,7 @@ bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactStates& s
   std::vector<Active> active;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(c, Law::tangent, x_end, states);
+    const Response response = respond(c, ForceLaw::tangent, x_end, states);
     if (response.active && response.slope > 0)
       active.push_back({&contact, impact_fraction(contact, start), contact.normal.dot(response.force), response.slope});
   }

@@ -46,6 +46,9 @@ struct ContactStates {
   int updates = 0;                       ///< number of calls of ContactSet::update() in this step
 };
 
+/// Forces of a contact: exact, or with the tangents of normal force and friction that ContactSet::linearise() uses.
+enum class ForceLaw { exact, tangent };
+
 /// Matrix for the tangent of friction. Friction at the slip u is −λ q, with the normal force λ and q = u / ψ(‖u‖).
 /// Returns `across` − sym(w ûᵀ), with û = `slip` / ‖`slip`‖ and the projector `across` onto the tangent plane. For w =
 /// ψ' q, the symmetric part of −∂(friction)/∂u is λ/ψ times this matrix. If w is longer than 1, it is shortened to 1,
@@ -88,16 +91,13 @@ class ContactSet {
   void update(std::span<const Vec3> x_end, ContactStates& states) const;
 
   /// Adds contact forces to `force` [N], with the particles at x_end. Before the Numerics::Newton::slow_after-th
-  /// update(), friction uses the normal forces at x_end, so that the residual contains the error of the constant normal
-  /// forces of the linear system. From then on, friction uses these constant normal forces, so that a sheet that lands
-  /// on an incline keeps the friction of the impact.
-  void add_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
-  /// As add_forces, but with the tangents of normal force and friction that linearise() uses, instead of their exact
-  /// values.
-  void add_linear_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
+  /// update(), exact friction uses the normal forces at x_end, so that the residual contains the error of the constant
+  /// normal forces of the linear system. From then on, friction uses these constant normal forces, so that a sheet that
+  /// lands on an incline keeps the friction of the impact.
+  void add_forces(ForceLaw law, std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
 
-  /// As add_forces, but adds normal forces to `push` and friction to `friction`. Adds the magnitudes of normal forces
-  /// to `normal_force` and the maximum friction to `limit` [N].
+  /// As the exact add_forces, but adds normal forces to `push` and friction to `friction`. Adds the magnitudes of
+  /// normal forces to `normal_force` and the maximum friction to `limit` [N].
   void add_normal_and_friction_forces(std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> push,
                                       std::span<Vec3> friction, std::span<double> normal_force,
                                       std::span<double> limit) const;
@@ -117,14 +117,14 @@ class ContactSet {
   bool add_impacts(std::span<const Vec3> x_end, const ContactStates& states, const StepStart& start,
                    std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
-  /// As add_linear_forces; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change of the unknown. The
-  /// matrix of friction is approximated so that it is positive semidefinite. Friction −λ w at a slip u = ψ(‖u‖) w is
-  /// linearised with w as an unknown in addition to u (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total
-  /// Variation-Based Image Restoration", 1999). If the contact sticks, the matrix is the tangent at the slip that w
-  /// corresponds to. If it slides, w is that of the first iterate, or the one with which sliding began. While the
-  /// contact keeps sliding in one direction, the matrix is then the exact tangent; otherwise it is closer to the secant
-  /// (friction over slip), or stiffer. Cloth that slides on an incline takes 1.05 iterations per step (2.3 with secants
-  /// only).
+  /// As add_forces with the tangent law; also adds −∂f/∂x to the system. `end_rate`: change of x_end per change of the
+  /// unknown. The matrix of friction is approximated so that it is positive semidefinite. Friction −λ w at a slip u =
+  /// ψ(‖u‖) w is linearised with w as an unknown in addition to u (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method
+  /// for Total Variation-Based Image Restoration", 1999). If the contact sticks, the matrix is the tangent at the slip
+  /// that w corresponds to. If it slides, w is that of the first iterate, or the one with which sliding began. While
+  /// the contact keeps sliding in one direction, the matrix is then the exact tangent; otherwise it is closer to the
+  /// secant (friction over slip), or stiffer. Cloth that slides on an incline takes 1.05 iterations per step (2.3 with
+  /// secants only).
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactStates& states, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
@@ -139,9 +139,7 @@ class ContactSet {
     double friction_per_slip = 0;  // normal force that limits friction, divided by the stick slip [N/m]; 0: none
     Vec3 slip;                     // at which friction is linearised, divided by the stick slip
   };
-  enum class Law { exact, tangent };
-  Response respond(std::size_t index, Law law, std::span<const Vec3> x_end, const ContactStates& states) const;
-  void add_forces(Law law, std::span<const Vec3> x_end, const ContactStates& states, std::span<Vec3> force) const;
+  Response respond(std::size_t index, ForceLaw law, std::span<const Vec3> x_end, const ContactStates& states) const;
 
   std::vector<Contact> contacts_;
   double stick_slip_ = 1e-6;  // ε: slip at which friction is fully developed [m]
