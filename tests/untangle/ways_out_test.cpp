@@ -54,7 +54,7 @@ struct ClothOnLayer {
 TEST(ClothBehindAFlatLayer, ThatCrossesTheLayerMovesToItsFront) {
   const ClothOnLayer tilted(0.5, 0.01);
   tilted.with_layer([&](const UntangleInput& input, const ForbiddenRegion& layer) {
-    const std::vector<InsideRegion> regions = find_inside(input, layer, std::array{0.0015, 0.0}, tilted.x);
+    const std::vector<InsideRegion> regions = find_inside(input, layer, tilted.x);
     ASSERT_EQ(regions.size(), 1U);
     EXPECT_EQ(regions[0].moves.size(), 36U) << "four of nine columns are lower than the layer";
     for (const Move& move : regions[0].moves) {
@@ -69,7 +69,7 @@ TEST(ClothBehindAFlatLayer, ThatIsApartFromTheLayerStays) {
   const ClothOnLayer apart(0, -0.05);
   apart.with_layer([&](const UntangleInput& input, const ForbiddenRegion& layer) {
     EXPECT_TRUE(layer.contains(apart.x[0]));
-    EXPECT_TRUE(find_inside(input, layer, std::array{0.0015, 0.0}, apart.x).empty());
+    EXPECT_TRUE(find_inside(input, layer, apart.x).empty());
   });
 }
 

@@ -170,7 +170,6 @@ std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::spa
 
 std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> all_crossings,
                                                     const collision::BroadPhase& surfaces,
-                                                    std::span<const double> min_height,
                                                     const std::optional<CrossedPair>& only, std::span<const Vec3> x) {
   std::vector<Crossing> crossings;
   std::ranges::copy_if(all_crossings, std::back_inserter(crossings), [&](const Crossing& c) {
@@ -220,7 +219,7 @@ std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, 
                        std::ranges::any_of(island.particles, [&](Index i) { return !input.movable[i]; });
     if (stays) continue;
     const std::size_t cloth = input.bodies.body_of(island.particles.front());
-    const double height = min_height[cloth];
+    const double height = input.min_height[cloth];
     const auto is_other = [&](Index v) { return input.bodies.body_of(v) == island.other; };
     if (island.other == cloth || !std::ranges::all_of(island.crossed_vertices, is_other)) island.other.reset();
     std::vector<Move> moves = best_moves(input, island, height, surfaces, x);
@@ -270,8 +269,7 @@ void shorten_contours(const UntangleInput& input, std::span<const Crossing> cros
 }
 
 void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
-                        std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
-                        std::span<Vec3> x) {
+                        std::span<const ForbiddenRegion> solids, std::span<Vec3> x) {
   const auto raise = [&](const ForbiddenRegion& solid, std::span<const Index> corners, std::span<const double> weights,
                          double height) {
     Vec3 p = Vec3::Zero();
@@ -295,14 +293,14 @@ void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> cr
     const auto solid = std::ranges::find(solids, body, &ForbiddenRegion::number);
     if (cloth_edge) {
       for (const double fraction : {0.5, 0.25, 0.75, c.fraction})
-        raise(*solid, edge, std::array{1 - fraction, fraction}, min_height[cloth]);
+        raise(*solid, edge, std::array{1 - fraction, fraction}, input.min_height[cloth]);
     } else {
       // An edge of the body crosses a triangle of cloth. Raise the crossing point higher than `min_height` by the
       // length of the shorter part of the edge, but at most by half the longest side of the triangle.
       const double out = std::min(c.fraction, 1 - c.fraction) * (x[edge[1]] - x[edge[0]]).norm();
       const double longest =
           std::max({(x[t[1]] - x[t[0]]).norm(), (x[t[2]] - x[t[1]]).norm(), (x[t[0]] - x[t[2]]).norm()});
-      raise(*solid, t, c.weights, min_height[cloth] + std::min(out, 0.5 * longest));
+      raise(*solid, t, c.weights, input.min_height[cloth] + std::min(out, 0.5 * longest));
     }
   }
 }

@@ -27,13 +27,12 @@ std::vector<CrossedPair> list_crossed_pairs(const UntangleInput& input, std::spa
 /// held particles do not move. The moves flatten the island onto that side, or fold it over the line of crossing if
 /// folding costs at least a tenth less (stretch_cost()). An island does not move either if an island beside it, or a
 /// triangle that it crosses, already moves. Thus, if islands cut each other off, only the smallest moves. Ignores
-/// crossings with solids, floors and layers. `surfaces`: the broad phase, refitted at x. `min_height`: height of the
-/// moved island over the crossed surface, per body of cloth [m]. `only`: restricts the search to this pair. If its two
+/// crossings with solids, floors and layers. `surfaces`: the broad phase, refitted at x. The island moves to
+/// UntangleInput::min_height over the crossed surface. `only`: restricts the search to this pair. If its two
 /// surfaces differ, `only->other` is extended beyond its border as a plane, so that a line of crossing that ends at
 /// this border still divides `only->cloth`.
 std::vector<std::vector<Move>> move_cut_off_islands(const UntangleInput& input, std::span<const Crossing> crossings,
                                                     const collision::BroadPhase& surfaces,
-                                                    std::span<const double> min_height,
                                                     const std::optional<CrossedPair>& only, std::span<const Vec3> x);
 
 /// Moves each crossing edge and the triangle that it crosses in opposite directions, so that the line of crossing
@@ -44,8 +43,8 @@ void shorten_contours(const UntangleInput& input, std::span<const Crossing> cros
 
 /// Pushes edges and triangles of cloth out of each solid, floor or layer that they cross. They can cross a solid
 /// although all their particles are outside. Raises their crossing points, and the quarter points of edges, to at least
-/// the height `min_height`, per body of cloth [m].
+/// UntangleInput::min_height.
 void push_out_of_solids(const UntangleInput& input, std::span<const Crossing> crossings,
-                        std::span<const ForbiddenRegion> solids, std::span<const double> min_height, std::span<Vec3> x);
+                        std::span<const ForbiddenRegion> solids, std::span<Vec3> x);
 
 }  // namespace weft::untangle

@@ -6,6 +6,8 @@
 namespace weft::untangle {
 namespace {
 
+// Height over an obstacle or other cloth to which cloth is moved, relative to the thickness of the moved cloth.
+constexpr double kHeightInThicknesses = 0.75;
 // Minimum length of a link, relative to the smaller of its lengths at the start and at rest. It is below 1, because
 // compressed threads buckle when the run begins.
 constexpr double kMinLengthRatio = 0.6;
@@ -22,7 +24,7 @@ UntangleInput::UntangleInput(const collision::Bodies& of_bodies, std::vector<Sur
       neighbours(rest.size()),
       on_border(x.size(), 0),
       can_move(of_bodies.size(), 0) {
-  for (std::size_t b = 0; b < bodies.size(); ++b) thickness.push_back(bodies[b].thickness);
+  for (std::size_t b = 0; b < bodies.size(); ++b) min_height.push_back(kHeightInThicknesses * bodies[b].thickness);
   for (Index i = 0; i < particles(); ++i) can_move[bodies.body_of(i)] |= movable[i];
   const auto add = [&](Index i, Index j, bool bend) {
     const double at_start = (x[i] - x[j]).norm(), at_rest = (rest[i] - rest[j]).norm();

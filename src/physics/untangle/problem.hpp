@@ -43,7 +43,7 @@ struct UntangleInput {
   std::vector<Link> links;                     ///< of cloth
   std::vector<std::vector<Index>> neighbours;  ///< per particle
   std::vector<std::uint8_t> on_border;         ///< per vertex: 1 if it is on a border
-  std::vector<double> thickness;               ///< contact thickness per body [m]
+  std::vector<double> min_height;              ///< per body: height over others to which its cloth is moved [m]
   std::vector<std::uint8_t> can_move;          ///< per body: whether any of its vertices is movable
 
   bool is_cloth(Index vertex) const { return vertex < particles(); }

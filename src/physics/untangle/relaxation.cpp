@@ -14,12 +14,11 @@ constexpr double kBendFraction = 0.2;
 
 }  // namespace
 
-void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
-           std::span<Vec3> x) {
+void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<Vec3> x) {
   parallel_for(static_cast<std::size_t>(input.particles()), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!input.movable[i]) continue;
-      const double height = min_height[input.bodies.body_of(static_cast<Index>(i))];
+      const double height = input.min_height[input.bodies.body_of(static_cast<Index>(i))];
       for (const ForbiddenRegion& solid : solids) {
         if (!solid.is_near(x[i], height)) continue;
         const ForbiddenRegion::Exit exit = solid.find_exit(x[i]);
@@ -29,8 +28,7 @@ void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, 
   });
 }
 
-void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
-           int sweeps, std::span<Vec3> x) {
+void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, int sweeps, std::span<Vec3> x) {
   for (int sweep = 1; sweep <= sweeps; ++sweep) {
     for (const UntangleInput::Link& link : input.links) {
       const Vec3 between = x[link.j] - x[link.i];
@@ -44,7 +42,7 @@ void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, 
       if (input.movable[link.i]) x[link.i] += push;
       if (input.movable[link.j]) x[link.j] -= push;
     }
-    if (sweep % kSweepsPerRaise == 0 || sweep == sweeps) raise(input, solids, min_height, x);
+    if (sweep % kSweepsPerRaise == 0 || sweep == sweeps) raise(input, solids, x);
   }
 }
 

@@ -11,15 +11,12 @@ namespace weft::untangle {
 
 /// Sweeps `sweeps` times over all links in order, and corrects the length of each link before it reads the next one
 /// (Gauss-Seidel; position-based dynamics without time: Müller et al., "Position Based Dynamics", 2007). Corrects only
-/// a fifth of the error of a bending link. After every fifth sweep and after the last one, calls raise(). `min_height`:
-/// minimum height over solids [m], per body.
-void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
-           int sweeps, std::span<Vec3> x);
+/// a fifth of the error of a bending link. After every fifth sweep and after the last one, calls raise().
+void relax(const UntangleInput& input, std::span<const ForbiddenRegion> solids, int sweeps, std::span<Vec3> x);
 
-/// Moves movable particles that are inside a solid, or less than `min_height` [m] over it, to the height
-/// `min_height` over their nearest exit (ForbiddenRegion::Exit). `min_height`: per body.
-void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<const double> min_height,
-           std::span<Vec3> x);
+/// Moves movable particles that are inside a solid, or less than UntangleInput::min_height over it, to that height over
+/// their nearest exit (ForbiddenRegion::Exit).
+void raise(const UntangleInput& input, std::span<const ForbiddenRegion> solids, std::span<Vec3> x);
 
 /// Moves movable particles within `rings` edges of the given ones to the mean of their neighbours,
 /// `times` times. For a particle on the border, only neighbours on the border count, so that it

@@ -13,8 +13,6 @@
 namespace weft::untangle {
 namespace {
 
-// Height over an obstacle or other cloth to which cloth is moved, relative to the thickness of the moved cloth.
-constexpr double kHeightInThicknesses = 0.75;
 // Minimum gap between surfaces, relative to the larger thickness of the two: far above Numerics::Separation::least_gap.
 constexpr double kGapInThicknesses = 0.1;
 constexpr int kMaxRounds = 400;
@@ -32,7 +30,7 @@ constexpr double kMaxDisplacementRatio = 1.5;
 // another.
 constexpr int kMaxPasses = 3;
 // A region is shallow if its displacement is less than this multiple of the height to which cloth is moved
-// (kHeightInThicknesses). Shallow regions always move; only strain after the move can lock them.
+// (UntangleInput::min_height). Shallow regions always move; only strain after the move can lock them.
 constexpr double kShallowDepth = 4;
 // Maximum strain of a thread after the move. If a thread is strained more, the body probably goes through the cloth,
 // and the region is locked. Measured strains: 0.44 for a tube 4 cm too small (the largest of all valid starts); 4.9 for
@@ -51,7 +49,6 @@ class Untangling {
   Untangling(const UntangleInput& input, bool self, std::span<Vec3> x)
       : input_(input), x_(x), start_(x.begin(), x.end()), finder_(input, x, self) {
     for (std::size_t b = 0; b < input.bodies.size(); ++b) {
-      min_height_.push_back(kHeightInThicknesses * input.thickness[b]);
       if (input.kinds[b] == SurfaceKind::solid || input.kinds[b] == SurfaceKind::floor)
         solids_.emplace_back(finder_.surfaces(), b, input.kinds[b], x);
     }
@@ -87,8 +84,8 @@ class Untangling {
     for (int pass = 0; pass < kMaxPasses && report_.locked_regions.empty(); ++pass) {
       std::vector<InsideRegion> regions;
       for (const ForbiddenRegion& solid : solids_) {
-        for (InsideRegion& region : find_inside(input_, solid, min_height_, x_)) {
-          const bool shallow = region.farthest < kShallowDepth * min_height_[region.cloth];
+        for (InsideRegion& region : find_inside(input_, solid, x_)) {
+          const bool shallow = region.farthest < kShallowDepth * input_.min_height[region.cloth];
           const bool free = !region.moves.empty() && region.farthest <= kMaxDisplacementRatio * region.size &&
                             region.blocked <= kMaxBlockedFraction;
           (shallow || free ? regions : report_.locked_regions).push_back(std::move(region));
@@ -96,7 +93,7 @@ class Untangling {
       }
       if (regions.empty() || !report_.locked_regions.empty()) break;
       for (const InsideRegion& region : regions) apply(region.moves);
-      relax(input_, solids_, min_height_, kSweepsAfterMove, x_);
+      relax(input_, solids_, kSweepsAfterMove, x_);
       for (InsideRegion& region : regions)
         if (is_overstretched(region)) report_.locked_regions.push_back(std::move(region));
     }
@@ -151,7 +148,8 @@ class Untangling {
     }
     for (Index i = 0; i < input_.particles(); ++i)
       if (input_.movable[i])
-        x_[i] += 1.1 * kGapInThicknesses * input_.thickness[input_.bodies.body_of(i)] * normals[i].stableNormalized();
+        x_[i] +=
+            1.1 * kGapInThicknesses * input_.bodies[input_.bodies.body_of(i)].thickness * normals[i].stableNormalized();
   }
 
   // Moves islands, shortens lines of crossing and smooths, until nothing crosses or kMaxSmoothings or kMaxRounds is
@@ -162,9 +160,9 @@ class Untangling {
     fewest_pairs_ = finder_.pairs();
     for (int waited = 0, smoothings = 0; report_.rounds < kMaxRounds && fewest_pairs_ > 0; ++report_.rounds) {
       if (waited == 0 && move_islands()) continue;
-      push_out_of_solids(input_, crossings_, solids_, min_height_, x_);
+      push_out_of_solids(input_, crossings_, solids_, x_);
       shorten_contours(input_, crossings_, step_, x_);
-      relax(input_, solids_, min_height_, kSweeps, x_);
+      relax(input_, solids_, kSweeps, x_);
       find();
       waited = keep_if_better() ? 0 : waited + 1;
       if (waited < kPatience) continue;
@@ -185,7 +183,7 @@ class Untangling {
       bool any = false;
       for (const std::vector<Move>& moves : islands) any = apply(moves) || any;
       if (!any) return false;
-      relax(input_, solids_, min_height_, kSweepsAfterMove, x_);
+      relax(input_, solids_, kSweepsAfterMove, x_);
       find();
       if (keep_if_better()) return true;
       std::ranges::copy(before, x_.begin());
@@ -193,7 +191,7 @@ class Untangling {
       return false;
     };
     const auto islands_of = [&](const std::optional<CrossedPair>& only) {
-      return move_cut_off_islands(input_, crossings_, finder_.surfaces(), min_height_, only, x_);
+      return move_cut_off_islands(input_, crossings_, finder_.surfaces(), only, x_);
     };
     if (try_moves(islands_of(std::nullopt))) return true;
     for (const CrossedPair& only : list_crossed_pairs(input_, crossings_)) {
@@ -216,7 +214,7 @@ class Untangling {
       around.insert(around.end(), {edge[0], edge[1], t[0], t[1], t[2]});
     }
     smooth(input_, around, 1 + smoothings, 4 * smoothings, x_);
-    relax(input_, solids_, min_height_, kSweepsAfterMove, x_);
+    relax(input_, solids_, kSweepsAfterMove, x_);
     find();
     keep_if_better();
   }
@@ -239,7 +237,8 @@ class Untangling {
   void restore_gaps() {
     std::vector<Vec3> good(x_.begin(), x_.end());
     double max_gap = 0;
-    for (const double thickness : input_.thickness) max_gap = std::max(max_gap, kGapInThicknesses * thickness);
+    for (std::size_t b = 0; b < input_.bodies.size(); ++b)
+      max_gap = std::max(max_gap, kGapInThicknesses * input_.bodies[b].thickness);
     for (int round = 0; round < kMaxGapRounds; ++round) {
       int close = 0;
       for (const collision::TrianglePair& pair : finder_.find_near_pairs(x_, max_gap)) {
@@ -257,8 +256,8 @@ class Untangling {
   // If the gap between two triangles is too small, pushes them apart to 1.1 times the minimum gap.
   // Returns whether any particle has moved.
   bool push(const collision::CornerPair& pair) {
-    const double wanted = kGapInThicknesses * std::max(input_.thickness[input_.bodies.body_of(pair.a[0])],
-                                                       input_.thickness[input_.bodies.body_of(pair.b[0])]);
+    const double wanted = kGapInThicknesses * std::max(input_.bodies[input_.bodies.body_of(pair.a[0])].thickness,
+                                                       input_.bodies[input_.bodies.body_of(pair.b[0])].thickness);
     const collision::ClosestFeatures closest = collision::closest_features(pair, x_);
     const double distance = std::sqrt(closest.points.distance_sq);
     if (distance >= wanted) return false;
@@ -286,8 +285,7 @@ class Untangling {
   std::vector<Vec3> start_;
   CrossingFinder finder_;
   std::vector<ForbiddenRegion> solids_;
-  std::vector<double> min_height_;  // per body: height over other surfaces to which its cloth is moved [m]
-  double step_ = 0;                 // maximum displacement by shorten_contours() [m]
+  double step_ = 0;  // maximum displacement by shorten_contours() [m]
   std::vector<Crossing> crossings_;
   std::vector<Vec3> best_x_;  // state with the fewest crossing pairs
   int fewest_pairs_ = 0;      // number of these pairs

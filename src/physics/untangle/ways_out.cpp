@@ -93,7 +93,7 @@ std::vector<Index> take_connected(const UntangleInput& input, Index first, std::
 }  // namespace
 
 std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
-                                      std::span<const double> min_height, std::span<const Vec3> x) {
+                                      std::span<const Vec3> x) {
   const Index particles = input.particles();
   std::vector<std::uint8_t> inside(particles, 0);
   for (Index i = 0; i < particles; ++i)
@@ -117,7 +117,7 @@ std::vector<InsideRegion> find_inside(const UntangleInput& input, const Forbidde
     region.centre = box.center();
     region.size = box.sizes().maxCoeff();
 
-    const double height = min_height[region.cloth];
+    const double height = input.min_height[region.cloth];
     double best = std::numeric_limits<double>::infinity();
     const auto try_moves = [&](const std::function<Vec3(const Vec3&)>& out_of) {
       std::vector<Move> moves;

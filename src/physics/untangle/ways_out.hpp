@@ -22,15 +22,15 @@ struct InsideRegion {
   /// infinite if there is no such way.
   double shortest = std::numeric_limits<double>::infinity();
   double blocked = 0;       ///< fraction of its threads that would still go through the solid after the moves
-  std::vector<Move> moves;  ///< out of the solid, to the height `min_height` over its surface
+  std::vector<Move> moves;  ///< out of the solid, to UntangleInput::min_height over its surface
 };
 
 /// Finds all regions that are inside `solid` at x [m], of cloth that can move (UntangleInput::can_move). Behind a
 /// layer, only regions count that reach into its bounding box or cross it. Chooses the cheapest way out of each: every
 /// particle goes to its nearest exit, or all particles move in one direction, or the whole mesh moves. For example, a
 /// sheet that cuts a ball into two parts moves to the side of the smaller part of the ball; a garment that is too small
-/// moves outward on all sides. `min_height`: height over the surface, per body of cloth [m].
+/// moves outward on all sides.
 std::vector<InsideRegion> find_inside(const UntangleInput& input, const ForbiddenRegion& solid,
-                                      std::span<const double> min_height, std::span<const Vec3> x);
+                                      std::span<const Vec3> x);
 
 }  // namespace weft::untangle
