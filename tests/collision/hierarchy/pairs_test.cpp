@@ -42,7 +42,7 @@ class BruteForce {
 
   /// Gap between the bounds of two triangles [m]: the maximum, over all directions, of the gap that exists both at the
   /// start and at the end, with the margins subtracted. The bounds overlap if it is not positive.
-  double gap(const Triangle& a, const BruteForce& other, const Triangle& b) const {
+  double gap(const Triangle& a, const Triangle& b) const {
     double max_gap = -1e300;
     for (int d = 0; d < K; d += 2) {
       const auto& dir = kDirections<K>;
@@ -51,7 +51,7 @@ class BruteForce {
       double above = 1e300, below = 1e300;
       for (const bool at_end : {false, true}) {
         const auto [a_low, a_high] = interval(a, axis, at_end);
-        const auto [b_low, b_high] = other.interval(b, axis, at_end);
+        const auto [b_low, b_high] = interval(b, axis, at_end);
         above = std::min(above, a_low - b_high);
         below = std::min(below, b_low - a_high);
       }
@@ -100,7 +100,7 @@ void expect_self_pairs(const TestMesh& mesh, const typename S::TreeType& tree, s
     for (std::size_t b = a + 1; b < mesh.triangles.size(); ++b) {
       const std::size_t shared = testing::shared_count(mesh.triangles[a], mesh.triangles[b]);
       if (shared > 1) continue;
-      const double gap = brute.gap(mesh.triangles[a], brute, mesh.triangles[b]);
+      const double gap = brute.gap(mesh.triangles[a], mesh.triangles[b]);
       const TrianglePair pair{static_cast<Index>(a), static_cast<Index>(b)};
       if (gap <= 0) required[shared].insert(pair);
       if (gap <= kRounding) allowed[shared].insert(pair);
@@ -132,43 +132,6 @@ TYPED_TEST(HierarchyPairs, OfAMovingMeshEqualBruteForceAfterEachRefit) {
       expect_self_pairs<TypeParam>(mesh, tree, x_t1, margin);
     }
   }
-}
-
-TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
-  const TestMesh cloth = folded_sheet(13, 2, 0.05), body = triangle_soup(9, 30, 150, 0.2);
-  // Both surfaces share one numbering: the vertices and triangles of the body follow those of the cloth.
-  TestMesh both = cloth;
-  const auto first_vertex = static_cast<Index>(cloth.x.size());
-  const auto first_triangle = static_cast<Index>(cloth.triangles.size());
-  both.x.insert(both.x.end(), body.x.begin(), body.x.end());
-  for (Triangle t : body.triangles) {
-    for (Index& v : t) v += first_vertex;
-    both.triangles.push_back(t);
-  }
-  const std::span<const Triangle> all = both.triangles;
-  const Surface a{all.first(cloth.triangles.size()), 0, 0, first_vertex};
-  const Surface b{all.subspan(cloth.triangles.size()), first_triangle, first_vertex, static_cast<Index>(body.x.size())};
-  std::vector<Vec3> x_t1 = both.x;
-  for (std::size_t v = 0; v < cloth.x.size(); ++v) x_t1[v] += Vec3{0.1, -0.2, 0.05};
-
-  typename TypeParam::TreeType tree_a(a, both.x, TypeParam::kShape), tree_b(b, both.x, TypeParam::kShape);
-  tree_a.refit({both.x, x_t1}, 0.01);
-  tree_b.refit({both.x, x_t1}, 0.02);
-  CandidatePairs found;
-  pairs(tree_a, tree_b, found);
-  EXPECT_TRUE(found.one_shared.empty());
-
-  const BruteForce<TypeParam::K> brute_a(both, x_t1, 0.01), brute_b(both, x_t1, 0.02);
-  Pairs required, allowed;
-  for (Index i = 0; i < first_triangle; ++i) {
-    for (Index j = first_triangle; j < static_cast<Index>(both.triangles.size()); ++j) {
-      const double gap = brute_a.gap(both.triangles[i], brute_b, both.triangles[j]);
-      if (gap <= 0) required.insert({i, j});
-      if (gap <= 1e-6) allowed.insert({i, j});
-    }
-  }
-  EXPECT_GT(required.size(), 50U);
-  expect_between(required, as_set(found.apart), allowed);
 }
 
 TYPED_TEST(HierarchyPairs, CoverTouchingTrianglesAtLargeCoordinates) {
