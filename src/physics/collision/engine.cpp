@@ -299,8 +299,6 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
     report.obstructed_pins.insert(report.obstructed_pins.end(), pass.obstructed_pins.begin(),
                                   pass.obstructed_pins.end());
     for (const ObstructedPin& pin : pass.obstructed_pins) movable[pin.particle] = kFree;
-    report.corrected_pairs += pass.corrected_pairs;
-    report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
     if (!pass.separated) report.unseparated_pair = pass.unseparated_pair;
     if (!report.obstructed_pins.empty() && !may_move_pins) {

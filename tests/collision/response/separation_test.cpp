@@ -167,21 +167,13 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
     ASSERT_FALSE(before.empty());
     const std::vector<Vec3> wanted = pairs.x_t1;
     Separation separation = pairs.separation();
-    const SeparationReport report = separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable);
-    EXPECT_TRUE(report.separated);
-    EXPECT_EQ(report.corrected_pairs, static_cast<int>(before.size()));
+    EXPECT_TRUE(separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable).separated);
     EXPECT_TRUE(failing(pairs).empty());
     EXPECT_TRUE(meeting(pairs).empty());
 
     // Only vertices of failing pairs were moved.
-    double largest = 0;
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
-      if (wanted[i] == pairs.x_t1[i]) continue;
-      EXPECT_TRUE(before.contains(static_cast<Index>(i / 6)));
-      largest = std::max(largest, (wanted[i] - pairs.x_t1[i]).norm());
-    }
-    EXPECT_GT(report.largest_push, 0);
-    EXPECT_LE(report.largest_push, largest * (1 + 1e-9) + 1e-12);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      EXPECT_TRUE(wanted[i] == pairs.x_t1[i] || before.contains(static_cast<Index>(i / 6)));
   }
 }
 
@@ -194,13 +186,15 @@ TEST(Separation, PushesAlongTheShortestOfTheDirectionsThatSeparateAtTheStart) {
                                {0.008, -0.02, 0}, {0.014, -0.02, 0},   {0.011, 0.04, 0}};
   std::vector<Vec3> x_t1 = x_t0;
   for (std::size_t v = 0; v < 3; ++v) x_t1[v] += Vec3(0.025, 0, -1.01e-3);
+  const std::vector<Vec3> wanted = x_t1;
   Separation separation(triangles, {});
   separation.watch(pairs, x_t0);
-  const SeparationReport report =
-      separation.enforce(x_t0, x_t1, std::vector<std::uint8_t>{kFree, kFree, kFree, kFixed, kFixed, kFixed});
-  EXPECT_TRUE(report.separated);
-  EXPECT_GT(report.largest_push, 0.01e-3);
-  EXPECT_LT(report.largest_push, 0.01e-3 + 1.01 * numerics.separation.restored_gap);
+  const std::vector<std::uint8_t> movable{kFree, kFree, kFree, kFixed, kFixed, kFixed};
+  EXPECT_TRUE(separation.enforce(x_t0, x_t1, movable).separated);
+  for (std::size_t v = 0; v < 3; ++v) {
+    EXPECT_GT((x_t1[v] - wanted[v]).norm(), 0.01e-3);
+    EXPECT_LT((x_t1[v] - wanted[v]).norm(), 0.01e-3 + 1.01 * numerics.separation.restored_gap);
+  }
 }
 
 TEST(Separation, PushingAPieceOfRopeOffATriangleKeepsTheMomentum) {
@@ -239,10 +233,7 @@ TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
   for (Vec3& x : pairs.x_t1) x += Vec3(0.3, 0.1, -0.2);  // all move together
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
-  const SeparationReport report = separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable);
-  EXPECT_TRUE(report.separated);
-  EXPECT_EQ(report.corrected_pairs, 0);
-  EXPECT_EQ(report.largest_push, 0);
+  EXPECT_TRUE(separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable).separated);
   EXPECT_EQ(pairs.x_t1, wanted);
 }
 

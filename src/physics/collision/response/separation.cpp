@@ -183,7 +183,6 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
       const double missing = sign * plane + 0.5 * target - sign * n.dot(step.x_t1[v]);
       if (missing <= 0 || is_fixed(v, step)) continue;
       step.x_t1[v] += sign * missing * n;
-      step.report.largest_push = std::max(step.report.largest_push, missing);
     }
   };
   push(pair.a, 1);
@@ -210,7 +209,6 @@ bool Separation::translate_groups(const CornerPair& pair, const Vec3& n, double 
   };
   translate(a, missing * inverse_mass_a / (inverse_mass_a + inverse_mass_b));
   translate(b, -missing * inverse_mass_b / (inverse_mass_a + inverse_mass_b));
-  step.report.largest_push = std::max(step.report.largest_push, missing);
   return true;
 }
 
@@ -291,7 +289,6 @@ bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step)
       if (step.movable[v] != kFree || step.x_t1[v] == to) continue;
       changed = true;
       if (backtracked_in_[v] == round_) continue;
-      step.report.largest_push = std::max(step.report.largest_push, fraction * (to - step.x_t1[v]).norm());
       const auto take_back = [&](Index member) {
         const Vec3& there = backtrack_target(member, step);
         step.x_t1[member] = fraction == 1 ? there : Vec3(step.x_t1[member] + fraction * (there - step.x_t1[member]));
@@ -345,7 +342,6 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   backtracked_in_.assign(x_t0.size(), 0);
   if (!is_continued) carriers_.assign(x_t0.size(), kAtStart);
   test_again(step);
-  step.report.corrected_pairs = static_cast<int>(failing_.size());
   // With r = `rounds`: rounds 1 to r push pairs apart. Later rounds backtrack failing pairs, up to
   // round 1.5 r by halves, then entirely. From round 2.5 r on, all free vertices are backtracked
   // entirely.

@@ -27,8 +27,6 @@ struct ObstructedPin {
 
 struct SeparationReport {
   bool separated = false;                      ///< each pair has a separating plane, is exempt, or is fully backtracked
-  int corrected_pairs = 0;                     ///< number of pairs that failed before the correction
-  double largest_push = 0;                     ///< longest single push or backtrack of a pair [m]
   std::vector<ObstructedPin> obstructed_pins;  ///< pinned particles that had to move
   CornerPair unseparated_pair{};               ///< if not `separated`: a pair that is not separated
 };
