@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "collision/hierarchy/test_meshes.hpp"
 #include "physics/collision/proximity/closest_points.hpp"
 #include "physics/collision/proximity/features.hpp"
 
@@ -30,16 +31,9 @@ struct Layers {
 
   explicit Layers(int n, double gap) {
     for (int layer = 0; layer < 2; ++layer) {
-      std::vector<Triangle> triangles;
       for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) x.emplace_back(0.03 * i, 0.03 * j, gap * layer);
-      for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-          const Index a = i + (n + 1) * j, b = a + n + 1;
-          triangles.push_back({a, a + 1, b + 1});
-          triangles.push_back({a, b + 1, b});
-        }
-      bodies.add(triangles, (n + 1) * (n + 1), {.deformable = true, .thickness = 0.004});
+      bodies.add(testing::grid_triangles(n + 1), (n + 1) * (n + 1), {.deformable = true, .thickness = 0.004});
     }
     for (const Vec3& corner : {Vec3(-1, -1, -gap), Vec3(2, -1, -gap), Vec3(0, 2, -gap)}) x.push_back(corner);
     bodies.add(std::vector<Triangle>{{0, 1, 2}}, 3, {});

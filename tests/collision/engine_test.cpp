@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "collision/hierarchy/test_meshes.hpp"
 #include "core/archive.hpp"
 
 namespace weft::collision {
@@ -41,15 +42,8 @@ struct Sheet {
     return end;
   }
   Bodies bodies() const {
-    std::vector<Triangle> triangles;
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const Index a = i + (n + 1) * j, b = a + n + 1;
-        triangles.push_back({a, a + 1, b + 1});
-        triangles.push_back({a, b + 1, b});
-      }
     Bodies made;
-    made.add(triangles, static_cast<Index>(particles()),
+    made.add(testing::grid_triangles(n + 1), static_cast<Index>(particles()),
              {.deformable = true, .thickness = kThickness, .friction = 0.3});
     for (std::size_t p = 0; p < planes.size(); ++p)
       made.add(std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, 4, {.friction = 0.3, .may_move = false});

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <vector>
 
+#include "collision/hierarchy/test_meshes.hpp"
 #include "physics/mesh/shapes.hpp"
 
 namespace weft::untangle {
@@ -29,17 +29,12 @@ struct ClothOnLayer {
   }
   void add(double half_width, double slope, double height, const collision::BodyTraits& traits) {
     constexpr Index kRow = kCells + 1;
-    std::vector<std::array<Index, 3>> triangles;
     for (Index j = 0; j < kRow; ++j)
       for (Index i = 0; i < kRow; ++i) {
         const double u = half_width * (2.0 * i / kCells - 1), v = half_width * (2.0 * j / kCells - 1);
         x.emplace_back(u, v, height + slope * u);
-        if (i == kCells || j == kCells) continue;
-        const Index corner = i + kRow * j;
-        triangles.push_back({corner, corner + 1, corner + kRow + 1});
-        triangles.push_back({corner, corner + kRow + 1, corner + kRow});
       }
-    bodies.add(triangles, kRow * kRow, traits);
+    bodies.add(collision::testing::grid_triangles(kRow), kRow * kRow, traits);
   }
   /// Calls test(input, layer).
   template <class Test>

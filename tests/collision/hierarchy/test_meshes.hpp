@@ -46,6 +46,17 @@ inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double
   return mesh;
 }
 
+/// Triangles of a grid of n × n vertices, which are numbered row by row.
+inline std::vector<Triangle> grid_triangles(Index n) {
+  std::vector<Triangle> triangles;
+  for (Index j = 0; j + 1 < n; ++j)
+    for (Index a = n * j; a + 1 < n * (j + 1); ++a) {
+      triangles.push_back({a, a + 1, a + 1 + n});
+      triangles.push_back({a, a + 1 + n, a + n});
+    }
+  return triangles;
+}
+
 /// A sheet of n × n vertices, 1 m × 1 m, folded back and forth into `layers` layers that are `gap` [m] apart.
 inline TestMesh folded_sheet(int n, int layers, double gap) {
   TestMesh mesh;
@@ -58,13 +69,7 @@ inline TestMesh folded_sheet(int n, int layers, double gap) {
                           gap * (layer + along * along));
     }
   }
-  for (int j = 0; j + 1 < n; ++j) {
-    for (int i = 0; i + 1 < n; ++i) {
-      const Index a = i + n * j;
-      mesh.triangles.push_back({a, a + 1, a + 1 + n});
-      mesh.triangles.push_back({a, a + 1 + n, a + n});
-    }
-  }
+  mesh.triangles = grid_triangles(n);
   return mesh;
 }
 
