@@ -142,15 +142,8 @@ bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin)
   return distance <= margin || is_kept_clear(vertex, x);
 }
 
-bool CandidateCache::covers_end(std::span<const Vec3> x) const {
-  if (margin_ < 0) return false;
-  return parallel_all_of(x.size(), [&](std::size_t i) { return is_at_end(i, x[i], margin_); });
-}
-
-bool CandidateCache::lists_near(std::span<const Vec3> x) const {
-  if (margin_ < 0) return false;
-  const double margin = margin_ - 0.5 * detection_distance_;
-  return parallel_all_of(x.size(), [&](std::size_t i) { return is_at_end(i, x[i], margin); });
+bool CandidateCache::are_at_end(std::span<const Vec3> x, double margin) const {
+  return margin_ >= 0 && parallel_all_of(x.size(), [&](std::size_t i) { return is_at_end(i, x[i], margin); });
 }
 
 bool CandidateCache::bounds_contain(std::span<const Vec3> x) const {

@@ -73,11 +73,11 @@ class CandidateCache {
   /// Whether each vertex at x is kept clear or is inside the bounds of its end. If so, and if
   /// covers_start() is true for the start of a trajectory to x, the pairs include all that can meet
   /// on it.
-  bool covers_end(std::span<const Vec3> x) const;
+  bool covers_end(std::span<const Vec3> x) const { return are_at_end(x, margin_); }
 
   /// If this returns true, the pairs include the triangles of all features that are near at x. It may return false
   /// although they do.
-  bool lists_near(std::span<const Vec3> x) const;
+  bool lists_near(std::span<const Vec3> x) const { return are_at_end(x, margin_ - 0.5 * detection_distance_); }
 
   /// Whether the bounds of hierarchies() contain all vertices at x, also those of clear obstacles. It may return false
   /// although they do.
@@ -123,6 +123,7 @@ class CandidateCache {
   void refit(const Motion& motion, double margin);
   void find_clear_bodies(const Motion& motion);
   bool is_at_end(std::size_t vertex, const Vec3& x, double margin) const;
+  bool are_at_end(std::span<const Vec3> x, double margin) const;
 
   const Bodies& bodies_;
   SearchParameters parameters_;
