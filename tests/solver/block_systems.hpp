@@ -39,13 +39,7 @@ inline BlockMatrix random_matrix(Index rows, Random& random) {
     for (int k = 0; k < 3; ++k) couplings.emplace_back(i, random.below(i));
   BlockMatrix matrix(rows, couplings);
   for (Index i = 0; i < rows; ++i) matrix.add(matrix.diagonal(i), random.definite(0.1));
-  for (const auto& [i, j] : couplings) {
-    const Mat3 spring = 3 * random.definite(0);
-    matrix.add(matrix.diagonal(i), spring);
-    matrix.add(matrix.diagonal(j), spring);
-    matrix.subtract(matrix.slot(i, j), spring);
-    matrix.subtract(matrix.slot(j, i), spring);
-  }
+  for (const auto& [i, j] : couplings) matrix.add_spring(i, j, 3 * random.definite(0));
   return matrix;
 }
 

@@ -111,13 +111,7 @@ TEST(ConjugateGradient, AggregatesReduceTheIterationsOnAStiffChain) {
   LinearSystem system;
   system.matrix = BlockMatrix(kRows, links);
   for (Index i = 0; i < kRows; ++i) system.matrix.add(system.matrix.diagonal(i), Mat3::Identity());
-  for (const auto& [i, j] : links) {
-    const Mat3 spring = 1e6 * Mat3::Identity();
-    system.matrix.add(system.matrix.diagonal(i), spring);
-    system.matrix.add(system.matrix.diagonal(j), spring);
-    system.matrix.subtract(system.matrix.slot(i, j), spring);
-    system.matrix.subtract(system.matrix.slot(j, i), spring);
-  }
+  for (const auto& [i, j] : links) system.matrix.add_spring(i, j, 1e6 * Mat3::Identity());
   const auto iterations = [&](const std::vector<Index>& counts) {
     cut_groups(system, counts);
     std::vector<Vec3> b(kRows, Vec3::Zero()), x(kRows);
@@ -284,10 +278,7 @@ LinearSystem sheet(double stiffness, Random& random) {
   for (Index i = 0; i < matrix.rows(); ++i) matrix.add_scalar(matrix.diagonal(i), 1);
   for (const auto& [i, j] : links) {
     const Vec3 n = random.vector().normalized();
-    const Mat3 spring = stiffness * n * n.transpose();
-    for (Index k : {i, j}) matrix.add(matrix.diagonal(k), spring);
-    matrix.subtract(matrix.slot(i, j), spring);
-    matrix.subtract(matrix.slot(j, i), spring);
+    matrix.add_spring(i, j, stiffness * n * n.transpose());
   }
   for (const auto& [i, j] : bends) {
     for (Index k : {i, j}) matrix.add_scalar(matrix.diagonal(k), 0.1);

@@ -34,10 +34,7 @@ LinearSystem system_with_bodies(Random& random) {
       system.matrix.add(system.matrix.diagonal(i), Mat3(Mat3::Identity()));
       for (Index j = first; j < i; ++j) {
         const Vec3 n = random.vector().normalized();
-        const Mat3 spring = 1e4 * n * n.transpose();
-        for (Index k : {i, j}) system.matrix.add(system.matrix.diagonal(k), spring);
-        system.matrix.subtract(system.matrix.slot(i, j), spring);
-        system.matrix.subtract(system.matrix.slot(j, i), spring);
+        system.matrix.add_spring(i, j, 1e4 * n * n.transpose());
       }
     }
   system.norm_weights.assign(kRows + 8, 0.1);

@@ -81,19 +81,17 @@ Mat3 Bands::stiffness(const Piece& piece, const Vec3& along, double lateral) {
 
 void Bands::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
                          solver::BlockMatrix& jacobian) const {
-  const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
     const Vec3 along = x[b] - x[a];
     if (along.norm() == 0) continue;
-    const Mat3 k = stiffness(piece, along, 1 - piece.rest / along.norm());
-    add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
+    jacobian.add_spring(a, b, stiffness(piece, along, 1 - piece.rest / along.norm()));
   }
   for (const Bend& bend : bends_)
     for (Eigen::Index a = 0; a < 3; ++a)
       for (Eigen::Index b = 0; b < 3; ++b)
-        add(bend.particles[a], bend.particles[b],
-            bend.stiffness * bend.weights[a] * bend.weights[b] * Mat3::Identity());
+        jacobian.add_scalar(jacobian.slot(bend.particles[a], bend.particles[b]),
+                            bend.stiffness * bend.weights[a] * bend.weights[b]);
 }
 
 void Bands::add_constant_stiffness(solver::Assembly& assembly) const {

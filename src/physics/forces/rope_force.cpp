@@ -172,7 +172,6 @@ void RopeForce::add_constant_stiffness(solver::Assembly& assembly) const {
 
 void RopeForce::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                              solver::BlockMatrix& jacobian) const {
-  const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
     const Vec3 d = x[at(b)] - x[at(a)], w = v[at(b)] - v[at(a)];
@@ -182,7 +181,7 @@ void RopeForce::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, d
     const Mat3 k = (piece.elasticity + rate * piece.viscosity) * along +
                    piece.elasticity * (1 - piece.rest / length) * across +
                    piece.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
-    add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
+    jacobian.add_spring(a, b, k);
   }
   for (const BendElement& bend : bends_) {
     const Vec3 velocity = second_difference(bend, v);
@@ -192,7 +191,7 @@ void RopeForce::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, d
     const Mat3 stiffness = bend.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
-        add(bend.particles[a], bend.particles[b], bend.weights[a] * bend.weights[b] * stiffness);
+        jacobian.add(jacobian.slot(bend.particles[a], bend.particles[b]), bend.weights[a] * bend.weights[b], stiffness);
   }
 }
 

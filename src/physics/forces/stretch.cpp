@@ -104,10 +104,7 @@ void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, dou
     const Mat3 k = (edge.elasticity + rate * edge.viscosity) * along +
                    (edge.elasticity * (1 - edge.rest_length / length)) * across +
                    edge.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
-    jacobian.add(jacobian.diagonal(edge.i), k);
-    jacobian.add(jacobian.diagonal(edge.j), k);
-    jacobian.subtract(jacobian.slot(edge.i, edge.j), k);
-    jacobian.subtract(jacobian.slot(edge.j, edge.i), k);
+    jacobian.add_spring(edge.i, edge.j, k);
   });
 }
 

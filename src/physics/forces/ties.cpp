@@ -121,12 +121,8 @@ void Ties::add(const Evaluation& at) const {
 
 void Ties::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
                         solver::BlockMatrix& jacobian) const {
-  const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
-  for (const Piece& piece : pieces_) {
-    const auto a = piece.tie.a, b = piece.tie.b;
-    const Mat3 k = stiffness(piece, x[b] - x[a]);
-    add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
-  }
+  for (const Piece& piece : pieces_)
+    jacobian.add_spring(piece.tie.a, piece.tie.b, stiffness(piece, x[piece.tie.b] - x[piece.tie.a]));
 }
 
 double Ties::energy(std::span<const Vec3> x) const {

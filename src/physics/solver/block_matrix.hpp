@@ -72,7 +72,6 @@ class BlockMatrix {
   void set_zero();
 
   void add(Slot slot, const Mat3& block) { add(slot, 1, block); }
-  void subtract(Slot slot, const Mat3& block) { add(slot, -1, block); }
   /// Adds `factor` times the block. The slot must not be negative.
   void add(Slot slot, double factor, const Mat3& block) {
     double* value = values_.data() + 9 * static_cast<std::size_t>(slot);
@@ -96,6 +95,11 @@ class BlockMatrix {
     block[0] += value;
     block[4] += value;
     block[8] += value;
+  }
+  /// Adds the stiffness of a spring between two particles, whose pair must be in the pattern as a full block.
+  void add_spring(Index i, Index j, const Mat3& stiffness) {
+    for (const Slot own : {diagonal(i), diagonal(j)}) add(own, stiffness);
+    for (const Slot between : {slot(i, j), slot(j, i)}) add(between, -1, stiffness);
   }
   Mat3 block(Slot slot) const {
     if (slot < 0) return scalars_[~slot] * Mat3::Identity();
