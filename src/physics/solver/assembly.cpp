@@ -12,12 +12,12 @@ PackedBlock transposed(const PackedBlock& m) {
 }
 
 PackedBlock load_block(const double* values) {
-  return {load_lanes(values), load_lanes(values + 4), Lanes{values[8], 0, 0, 0}};
+  return {load_padded(values), load_padded(values + 4), Lanes{values[8], 0, 0, 0}};
 }
 
 void store_block(double* values, const PackedBlock& block) {
-  store_lanes(values, block.low);
-  store_lanes(values + 4, block.high);
+  store_padded(values, block.low);
+  store_padded(values + 4, block.high);
   values[8] = block.last[0];
 }
 

@@ -79,9 +79,9 @@ void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::
     Lanes sum0{}, sum1{}, sum2{};
     for (Index s = full.start[row]; s < full.start[row + 1]; ++s, value += 9) {
       const Vector& xj = entry(full.columns[s]);
-      sum0 += load_lanes(value) * xj[0];
-      sum1 += load_lanes(value + 3) * xj[1];
-      sum2 += load_lanes(value + 6) * xj[2];
+      sum0 += load_padded(value) * xj[0];
+      sum1 += load_padded(value + 3) * xj[1];
+      sum2 += load_padded(value + 6) * xj[2];
     }
     const Lanes sum = sum0 + sum1 + sum2;
     double y0 = sum[0], y1 = sum[1], y2 = sum[2];

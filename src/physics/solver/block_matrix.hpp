@@ -18,13 +18,6 @@ using Slot = Index;
 
 using Lanes = PaddedVec3<double>;
 
-inline Lanes load_lanes(const double* p) {
-  return load_padded(p);
-}
-inline void store_lanes(double* p, const Lanes& lanes) {
-  store_padded(p, lanes);
-}
-
 /// A 3×3 block in registers, column by column as the matrix stores it: entries 0 to 3, 4 to 7, and 8.
 struct PackedBlock {
   Lanes low, high, last;  // `last` uses only lane 0
@@ -76,13 +69,13 @@ class BlockMatrix {
   void add(Slot slot, double factor, const Mat3& block) {
     double* value = values_.data() + 9 * static_cast<std::size_t>(slot);
     for (int k = 0; k < 8; k += 4)
-      store_lanes(value + k, load_lanes(value + k) + factor * load_lanes(block.data() + k));
+      store_padded(value + k, load_padded(value + k) + factor * load_padded(block.data() + k));
     value[8] += factor * block.data()[8];
   }
   void add(Slot slot, const PackedBlock& block) {
     double* value = values_.data() + 9 * static_cast<std::size_t>(slot);
-    store_lanes(value, load_lanes(value) + block.low);
-    store_lanes(value + 4, load_lanes(value + 4) + block.high);
+    store_padded(value, load_padded(value) + block.low);
+    store_padded(value + 4, load_padded(value + 4) + block.high);
     value[8] += block.last[0];
   }
   /// Adds `value` times the identity.

@@ -38,9 +38,6 @@ void store_padded(Real* p, const Padded& value) {
 inline PaddedVec3<float> clear_last_lane(PaddedVec3<float> q) {
   return __builtin_shufflevector(q, PaddedVec3<float>{}, 0, 1, 2, 4);
 }
-inline PaddedVec3<double> clear_last_lane(PaddedVec3<double> q) {
-  return __builtin_shufflevector(q, PaddedVec3<double>{}, 0, 1, 2, 4);
-}
 
 inline PaddedVec3<float> padded(float x, float y, float z) {
   return PaddedVec3<float>{x, y, z, 0};
@@ -73,9 +70,8 @@ struct PaddedMat3 {
 
 /// Products entry by entry, computed in double.
 template <class Padded>
-weft::solver::PaddedVec3<double> products(const Padded& a, const Padded& b) {
-  return __builtin_convertvector(a, weft::solver::PaddedVec3<double>) *
-         __builtin_convertvector(b, weft::solver::PaddedVec3<double>);
+PaddedVec3<double> products(const Padded& a, const Padded& b) {
+  return __builtin_convertvector(a, PaddedVec3<double>) * __builtin_convertvector(b, PaddedVec3<double>);
 }
 inline double sum_of_first_three(const PaddedVec3<double>& q) {
   return q[0] + q[1] + q[2];
