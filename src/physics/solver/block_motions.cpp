@@ -45,23 +45,6 @@ class TermBlocks {
   std::vector<BlockMotions::Products> products;
 };
 
-// Position of a particle's diagonal block among the selected ones; −1 if it is not selected.
-class SelectionIndex {
- public:
-  SelectionIndex(std::vector<DiagonalBlock> blocks, std::span<const std::size_t> selected)
-      : blocks_(std::move(blocks)), numbers_(blocks_.size(), -1) {
-    for (std::size_t s = 0; s < selected.size(); ++s) numbers_[selected[s]] = static_cast<int>(s);
-  }
-  int of(Index particle) const {
-    const auto after = std::ranges::upper_bound(blocks_, particle, {}, &DiagonalBlock::begin);
-    return numbers_[static_cast<std::size_t>(after - blocks_.begin()) - 1];
-  }
-
- private:
-  std::vector<DiagonalBlock> blocks_;
-  std::vector<int> numbers_;
-};
-
 }  // namespace
 
 // Marks the motions of a diagonal block that are not independent of the directions before them as
@@ -86,12 +69,16 @@ template <class Real>
 void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
                            const std::array<std::span<const PaddedVec3<Real>>, kMaxMotions>& motions,
                            std::span<const Mat3> row_sums, std::span<const Products> products) {
-  const SelectionIndex numbers(blocks_of(system), selected);
+  // Positions of diagonal blocks among the selected ones; −1 if a block is not selected.
+  const std::vector<DiagonalBlock> blocks = blocks_of(system);
+  std::vector<int> numbers(blocks.size(), -1);
+  for (std::size_t s = 0; s < selected.size(); ++s) numbers[selected[s]] = static_cast<int>(s);
+  const auto number_of = [&](Index particle) { return numbers[block_of_row(blocks, particle)]; };
   std::array<bool, kDirections> all;
   for (int k = 0; k < kDirections; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
   is_used_.assign(selected.size(), all);
   for (const ParticleConstraint& c : system.constraints)
-    if (const int block_index = numbers.of(c.particle); block_index >= 0)
+    if (const int block_index = number_of(c.particle); block_index >= 0)
       std::fill_n(is_used_[static_cast<std::size_t>(block_index)].begin(), 3, false);
 
   const auto directions_at = [&](Index particle) {
@@ -110,7 +97,7 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
       const AnyTerm term = term_at(system, t);
       of_blocks.clear();
       for (std::size_t k = 0; k < term.particles.size(); ++k) {
-        const int block_index = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
+        const int block_index = term.weights[k] == 0 ? -1 : number_of(term.particles[k]);
         if (block_index < 0) continue;
         auto entry = std::ranges::find(of_blocks, block_index, &std::pair<int, TermForces>::first);
         if (entry == of_blocks.end()) entry = of_blocks.insert(entry, {block_index, TermForces::Zero()});
@@ -122,7 +109,7 @@ void BlockMotions::prepare(const LinearSystem& system, std::span<const std::size
   TermBlocks terms(selected.size());
   for (const TermBlocks& of_chunk : of_chunks) terms.add(of_chunk);
   for (const RankOneTerm& term : system.rank_one_terms) {
-    const int block_index = numbers.of(term.begin);
+    const int block_index = number_of(term.begin);
     if (block_index < 0) continue;
     AlongMotions along = AlongMotions::Zero();
     for (std::size_t i = 0; i < term.direction.size(); ++i)

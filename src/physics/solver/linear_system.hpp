@@ -2,6 +2,7 @@
 // springs, and constraints.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -128,6 +129,12 @@ inline AnyTerm term_at(const LinearSystem& system, std::size_t number) {
 /// The diagonal blocks of a system; if it lists none, one block of all rows.
 inline std::vector<DiagonalBlock> blocks_of(const LinearSystem& system) {
   return system.blocks.empty() ? std::vector<DiagonalBlock>{{0, system.matrix.rows()}} : system.blocks;
+}
+
+/// Index of the diagonal block that contains this row.
+inline std::size_t block_of_row(std::span<const DiagonalBlock> blocks, Index row) {
+  const auto after = std::ranges::upper_bound(blocks, row, {}, &DiagonalBlock::begin);
+  return static_cast<std::size_t>(after - blocks.begin()) - 1;
 }
 
 /// The rows of the diagonal blocks with these indices.

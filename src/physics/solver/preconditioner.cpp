@@ -56,9 +56,7 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, AggregateSums sum
     for (std::size_t c = 0; c < constraints_.size(); ++c) {
       const Index particle = constraints_[c].particle;
       constraint_of_[at(particle)] = static_cast<Index>(c);
-      const auto block = std::ranges::find_if(blocks_, [&](const DiagonalBlock& rows) { return particle < rows.end; });
-      filters_[at(static_cast<Index>(block - blocks_.begin()))].push_back(
-          {particle, PaddedMat3<Real>(constraints_[c].free)});
+      filters_[block_of_row(blocks_, particle)].push_back({particle, PaddedMat3<Real>(constraints_[c].free)});
     }
   }
   rows_changed_.resize(blocks_.size());

@@ -15,8 +15,7 @@ void RankOneTerms<Real>::prepare(const LinearSystem& system) {
   for (const RankOneTerm& of_system : system.rank_one_terms) {
     Term& term = terms_.emplace_back();
     term.begin = static_cast<std::size_t>(of_system.begin);
-    const auto after = std::ranges::upper_bound(blocks, of_system.begin, {}, &DiagonalBlock::begin);
-    term.block_index = static_cast<std::size_t>(after - blocks.begin()) - 1;
+    term.block_index = block_of_row(blocks, of_system.begin);
     term.stiffness = of_system.stiffness;
     for (const Vec3& d : of_system.direction) term.direction.push_back(padded<Real>(d));
     for (const ParticleConstraint& c : system.constraints) {
