@@ -99,6 +99,12 @@ class BlockMatrix {
     return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot));
   }
 
+  /// Trace of a diagonal block.
+  double trace(Index row) const {
+    const double* block = values_.data() + 9 * static_cast<std::size_t>(diagonal(row));
+    return block[0] + block[4] + block[8];
+  }
+
   /// Calls body(row, column, block) for every block of the rows [begin, end), row by row in ascending columns.
   template <class Body>
   void for_each_block(Index begin, Index end, const Body& body) const {

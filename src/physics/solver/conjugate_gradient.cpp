@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/numerics.hpp"
-#include "core/parallel.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::solver {
 namespace {
@@ -27,17 +27,10 @@ bool allows_single_precision(const LinearSystem& system) {
   const auto fits = [&](Index particle, double stiffness) {
     return stiffness <= kMaxSingleStiffness * system.norm_weights[static_cast<std::size_t>(particle)];
   };
-  const auto particle_fits = [&](Index i) {
-    const double* block = system.matrix.values().data() + 9 * static_cast<std::size_t>(system.matrix.diagonal(i));
-    return fits(i, block[0] + block[4] + block[8]);
-  };
-  const int any_misfit =
-      parallel_sum(static_cast<std::size_t>(system.matrix.rows()), kGrainSize, [&](std::size_t begin, std::size_t end) {
-        int any = 0;
-        for (std::size_t i = begin; i < end; ++i) any |= particle_fits(static_cast<Index>(i)) ? 0 : 1;
-        return any;
-      });
-  if (any_misfit > 0) return false;
+  if (!parallel_all_of(at(system.matrix.rows()), [&](std::size_t i) {
+        return fits(static_cast<Index>(i), system.matrix.trace(static_cast<Index>(i)));
+      }))
+    return false;
   for (const DiagonalTerm& term : system.diagonal_terms)
     if (!fits(term.particle, term.stiffness.trace())) return false;
   bool all_fit = true;

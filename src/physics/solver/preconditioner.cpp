@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/numerics.hpp"
-#include "core/parallel.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::solver {
 namespace {
@@ -103,15 +103,10 @@ bool Preconditioner<Real>::has_stiff_threads() const {
           for (std::size_t k = begin; k < end; ++k) sum += system_->norm_weights[at(rows.begin) + k];
           return sum;
         });
-    const auto stiff = [&](std::size_t i) {
-      const double* block = system_->matrix.values().data() + 9 * at(system_->matrix.diagonal(static_cast<Index>(i)));
-      return block[0] + block[4] + block[8] > numerics.linear.stiff_particle * norm_weights;
-    };
-    return parallel_sum(at(rows.end - rows.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
-             int any = 0;
-             for (std::size_t k = begin; k < end; ++k) any |= stiff(at(rows.begin) + k) ? 1 : 0;
-             return any;
-           }) > 0;
+    return !parallel_all_of(at(rows.end - rows.begin), [&](std::size_t k) {
+      return !(system_->matrix.trace(rows.begin + static_cast<Index>(k)) >
+               numerics.linear.stiff_particle * norm_weights);
+    });
   });
 }
 
