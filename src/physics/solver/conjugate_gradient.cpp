@@ -87,9 +87,9 @@ void ConjugateGradient::prepare(const LinearSystem& system, AggregateSums sums) 
 
 std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
   if (allows_single_)
-    copy_as_vec3(prepare_recurrence(single_).precondition(b), preconditioned_);
+    copy_as_vec3(prepare_recurrence(single_).precondition(b, all_blocks_), preconditioned_);
   else
-    copy_as_vec3(prepare_recurrence(double_).precondition(b), preconditioned_);
+    copy_as_vec3(prepare_recurrence(double_).precondition(b, all_blocks_), preconditioned_);
   return preconditioned_;
 }
 

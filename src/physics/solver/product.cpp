@@ -105,13 +105,7 @@ Mat3 DifferenceMatrix::sum_of_row(std::size_t row) const {
 
 template <class Real>
 void Product<Real>::prepare(const LinearSystem& system) {
-  const bool is_new_system = system_ != &system;
-  system_ = &system;
-  read_matrix(is_new_system);
-}
-
-template <class Real>
-void Product<Real>::read_matrix(bool is_new_system) {
+  const bool is_new_system = std::exchange(system_, &system) != &system;
   const std::vector<DiagonalBlock> before = std::exchange(blocks_, blocks_of(*system_));
   norm_weights_.assign(system_->norm_weights.begin(), system_->norm_weights.end());
   if constexpr (std::is_same_v<Real, float>) {

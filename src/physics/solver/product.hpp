@@ -78,7 +78,6 @@ class Product {
     Index particle;
     PaddedMat3<Real> block;
   };
-  void read_matrix(bool is_new_system);
   template <class Term, std::size_t N, class IsInside>
   static void add_stencil(const Term& term, const IsInside& is_inside, std::vector<Stencil<N>>& stencils);
   Mat3 sum_of_row(std::size_t row) const;

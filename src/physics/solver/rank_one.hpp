@@ -34,8 +34,6 @@ class RankOneTerms {
   /// prepare_inverses().
   void correct(std::span<PaddedVec3<Real>> z) const;
 
-  bool empty() const { return terms_.empty(); }
-
  private:
   struct Term {
     std::size_t begin = 0, block_index = 0;

@@ -63,22 +63,19 @@ void Recurrence<Real>::prepare(const LinearSystem& system, AggregateSums sums) {
   for (auto* vector : {&x_, &r_, &z_, &p_, &q_})
     if (vector->size() != rows) vector->assign(rows, PaddedVec3<Real>{});
   blocks_ = blocks_of(system);
-  all_blocks_.resize(blocks_.size());
-  std::iota(all_blocks_.begin(), all_blocks_.end(), std::size_t{0});
   product_.prepare(system);
   preconditioner_.prepare(system, sums);
   rank_one_.prepare(system);
 }
 
 template <class Real>
-std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
+std::span<const PaddedVec3<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b,
+                                                                 std::span<const std::size_t> all_blocks) {
   convert_to_padded<Real>(b, q_);
-  if (!rank_one_.empty()) {
-    selected_ = all_blocks_;
-    rank_one_.select(selected_);
-    precondition_rank_one();
-  }
-  preconditioner_.apply(q_, z_, all_blocks_);
+  selected_.assign(all_blocks.begin(), all_blocks.end());
+  rank_one_.select(selected_);
+  precondition_rank_one();
+  preconditioner_.apply(q_, z_, selected_);
   rank_one_.correct(z_);
   return z_;
 }

@@ -75,8 +75,8 @@ class Recurrence {
   /// Reads `system`, which must outlive the following calls.
   void prepare(const LinearSystem& system, AggregateSums sums);
 
-  /// Returns P⁻¹ b. Valid until the next call.
-  std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b);
+  /// Returns P⁻¹ b. `all_blocks`: the indices of all diagonal blocks. Valid until the next call.
+  std::span<const PaddedVec3<Real>> precondition(std::span<const Vec3> b, std::span<const std::size_t> all_blocks);
 
   /// Solves A x = b on these diagonal blocks; the particles of all others count as held. At the call, x must be zero
   /// or, if `progress` already has iterations, the result of these iterations.
@@ -103,7 +103,7 @@ class Recurrence {
 
   const LinearSystem* system_ = nullptr;
   std::vector<DiagonalBlock> blocks_;
-  std::vector<std::size_t> all_blocks_, selected_;
+  std::vector<std::size_t> selected_;
   RowChunks rows_;  // of the selected blocks
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
