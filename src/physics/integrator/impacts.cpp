@@ -12,13 +12,13 @@ namespace weft::integrator {
 // Replaces the velocity changes δ/β of impacts by δ/h; see Stepper. Adds the iterations of the linear solve to
 // `report`. If the matrix is indefinite, rejects the step: the velocities would lack a part of the impacts. If the
 // iterations run out, includes the error of the velocities in StepReport::solver_error.
-void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h, StepReport& report) {
+void Stepper::split_impacts(System& system, const State& now, double h, StepReport& report) {
   std::vector<Vec3>& right_side = scratch_;
   std::ranges::fill(right_side, Vec3::Zero());
   const StepStart start{h, now.x, now.v, history_.h, history_.before.x, history_.before.v};
   {
     const Stopwatch watch(times_.forces);
-    if (!system.find_impacts({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, start, right_side)) return;
+    if (!system.find_impacts(stage_point(), start, right_side)) return;
   }
   cg_.filter(right_side);
   {
@@ -27,7 +27,7 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   }
   goals_.clear();
   for (const BlockState& block : blocks_)
-    goals_.push_back(numerics.newton.linear_fraction * block.allowed * std::sqrt(block.mass) / stage.beta);
+    goals_.push_back(numerics.newton.linear_fraction * block.allowed * std::sqrt(block.mass) / stage_.beta);
   impact_changes_.resize(x_.size());
   const Stopwatch watch(times_.linear);
   const solver::LinearReport solved = cg_.solve(right_side, {parameters_.linear_tolerance, goals_},
@@ -36,7 +36,7 @@ void Stepper::split_impacts(System& system, const State& now, const Stage& stage
   if (!solved.definite) report.verdict = Verdict::indefinite;
   if (solved.converged) return;
   for (std::size_t p = 0; p < blocks_.size(); ++p) {
-    const double error = std::abs(stage.beta - h) * solved.errors[p] / std::sqrt(blocks_[p].mass);  // [m/s]
+    const double error = std::abs(stage_.beta - h) * solved.errors[p] / std::sqrt(blocks_[p].mass);  // [m/s]
     report.solver_error = std::max(report.solver_error, error * numerics.newton.error_duration);
   }
 }

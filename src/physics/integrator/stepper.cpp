@@ -68,25 +68,25 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
 }
 
 // Computes v_ and x_end_ from x_, and sets force_ to zero.
-void Stepper::evaluate(const State& now, const Stage& stage) {
+void Stepper::evaluate(const State& now) {
   for_each_particle(x_.size(), [&](std::size_t i) {
-    v_[i] = (x_[i] - x_hat_[i]) / stage.beta;
-    x_end_[i] = now.x[i] + stage.end_rate * (x_[i] - now.x[i]);
+    v_[i] = (x_[i] - x_hat_[i]) / stage_.beta;
+    x_end_[i] = now.x[i] + stage_.end_rate * (x_[i] - now.x[i]);
     force_[i].setZero();
   });
 }
 
-void Stepper::gather_residual(std::span<const double> masses, const Stage& stage) {
+void Stepper::gather_residual(std::span<const double> masses) {
   for_each_particle(x_.size(), [&](std::size_t i) {
-    residual_[i] = force_[i] + constant_force_[i] - (masses[i] / stage.beta) * (v_[i] - v_hat_[i]);
+    residual_[i] = force_[i] + constant_force_[i] - (masses[i] / stage_.beta) * (v_[i] - v_hat_[i]);
   });
   cg_.filter(residual_);
 }
 
-void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
+void Stepper::linearise(System& system, const State& now, int iteration) {
   const Stopwatch watch(times_.forces);
-  evaluate(now, stage);
-  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, iteration, force_);
+  evaluate(now);
+  system.linearise(stage_point(), iteration, force_);
 }
 
 // Returns the preconditioner times the residual. Valid until the next call.
@@ -96,12 +96,12 @@ std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
 }
 
 // Computes the residual at x_, from System::forces() or System::linear_forces().
-void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
+void Stepper::residual(System& system, const State& now, Equation equation) {
   const Stopwatch watch(times_.forces);
-  evaluate(now, stage);
-  const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_};
+  evaluate(now);
+  const StagePoint at = stage_point();
   equation == Equation::itself ? system.forces(at, force_) : system.linear_forces(at, force_);
-  gather_residual(system.masses(), stage);
+  gather_residual(system.masses());
 }
 
 // Sets `allowed` of each block: the velocity error that the solver may leave [m/s], root mean square over its mass.
@@ -132,7 +132,8 @@ double Stepper::root_mean_square(const BlockState& block, std::span<const double
 void Stepper::compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                                  std::vector<double>& speeds) const {
   speeds.clear();
-  for (const BlockState& block : blocks_) speeds.push_back(root_mean_square(block, masses, displacements) / beta_);
+  for (const BlockState& block : blocks_)
+    speeds.push_back(root_mean_square(block, masses, displacements) / stage_.beta);
 }
 
 // Estimates the velocity error of each block after a linear solve and a line search. The linear
@@ -162,19 +163,18 @@ void Stepper::estimate_remaining_velocities(const solver::LinearReport& solved, 
 // as solved and that no constraint holds against sliding. Friction can at most stop a block.
 // Therefore the error is at most the velocity that the block would have at the stage under constant
 // forces alone, however large the force of a stiff contact is.
-void Stepper::estimate_sliding_errors(const System& system, const Stage& stage) {
+void Stepper::estimate_sliding_errors(const System& system) {
   const auto masses = system.masses();
   const auto needs_check = [](const BlockState& block) {
     return !block.holds_sliding && block.remaining_error <= block.allowed;
   };
-  const bool any = std::ranges::any_of(blocks_, needs_check) &&
-                   sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
+  const bool any = std::ranges::any_of(blocks_, needs_check) && sliding_.evaluate(system, stage_point());
   for (BlockState& block : blocks_) {
     block.sliding_error =
-        any && needs_check(block) ? sliding_.friction_error(block.rows, residual_) * stage.beta / block.mass : 0;
+        any && needs_check(block) ? sliding_.friction_error(block.rows, residual_) * stage_.beta / block.mass : 0;
     if (block.sliding_error == 0) continue;
     for_each_particle(block.rows,
-                      [&](std::size_t i) { scratch_[i] = v_hat_[i] + stage.beta / masses[i] * constant_force_[i]; });
+                      [&](std::size_t i) { scratch_[i] = v_hat_[i] + stage_.beta / masses[i] * constant_force_[i]; });
     block.sliding_error = std::min(block.sliding_error, root_mean_square(block, masses, scratch_));
   }
 }
@@ -216,7 +216,7 @@ void Stepper::select_unsolved(int iterations) {
 // Line search along delta_: moves x_ by delta_; by less if delta_ overshoots the minimum of the
 // step's energy, by more if delta_ hardly approaches the minimum. Returns the factor of delta_; if
 // a slope is not finite, returns that slope.
-double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
+double Stepper::search_along_delta(System& system, const State& now) {
   // The residual is minus the gradient of the step's energy (if there is one), so residual · delta is minus the slope
   // of the energy: positive before the minimum along delta, negative after it. If contacts begin or compressed edges
   // come under tension on the way, the product becomes strongly negative; full steps would then oscillate. If friction
@@ -228,7 +228,7 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
   double fraction = 1, low = 0, low_slope = start_slope, high = 0, high_slope = 0;
   for (int trial = 1;; ++trial) {
     for_each_particle(n, [&](std::size_t i) { x_[i] = line_start_[i] + fraction * delta_[i]; });
-    residual(system, now, stage, Equation::linear);
+    residual(system, now, Equation::linear);
     const double slope = dot(residual_, delta_);
     if (!std::isfinite(slope)) return slope;
     if (std::abs(slope) <= numerics.newton.slope_left * std::abs(start_slope) || trial == numerics.newton.line_trials)
@@ -250,10 +250,10 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
 }
 
 // Sets x_ to the initial guess (unchanged velocity), and constant_force_ to the constant forces, weight included.
-void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity) {
+void Stepper::prepare_guess(const System& system, const State& now, double h, const Vec3& gravity) {
   const auto masses = system.masses();
   for_each_particle(x_.size(), [&](std::size_t i) {
-    x_[i] = now.x[i] + h / stage.end_rate * now.v[i];
+    x_[i] = now.x[i] + h / stage_.end_rate * now.v[i];
     constant_force_[i] = masses[i] * gravity;
   });
   system.constant_forces(constant_force_);
@@ -271,12 +271,12 @@ std::span<const Vec3> Stepper::predict_velocity_change(std::span<const double> m
 }
 
 // Moves held particles to their targets at the stage, along the held directions only.
-void Stepper::apply_constraints(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+void Stepper::apply_constraints(const State& now, std::span<const HeldParticle> held,
                                 std::vector<solver::ParticleConstraint>& constraints) {
   constraints.clear();
   for (const HeldParticle& particle : held) {
     const auto i = static_cast<std::size_t>(particle.constraint.particle);
-    const Vec3 target = now.x[i] + (particle.x_end - now.x[i]) / stage.end_rate;
+    const Vec3 target = now.x[i] + (particle.x_end - now.x[i]) / stage_.end_rate;
     x_[i] = target + particle.constraint.free * (x_[i] - target);
     constraints.push_back(particle.constraint);
   }
@@ -287,16 +287,15 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   const std::size_t n = now.v.size();
   solver::LinearSystem& linear = system.linear_system();
   const auto masses = system.masses();
-  const Stage stage = begin(now, h);
-  beta_ = stage.beta;
+  stage_ = begin(now, h);
   linear.norm_weights.resize(n);
-  for_each_particle(n, [&](std::size_t i) { linear.norm_weights[i] = masses[i] / (stage.beta * stage.beta); });
-  prepare_guess(system, now, stage, h, gravity);
+  for_each_particle(n, [&](std::size_t i) { linear.norm_weights[i] = masses[i] / (stage_.beta * stage_.beta); });
+  prepare_guess(system, now, h, gravity);
   if (start == Start::next)
-    for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
+    for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage_.end_rate;
   next.x.resize(now.x.size());
   next.v.resize(n);
-  apply_constraints(now, stage, held, linear.constraints);
+  apply_constraints(now, held, linear.constraints);
   collect_blocks(masses, now, linear);
 
   const int previous_iterations = start == Start::next ? std::exchange(iterations_before_pause_, 0) : 0;
@@ -305,16 +304,16 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   bool solved_all = false;
   do {
     end_if_stopped();
-    linearise(system, now, stage, previous_iterations + report.newton_iterations);
+    linearise(system, now, previous_iterations + report.newton_iterations);
     // Later iterations reuse the sums over aggregates, because the stiffness of long waves hardly changes in a solve.
     {
       const Stopwatch watch(times_.preconditioner);
       cg_.prepare(linear,
                   report.newton_iterations == 0 ? solver::AggregateSums::recompute : solver::AggregateSums::reuse);
     }
-    gather_residual(masses, stage);
+    gather_residual(masses);
     if (report.newton_iterations == 0) {  // before a later iteration, the end of the previous one has done this
-      estimate_local_errors(masses, now, stage, h);
+      estimate_local_errors(masses, now, h);
       update_tolerances(h, previous_iterations);
     }
     compute_rms_speeds(precondition(residual_), masses, predicted_speeds_);
@@ -324,17 +323,17 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     ++report.newton_iterations;
     report.linear_iterations += solved.iterations;
 
-    const double fraction = search_along_delta(system, now, stage);
+    const double fraction = search_along_delta(system, now);
     if (!std::isfinite(fraction)) {
       report.verdict = Verdict::not_finite;
       break;
     }
-    residual(system, now, stage, Equation::itself);
-    estimate_local_errors(masses, now, stage, h);
+    residual(system, now, Equation::itself);
+    estimate_local_errors(masses, now, h);
     update_tolerances(h, previous_iterations + report.newton_iterations);
     bound_work(masses, now);
     estimate_remaining_velocities(solved, fraction, masses);
-    estimate_sliding_errors(system, stage);
+    estimate_sliding_errors(system);
     select_unsolved(report.newton_iterations);
     report_worst(report);
     solved_all = is_solved(previous_iterations + report.newton_iterations);
@@ -346,12 +345,12 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
       report.verdict = Verdict::unfinished;
   } while (!solved_all && report.verdict == Verdict::solved);
   iterations_before_pause_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
-  if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear, stage);
+  if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear);
   impact_changes_.clear();
-  if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h, report);
+  if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, h, report);
   report.times = times_;
   if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
-  write_end_state(now, stage, h, held, next);
+  write_end_state(now, h, held, next);
   if (method_ == Method::bdf2) solved_v_ = next.v;
   return report;
 }
@@ -363,7 +362,8 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
     BlockState& block = blocks_.emplace_back();
     block.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) block.mass += masses[i];
-    block.rounding = kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / beta_;
+    block.rounding =
+        kMinRoundings * std::numeric_limits<double>::epsilon() * largest_coordinate(rows, now.x) / stage_.beta;
     block.holds_sliding = is_held(rows, linear.constraints);
     // The first iteration solves all blocks. Otherwise, cloth that creeps slower than the tolerance would never come to
     // rest.
@@ -372,13 +372,13 @@ void Stepper::collect_blocks(std::span<const double> masses, const State& now, c
 }
 
 // Makes the residual of each group that nothing holds sum to zero; see missing_accelerations().
-void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage) {
+void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear) {
   const std::vector<Vec3> missing = missing_accelerations(linear, masses, residual_);
   for (std::size_t p = 0; p < blocks_.size(); ++p) {
     if (missing[p] == Vec3::Zero()) continue;
     for_each_particle(blocks_[p].rows, [&](std::size_t i) {
-      v_[i] += stage.beta * missing[p];
-      x_end_[i] += stage.end_rate * stage.beta * stage.beta * missing[p];
+      v_[i] += stage_.beta * missing[p];
+      x_end_[i] += stage_.end_rate * stage_.beta * stage_.beta * missing[p];
     });
   }
 }
@@ -415,12 +415,11 @@ void Stepper::report_worst(StepReport& report) const {
   }
 }
 
-void Stepper::write_end_state(const State& now, const Stage& stage, double h, std::span<const HeldParticle> held,
-                              State& next) const {
+void Stepper::write_end_state(const State& now, double h, std::span<const HeldParticle> held, State& next) const {
   for_each_particle(x_.size(), [&](std::size_t i) {
     next.x[i] = x_end_[i];
-    next.v[i] = v_end(now, stage, i);
-    if (!impact_changes_.empty()) next.v[i] += (1 - h / stage.beta) * impact_changes_[i];
+    next.v[i] = v_end(now, i);
+    if (!impact_changes_.empty()) next.v[i] += (1 - h / stage_.beta) * impact_changes_[i];
   });
   for (const HeldParticle& particle : held) {
     const auto i = static_cast<std::size_t>(particle.constraint.particle);
@@ -430,19 +429,19 @@ void Stepper::write_end_state(const State& now, const Stage& stage, double h, st
   }
 }
 
-Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
-  return stage.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
+Vec3 Stepper::v_end(const State& now, std::size_t i) const {
+  return stage_.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
 }
 
 // Estimates local errors at the current iterate. For the formulas of positions see Stepper.
-void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
+void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, double h) {
   const bool first_order = is_first_order(h);
   const double r = first_order ? 1 : h / history_.h;
   const bool bdf2 = method_ == Method::bdf2;
   const double gain_factor = bdf2 ? 0.75 * h : 0.5 * h;
   const double change_factor = bdf2 ? h * h * (1 + r) / (2 * (1 + 2 * r)) : h * h * r / (6 * (1 + r));
   for_each_particle(masses.size(), [&](std::size_t i) {
-    const Vec3 gain = v_end(now, stage, i) - now.v[i];
+    const Vec3 gain = v_end(now, i) - now.v[i];
     if (first_order)
       scratch_[i] = gain_factor * gain;
     else
@@ -460,13 +459,13 @@ void Stepper::estimate_local_errors(std::span<const double> masses, const State&
 
 Vec3 Stepper::constraint_force(Index particle, double mass) const {
   const auto i = static_cast<std::size_t>(particle);
-  return mass / beta_ * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
+  return mass / stage_.beta * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
 }
 
 // Whether a step over h is an Euler step, or its error is estimated as that of one.
 bool Stepper::is_first_order(double h) const {
   return method_ == Method::implicit_euler || history_.h == 0 ||
-         (method_ == Method::bdf2 && h > (1 + 1e-9) * kMaxStepRatio * history_.h);
+         (method_ == Method::bdf2 && h > (1 + kRoundoff) * kMaxStepRatio * history_.h);
 }
 
 double Stepper::longest_step() const {

@@ -183,42 +183,42 @@ class Stepper {
 
   bool is_first_order(double h) const;
   Stage begin(const State& now, double h);
-  void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
-  void apply_constraints(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+  StagePoint stage_point() const { return {x_, v_, x_end_, 1 / stage_.beta, stage_.end_rate, past_}; }
+  void prepare_guess(const System& system, const State& now, double h, const Vec3& gravity);
+  void apply_constraints(const State& now, std::span<const HeldParticle> held,
                          std::vector<solver::ParticleConstraint>& constraints);
   void collect_blocks(std::span<const double> masses, const State& now, const solver::LinearSystem& linear);
   std::span<const Vec3> predict_velocity_change(std::span<const double> masses, const State& now);
   solver::LinearReport solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0);
-  double search_along_delta(System& system, const State& now, const Stage& stage);
+  double search_along_delta(System& system, const State& now);
   /// Forces that residual() evaluates: System::forces() or System::linear_forces().
   enum class Equation { itself, linear };
-  void linearise(System& system, const State& now, const Stage& stage, int iteration);
-  void residual(System& system, const State& now, const Stage& stage, Equation equation);
-  void evaluate(const State& now, const Stage& stage);
-  void gather_residual(std::span<const double> masses, const Stage& stage);
-  void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
+  void linearise(System& system, const State& now, int iteration);
+  void residual(System& system, const State& now, Equation equation);
+  void evaluate(const State& now);
+  void gather_residual(std::span<const double> masses);
+  void estimate_local_errors(std::span<const double> masses, const State& now, double h);
   void update_tolerances(double h, int iterations);
   static double root_mean_square(const BlockState& block, std::span<const double> masses, std::span<const Vec3> of);
-  void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage);
+  void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void compute_rms_speeds(std::span<const Vec3> displacements, std::span<const double> masses,
                           std::vector<double>& speeds) const;
   void estimate_remaining_velocities(const solver::LinearReport& solved, double fraction,
                                      std::span<const double> masses);
-  void estimate_sliding_errors(const System& system, const Stage& stage);
+  void estimate_sliding_errors(const System& system);
   void select_unsolved(int iterations);
   void bound_work(std::span<const double> masses, const State& now);
   bool is_solved(int iterations) const;
   void report_worst(StepReport& report) const;
-  void write_end_state(const State& now, const Stage& stage, double h, std::span<const HeldParticle> held,
-                       State& next) const;
-  void split_impacts(System& system, const State& now, const Stage& stage, double h, StepReport& report);
-  Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
+  void write_end_state(const State& now, double h, std::span<const HeldParticle> held, State& next) const;
+  void split_impacts(System& system, const State& now, double h, StepReport& report);
+  Vec3 v_end(const State& now, std::size_t i) const;
 
   Method method_;
   NewtonParameters parameters_;
   History history_;
-  double beta_ = 0;                  // of the last stage [s]
+  Stage stage_{};                    // of the last step
   int iterations_before_pause_ = 0;  // Newton iterations of the last step(), if it paused; else 0
 
   // Scratch of one step.
