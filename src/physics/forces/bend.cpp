@@ -25,18 +25,14 @@ void add_pairs(const Differences& d, const Lanes& size, const solver::AssemblyRo
 
 Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters)
     : grid_(grid), first_(first), rigidity_(parameters.rigidity), damping_(parameters) {
-  create_differences({});
+  Bend::set_held({});
   lines_.packs.shrink_to_fit();
   cells_.packs.shrink_to_fit();
 }
 
-void Bend::set_held(std::span<const char> held) {
-  create_differences(held);
-}
-
 // Creates all differences. Only their weights and areas depend on `held`; their particles and order
 // do not, so the sparsity pattern of the Jacobian does not change.
-void Bend::create_differences(std::span<const char> held) {
+void Bend::set_held(std::span<const char> held) {
   lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
   const auto at = [&](int i, int j) { return first_ + grid.index(i, j); };

@@ -63,7 +63,6 @@ class Bend final : public Force {
 
     void add(const std::array<Index, Count>& particles, const std::array<double, Count>& weights, double area);
   };
-  void create_differences(std::span<const char> held);
   void add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                 std::span<const char> held);
   template <std::size_t Count>

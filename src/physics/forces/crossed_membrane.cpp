@@ -76,14 +76,8 @@ void CrossedMembrane::attach(const solver::Assembly& assembly) {
   }
 }
 
-CrossedMembrane::CellVectors CrossedMembrane::vectors_of(const Cell& cell, std::span<const Vec3> of) {
-  CellVectors vectors;
-  for (std::size_t k = 0; k < 5; ++k) vectors[k] = of[cell.particles[k]];
-  return vectors;
-}
-
-CrossedMembrane::CellVectors CrossedMembrane::vectors_of(const Cell& cell,
-                                                         std::span<const solver::PaddedVec3<double>> of) {
+template <class Vectors>
+CrossedMembrane::CellVectors CrossedMembrane::vectors_of(const Cell& cell, const Vectors& of) {
   CellVectors vectors;
   for (std::size_t k = 0; k < 5; ++k) vectors[k] = solver::vec3_of(of[cell.particles[k]]);
   return vectors;
@@ -216,9 +210,7 @@ void CrossedMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3
 
 TriangleMembrane::Gradient CrossedMembrane::gradient_of(const Element& element, const CellVectors& flat,
                                                         std::size_t k) {
-  const Vec3 &origin = flat[k], p = flat[(k + 1) % 4] - origin, q = flat[4] - origin;
-  const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
-  return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
+  return gradient(element, flat[k], flat[(k + 1) % 4], flat[4]);
 }
 
 CrossedMembrane::CellWeights CrossedMembrane::cell_weights_of(const Cell& cell, const Element& element) {
@@ -314,10 +306,8 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
 
 double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) const {
   const Cell& cell = cells_[triangle / 4];
-  const Element& element = elements()[triangle];
-  const State state = state_of(cell, vectors_of(cell, x));
-  const Vec2 length = lengths_of(gradient_of(element, state.flat, triangle % 4), cell_weights_of(cell, element), state);
-  return (length - Vec2::Ones()).cwiseAbs().maxCoeff();
+  const Vec3 strains = strains_of(triangle / 4, triangle % 4, state_of(cell, vectors_of(cell, x)));
+  return (strains.head<2>() - Vec2::Ones()).cwiseAbs().maxCoeff();
 }
 
 double CrossedMembrane::energy(std::span<const Vec3> x) const {
@@ -325,12 +315,10 @@ double CrossedMembrane::energy(std::span<const Vec3> x) const {
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const State state = state_of(cells_[c], vectors_of(cells_[c], x));
     for (std::size_t k = 0; k < 4; ++k) {
-      const Element& element = elements()[4 * c + k];
-      const Gradient s = gradient_of(element, state.flat, k);
-      const Vec2 stretched = lengths_of(s, cell_weights_of(cells_[c], element), state) - Vec2::Ones();
-      const double shear = s.u.dot(s.v);
-      sum += element.area * (0.5 * Vec2(stretch_.weft, stretch_.warp).dot(stretched.cwiseAbs2()) +
-                             0.25 * shear_.modulus * shear * shear);
+      const Vec3 strains = strains_of(c, k, state);
+      const Vec2 stretched = strains.head<2>() - Vec2::Ones();
+      sum += elements()[4 * c + k].area * (0.5 * Vec2(stretch_.weft, stretch_.warp).dot(stretched.cwiseAbs2()) +
+                                           0.25 * shear_.modulus * strains.z() * strains.z());
     }
   }
   return sum;

@@ -70,8 +70,8 @@ class CrossedMembrane final : public TriangleMembrane {
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
   static State state_of(const Cell& cell, const CellVectors& positions);
   static Vec3 normal_change(const State& state, const Vec3& product);
-  static CellVectors vectors_of(const Cell& cell, std::span<const Vec3> of);
-  static CellVectors vectors_of(const Cell& cell, std::span<const solver::PaddedVec3<double>> of);
+  template <class Vectors>
+  static CellVectors vectors_of(const Cell& cell, const Vectors& of);
   /// Stiffness across a thread from its tension, relative to its stretch stiffness, as a function of its length / rest
   /// length.
   using Lateral = double (*)(double length);

@@ -32,10 +32,8 @@ Plane triangle_plane(const std::array<Vec3, 3>& corners) {
   return plane;
 }
 
-std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const Vec3> x) {
-  return {x[particles[0]], x[particles[1]], x[particles[2]]};
-}
-std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const solver::PaddedVec3<double>> x) {
+template <class Points>
+std::array<Vec3, 3> corners_of(std::span<const Index> particles, const Points& x) {
   return {solver::vec3_of(x[particles[0]]), solver::vec3_of(x[particles[1]]), solver::vec3_of(x[particles[2]])};
 }
 

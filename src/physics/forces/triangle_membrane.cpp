@@ -173,14 +173,9 @@ void TriangleMembrane::attach(const solver::Assembly& assembly) {
     }
 }
 
-// Differences to the first corner make rounding errors proportional to the size of the triangle, not to its distance
-// from the origin.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
-  const Vec3& origin = x[a];
-  const Vec3 p = x[b] - origin, q = x[c] - origin;
-  const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
-  return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
+  return gradient(element, x[a], x[b], x[c]);
 }
 
 template <class Points>

@@ -75,6 +75,13 @@ class TriangleMembrane : public Membrane {
   struct Gradient {
     Vec3 u, v;
   };
+  /// Gradient in a triangle with corners at a, b and c. Differences to a corner make rounding errors proportional to
+  /// the size of the triangle, not to its distance from the origin.
+  static Gradient gradient(const Element& element, const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 p = b - a, q = c - a;
+    const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
+    return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
+  }
   /// The larger relative change of length of a triangle along weft or warp, in absolute value.
   virtual double strain(std::size_t triangle, std::span<const Vec3> x) const;
 
