@@ -1,6 +1,23 @@
 #include "physics/forces/force.hpp"
 
+#include <algorithm>
+
 namespace weft::forces {
+
+double Membrane::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for_each_strain(x, [&](double strain, std::span<const Index>) { largest = std::max(largest, strain); });
+  return largest;
+}
+
+void Membrane::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
+  for_each_strain(x, [&](double strain, std::span<const Index> particles) {
+    for (const Index p : particles) {
+      float& value = strains[at(p - first_)];
+      value = std::max(value, static_cast<float>(strain));
+    }
+  });
+}
 
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
   std::vector<double> masses(static_cast<std::size_t>(grid.size()));

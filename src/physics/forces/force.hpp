@@ -1,6 +1,7 @@
 // Interface of the internal forces and the air drag of a cloth, a rope or a rigid body.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <span>
 #include <utility>
@@ -121,10 +122,19 @@ class Force {
 class Membrane : public Force {
  public:
   /// Largest relative change of length of a piece of weft, warp or rope, in absolute value.
-  virtual double max_strain(std::span<const Vec3> x) const = 0;
+  double max_strain(std::span<const Vec3> x) const;
   /// Raises strains[particle − first] to the largest |strain| of the pieces or triangles at the
   /// particle, unless the entry is larger already.
-  virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const = 0;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const;
+
+ protected:
+  explicit Membrane(Index first) : first_(first) {}
+  using VisitStrain = std::function<void(double strain, std::span<const Index> particles)>;
+  /// Calls visit(|strain|, particles) for each piece or triangle.
+  virtual void for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const = 0;
+
+ private:
+  Index first_;
 };
 
 /// Lumped masses of a grid [kg]: ρ times the area of each particle. `density`: ρ [kg/m²].

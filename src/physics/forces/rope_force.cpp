@@ -34,7 +34,7 @@ solver::PackedBlock packed_block(const Mat3& m) {
 }  // namespace
 
 RopeForce::RopeForce(std::span<const double> lengths, bool closed, Index first, const RopeForceParameters& parameters)
-    : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.bend_viscosity, 0}) {
+    : Membrane(first), parameters_(parameters), damping_({parameters.bend, parameters.bend_viscosity, 0}) {
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
   for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[at(p)], 0, 0, 0});
@@ -206,18 +206,9 @@ double RopeForce::energy(std::span<const Vec3> x) const {
   return sum;
 }
 
-double RopeForce::max_strain(std::span<const Vec3> x) const {
-  double largest = 0;
+void RopeForce::for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const {
   for (const Piece& piece : pieces_)
-    largest = std::max(largest, std::abs(piece_length(x, piece.particles) / piece.rest - 1));
-  return largest;
-}
-
-void RopeForce::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
-  for (const Piece& piece : pieces_) {
-    const auto strain = static_cast<float>(std::abs(piece_length(x, piece.particles) / piece.rest - 1));
-    for (const Index p : piece.particles) strains[at(p - first_)] = std::max(strains[at(p - first_)], strain);
-  }
+    visit(std::abs(piece_length(x, piece.particles) / piece.rest - 1), piece.particles);
 }
 
 std::vector<double> lumped_masses(std::span<const double> lengths, bool closed, double mass) {

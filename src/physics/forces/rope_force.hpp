@@ -46,10 +46,8 @@ class RopeForce final : public Membrane {
   bool set_length_ratio(double ratio);
   double length_ratio() const { return length_ratio_; }
 
-  double max_strain(std::span<const Vec3> x) const override;
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
-
  private:
+  void for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const override;
   struct Piece {
     std::array<Index, 2> particles;
     double initial_length;  // rest length at construction [m]
@@ -71,7 +69,6 @@ class RopeForce final : public Membrane {
   void add_bend(const BendElement& bend, const Evaluation& at) const;
   void compute_weights(BendElement& bend) const;
 
-  Index first_;
   RopeForceParameters parameters_;
   BendDamping damping_;
   double length_ratio_ = 0;  // of current to initial rest lengths; 0: not set yet

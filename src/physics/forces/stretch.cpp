@@ -6,7 +6,7 @@
 namespace weft::forces {
 
 Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters)
-    : first_(first), viscous_(parameters.viscosity > 0) {
+    : Membrane(first), viscous_(parameters.viscosity > 0) {
   std::vector<Edge> edges;
   const auto add_edge = [&](Index i, Index j, double l, double width, double k) {
     const double per_length_sq = width * l / (l * l);  // A / l²
@@ -117,23 +117,10 @@ double Stretch::energy(std::span<const Vec3> x) const {
   return sum;
 }
 
-double Stretch::max_strain(std::span<const Vec3> x) const {
-  double largest = 0;
+void Stretch::for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const {
   for_each_edge([&](const Edge& e) {
     const double length = (x[e.j] - x[e.i]).norm();
-    largest = std::max(largest, std::abs(length / e.rest_length - 1));
-  });
-  return largest;
-}
-
-void Stretch::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
-  for_each_edge([&](const Edge& e) {
-    const double length = (x[e.j] - x[e.i]).norm();
-    const auto strain = static_cast<float>(std::abs(length / e.rest_length - 1));
-    for (Index p : {e.i, e.j}) {
-      float& value = strains[p - first_];
-      value = std::max(value, strain);
-    }
+    visit(std::abs(length / e.rest_length - 1), std::array{e.i, e.j});
   });
 }
 

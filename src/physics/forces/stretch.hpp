@@ -33,10 +33,8 @@ class Stretch final : public Membrane {
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  double max_strain(std::span<const Vec3> x) const override;
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
-
  private:
+  void for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const override;
   struct Edge {
     Index i, j;
     double rest_length;  // l [m]
@@ -52,7 +50,6 @@ class Stretch final : public Membrane {
   template <class Body>
   void for_each_edge(const Body& body) const;
 
-  Index first_;
   bool viscous_;
   std::size_t count_ = 0;  // of edges
   std::vector<Edges> packs_;

@@ -23,7 +23,7 @@ Lanes length_of(const VecLanes& s) {
 
 TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
                                    const ShearParameters& shear)
-    : stretch_(stretch), shear_(shear), first_(first) {
+    : Membrane(first), stretch_(stretch), shear_(shear) {
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
     Element element;
     for (std::size_t k = 0; k < 3; ++k) element.particles[k] = first + sheet.triangles[t][k];
@@ -294,20 +294,8 @@ double TriangleMembrane::strain(std::size_t triangle, std::span<const Vec3> x) c
   return std::max(std::abs(s.u.norm() - 1), std::abs(s.v.norm() - 1));
 }
 
-double TriangleMembrane::max_strain(std::span<const Vec3> x) const {
-  double largest = 0;
-  for (std::size_t t = 0; t < elements_.size(); ++t) largest = std::max(largest, strain(t, x));
-  return largest;
-}
-
-void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const {
-  for (std::size_t t = 0; t < elements_.size(); ++t) {
-    const auto largest = static_cast<float>(strain(t, x));
-    for (Index p : elements_[t].particles) {
-      float& value = strains[p - first_];
-      value = std::max(value, largest);
-    }
-  }
+void TriangleMembrane::for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const {
+  for (std::size_t t = 0; t < elements_.size(); ++t) visit(strain(t, x), elements_[t].particles);
 }
 
 }  // namespace weft::forces

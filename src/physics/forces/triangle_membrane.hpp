@@ -67,8 +67,6 @@ class TriangleMembrane : public Membrane {
   /// Copies what serialize_rest_shape() saves from `other`, a membrane of the same sheet.
   void copy_rest_state(const TriangleMembrane& other);
   std::span<const Element> elements() const { return elements_; }
-  double max_strain(std::span<const Vec3> x) const override;
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> strains) const override;
 
  protected:
   /// Derivatives along weft and warp, of positions or of velocities.
@@ -89,6 +87,7 @@ class TriangleMembrane : public Membrane {
   ShearParameters shear_;
 
  private:
+  void for_each_strain(std::span<const Vec3> x, const VisitStrain& visit) const override;
   /// Four triangles, each with its corners in ascending order of particle numbers.
   struct Triangles {
     std::array<IndexLanes, 3> corners{};
@@ -111,7 +110,6 @@ class TriangleMembrane : public Membrane {
                      const Lanes& shear, const Evaluation& at) const;
   Mat3 stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const;
 
-  Index first_;
   std::vector<Element> elements_;
   /// For sewn sheets: the inverse of the matrix of a triangle's sides in the pattern, and U − I (see
   /// interpolate_rest_shape).
