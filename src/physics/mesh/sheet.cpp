@@ -45,16 +45,8 @@ double rest_area(const Sheet& sheet, std::size_t triangle) {
   return 0.5 * (a.x() * b.y() - a.y() * b.x());
 }
 
-double height(const Sheet& sheet, std::size_t triangle) {
-  const auto& m = sheet.material[triangle];
-  const double longest = std::max({(m[1] - m[0]).norm(), (m[2] - m[1]).norm(), (m[0] - m[2]).norm()});
-  return 2 * rest_area(sheet, triangle) / longest;
-}
-
 double min_height(const Sheet& sheet) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) least = std::min(least, height(sheet, t));
-  return least;
+  return find_flat_triangles(sheet).least_height;
 }
 
 Mesh make_triangle_sheet(const Grid& grid, Pattern pattern) {
@@ -77,15 +69,17 @@ Mesh make_triangle_sheet(const Grid& grid, Pattern pattern) {
 
 FlatTriangles find_flat_triangles(const Sheet& sheet) {
   FlatTriangles found;
-  for (const auto& corners : sheet.material)
-    for (std::size_t k = 0; k < 3; ++k)
-      found.longest_edge = std::max(found.longest_edge, (corners[(k + 1) % 3] - corners[k]).norm());
   found.least_height = std::numeric_limits<double>::infinity();
+  std::vector<double> heights;
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
-    const double h = height(sheet, t);
-    found.count += h < found.longest_edge / kMaxEdgeToHeightRatio;
-    if (h < found.least_height) found.least_height = h, found.flattest = t;
+    const auto& m = sheet.material[t];
+    const double longest = std::max({(m[1] - m[0]).norm(), (m[2] - m[1]).norm(), (m[0] - m[2]).norm()});
+    const double height = heights.emplace_back(2 * rest_area(sheet, t) / longest);
+    found.longest_edge = std::max(found.longest_edge, longest);
+    if (height < found.least_height) found.least_height = height, found.flattest = t;
   }
+  const double limit = found.longest_edge / kMaxEdgeToHeightRatio;
+  found.count = static_cast<std::size_t>(std::ranges::count_if(heights, [&](double h) { return h < limit; }));
   return found;
 }
 

@@ -79,8 +79,6 @@ FlatTriangles find_flat_triangles(const Sheet& sheet);
 /// its own material coordinates.
 Sheet make_sheet_from_mesh(const Mesh& mesh);
 
-/// Smallest height of a triangle at rest [m].
-double height(const Sheet& sheet, std::size_t triangle);
 /// Smallest height of all triangles at rest [m]; infinite without triangles.
 double min_height(const Sheet& sheet);
 
