@@ -8,9 +8,6 @@
 namespace weft::model {
 namespace {
 
-/// Vertices per task; a task takes about ten microseconds.
-constexpr std::size_t kPlacedPerTask = 4096;
-
 /// Position of a number in a list; nothing if the list does not contain it.
 std::optional<std::size_t> position_of(std::size_t number, std::span<const std::size_t> numbers) {
   const auto found = std::ranges::find(numbers, number);
@@ -64,7 +61,7 @@ void Model::place(std::size_t body, double t, std::span<Vec3> positions) const {
   const motion::PoseSample now = pose(body, t);
   const Mat3 rotation = now.rotation.toRotationMatrix();
   const std::vector<Vec3>& mesh = placed.mesh.positions;
-  parallel_for(mesh.size(), kPlacedPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(mesh.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) positions[i] = now.position + rotation * mesh[i];
   });
 }

@@ -8,12 +8,6 @@
 #include "core/parallel.hpp"
 
 namespace weft::motion {
-namespace {
-
-/// Vertices per task; a task takes some ten microseconds.
-constexpr std::size_t kVerticesPerTask = 4096;
-
-}  // namespace
 
 KeyFrames::KeyFrames(Interpolation interpolation, double first_time, double interval,
                      std::vector<std::vector<Vec3>> keys, bool from_rest)
@@ -39,7 +33,7 @@ void KeyFrames::compute_second_derivatives(bool from_rest) {
     pivot[i] = 4 - upper[i - 1];
     upper[i] = 1 / pivot[i];
   }
-  parallel_for(vertices, kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertices, kGrainSize, [&](std::size_t begin, std::size_t end) {
     if (from_rest)
       for (std::size_t v = begin; v < end; ++v)
         second_derivatives_[0][v] = factor * (keys_[1][v] - keys_[0][v]) / pivot[0];
@@ -76,7 +70,7 @@ VertexMotion KeyFrames::at(const Piece& piece, std::size_t v) const {
 
 void KeyFrames::at(double t, std::span<Vec3> positions) const {
   const Piece now = find_piece(t);
-  parallel_for(positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+  parallel_for(positions.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) positions[v] = at(now, v).position;
   });
 }

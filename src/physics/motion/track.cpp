@@ -46,11 +46,11 @@ std::optional<Vec3> turn_of_one_angle(const Pose& from, const Pose& to) {
   if (!change || (change->array() != 0).count() > 1) return std::nullopt;
   // The rotations are applied in the order x, y, z. Thus the rotations about y and z turn the x
   // axis, and the rotation about z turns the y axis.
-  const Vec3 angles = kPi / 180 * to.angles.value_or(Vec3::Zero());
+  const Vec3 angles = kDegree * to.angles.value_or(Vec3::Zero());
   Vec3 axis = Vec3::UnitZ();
   if (change->x() != 0) axis = Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) * Vec3::UnitX();
   if (change->y() != 0) axis = Vec3::UnitY();
-  return Vec3(kPi / 180 * change->sum() * (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * axis));
+  return Vec3(kDegree * change->sum() * (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * axis));
 }
 
 /// Rotation vectors from each key to the next [rad].
