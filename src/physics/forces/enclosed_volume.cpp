@@ -2,6 +2,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 
 #include "core/parallel.hpp"
 #include "physics/mesh/geometry.hpp"
@@ -12,12 +13,12 @@ namespace {
 // Loops of border edges. Each edge runs opposite to its direction in its triangle.
 std::vector<std::vector<Index>> border_loops(std::span<const mesh::Triangle> triangles) {
   // A border edge is one whose reverse is in no triangle.
-  std::map<std::array<Index, 2>, int> runs;
+  std::set<std::array<Index, 2>> edges;
   for (const mesh::Triangle& t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) ++runs[{t[k], t[(k + 1) % 3]}];
+    for (std::size_t k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
   std::multimap<Index, Index> next;
-  for (const auto& [edge, count] : runs)
-    if (!runs.contains({edge[1], edge[0]})) next.emplace(edge[1], edge[0]);
+  for (const auto& [from, to] : edges)
+    if (!edges.contains({to, from})) next.emplace(to, from);
   std::vector<std::vector<Index>> loops;
   while (!next.empty()) {
     std::vector<Index>& loop = loops.emplace_back();
