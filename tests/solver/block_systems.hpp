@@ -122,6 +122,19 @@ inline Eigen::MatrixXd projection(const LinearSystem& system) {
   return s;
 }
 
+/// The solution on the free directions, by a direct method.
+inline Eigen::VectorXd direct_solution(const LinearSystem& system, std::span<const Vec3> b) {
+  const Eigen::MatrixXd s = projection(system), identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
+  return Eigen::MatrixXd(s * dense_with_terms(system) * s + (identity - s)).ldlt().solve(s * flat(b));
+}
+
+/// The same system with the particles [begin, end) held.
+inline LinearSystem with_held(LinearSystem system, Index begin, Index end) {
+  std::erase_if(system.constraints, [&](const auto& c) { return c.particle >= begin && c.particle < end; });
+  for (Index i = begin; i < end; ++i) system.constraints.push_back({i, Mat3::Zero()});
+  return system;
+}
+
 /// Groups consecutive particles into aggregates, and aggregates into larger ones: one level for each count. If each
 /// aggregate has one particle, constraints hold some aggregates.
 inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {

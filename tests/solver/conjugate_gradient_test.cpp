@@ -15,17 +15,11 @@ namespace {
 
 using testing::cut_groups;
 using testing::dense_with_terms;
+using testing::direct_solution;
 using testing::norm;
 using testing::projection;
 using testing::Random;
 using testing::system_of_parts;
-
-Eigen::VectorXd direct_solution(const LinearSystem& system, std::span<const Vec3> b) {
-  const Eigen::MatrixXd s = projection(system);
-  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
-  const Eigen::MatrixXd filtered = s * dense_with_terms(system) * s + (identity - s);
-  return filtered.ldlt().solve(s * testing::flat(b));
-}
 
 TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
@@ -80,10 +74,7 @@ TEST(ConjugateGradient, BlocksAreSolvedAsIfAllOthersWereHeld) {
     const std::vector<std::size_t> blocks{0, 2};
     EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {}, blocks).converged);
 
-    LinearSystem held = system;
-    std::erase_if(held.constraints, [](const auto& c) { return c.particle >= 20 && c.particle < 40; });
-    for (Index i = 20; i < 40; ++i) held.constraints.push_back({i, Mat3::Zero()});
-    const Eigen::VectorXd expected = direct_solution(held, b);
+    const Eigen::VectorXd expected = direct_solution(testing::with_held(system, 20, 40), b);
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
     for (std::size_t i = 20; i < 40; ++i) EXPECT_EQ(x[i], Vec3::Zero());
   }

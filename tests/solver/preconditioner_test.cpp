@@ -116,6 +116,13 @@ LinearSystem system_with_contacts(Random& random) {
   return system;
 }
 
+// Random vectors that obey the constraints.
+std::vector<Vec3> free_vectors(const LinearSystem& system, Random& random) {
+  std::vector<Vec3> r = random.vectors(kSystemRows);
+  for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
+  return r;
+}
+
 template <class Real>
 Eigen::VectorXd apply(Preconditioner<Real>& preconditioner, const std::vector<Vec3>& r, std::size_t blocks) {
   std::vector<std::size_t> all(blocks);
@@ -142,8 +149,7 @@ TEST(Preconditioner, IsTheSumOverLevelsWithContactsInAll) {
       if (stiff)
         for (double& weight : system.norm_weights) weight *= 1e-6;
       const Eigen::MatrixXd expected = dense_preconditioner(system, stiff);
-      std::vector<Vec3> r = random.vectors(kSystemRows);
-      for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
+      const std::vector<Vec3> r = free_vectors(system, random);
       const Eigen::VectorXd wanted = expected * testing::flat(r);
       // Tolerance: the blocks are shifted by 1e-13 of their trace; their condition number is about 1e2.
       EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm()) << counts.size() << " levels";
@@ -159,8 +165,7 @@ TEST(Preconditioner, IsTheSumOverAsManyLevelsAsAClothCanHave) {
   std::vector<Index> counts(kMaxAggregateLevels - 1, 20);
   counts.push_back(6);
   testing::cut_groups(system, counts);
-  std::vector<Vec3> r = random.vectors(kSystemRows);
-  for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
+  const std::vector<Vec3> r = free_vectors(system, random);
   const Eigen::VectorXd wanted = dense_preconditioner(system, false) * testing::flat(r);
   // Tolerance: on coarse levels only mass is left beside contacts, so condition numbers are up to 1e4.
   EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-7 * wanted.norm());
@@ -172,8 +177,7 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   testing::cut_groups(system, {20, 6});
   // A single light particle, as in a finer region of a mesh, must not make aggregates move as wholes.
   system.norm_weights[7] *= 1e-6;
-  std::vector<Vec3> r = random.vectors(kSystemRows);
-  for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
+  const std::vector<Vec3> r = free_vectors(system, random);
   const Eigen::VectorXd wanted = dense_preconditioner(system, false) * testing::flat(r);
   // The same tolerance as in the first test.
   EXPECT_LT((applied<double>(system, r) - wanted).norm(), 1e-10 * wanted.norm());
