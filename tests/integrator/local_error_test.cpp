@@ -15,22 +15,9 @@ using testing::kMethods;
 // Newton tolerance: above the rounding error of x / h², and far below the errors of the methods.
 constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
-// State of the hardening spring after a time t [s], which may be negative, by the classical Runge-Kutta method. The
-// error of x is below 1e-14 m.
-State moved(State now, double t) {
-  constexpr int kSteps = 200;
-  const auto a = [](const Vec3& x) { return testing::HardeningSpring::force_at(x); };
-  const double h = t / kSteps;
-  Vec3 &x = now.x[0], &v = now.v[0];
-  for (int s = 0; s < kSteps; ++s) {
-    const Vec3 v1 = v, a1 = a(x);
-    const Vec3 v2 = v + 0.5 * h * a1, a2 = a(x + 0.5 * h * v1);
-    const Vec3 v3 = v + 0.5 * h * a2, a3 = a(x + 0.5 * h * v2);
-    const Vec3 v4 = v + h * a3, a4 = a(x + h * v3);
-    x += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
-    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-  }
-  return now;
+// State of the hardening spring after a time t [s]. The error of x is below 1e-14 m.
+State moved(const State& now, double t) {
+  return testing::moved(now, t, 200);
 }
 
 struct Errors {

@@ -62,10 +62,10 @@ class Spring : public Particles {
   double k_;
 };
 
-/// f = −(1 + ‖x‖²) x: smooth, nonlinear, with a definite stiffness.
+/// f = −(1 + ‖x‖²) x for each particle; by default one of 1 kg. Smooth, nonlinear, with a definite stiffness.
 class HardeningSpring : public Particles {
  public:
-  HardeningSpring() : Particles({1}) {}
+  explicit HardeningSpring(std::vector<double> masses = {1}) : Particles(std::move(masses)) {}
   static Vec3 force_at(const Vec3& x) { return -(1 + x.squaredNorm()) * x; }
 
  protected:
@@ -74,6 +74,23 @@ class HardeningSpring : public Particles {
     return (1 + x.squaredNorm()) * Mat3::Identity() + 2 * x * x.transpose();
   }
 };
+
+/// State of a HardeningSpring of 1 kg after a time t [s], which may be negative, by `steps` steps of the classical
+/// Runge-Kutta method.
+inline State moved(State now, double t, int steps) {
+  const auto a = [](const Vec3& x) { return HardeningSpring::force_at(x); };
+  const double h = t / steps;
+  Vec3 &x = now.x[0], &v = now.v[0];
+  for (int s = 0; s < steps; ++s) {
+    const Vec3 v1 = v, a1 = a(x);
+    const Vec3 v2 = v + 0.5 * h * a1, a2 = a(x + 0.5 * h * v1);
+    const Vec3 v3 = v + 0.5 * h * a2, a3 = a(x + 0.5 * h * v2);
+    const Vec3 v4 = v + h * a3, a4 = a(x + h * v3);
+    x += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
+    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+  }
+  return now;
+}
 
 /// Two particles of 1 kg with f0 = −s x1 and f1 = −s x0. If s > 0 they separate ever faster. If s > rate² (see
 /// StagePoint), the matrix is indefinite although its diagonal is definite.

@@ -147,21 +147,15 @@ TEST(Stepper, BoundsTheErrorOfASlowSolveByTheGivenTolerance) {
 }
 
 // Two uncoupled springs, each a diagonal block. Records the positions at which Newton's method linearises them.
-class TwoParts : public testing::Particles {
+class TwoParts : public testing::HardeningSpring {
  public:
-  TwoParts() : Particles({1, 1}) { linear_system().blocks = {{0, 1}, {1, 2}}; }
+  TwoParts() : HardeningSpring({1, 1}) { linear_system().blocks = {{0, 1}, {1, 2}}; }
   void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) override {
     evaluated_at.emplace_back(at.x.begin(), at.x.end());
     for (solver::DiagonalBlock& part : linear_system().blocks) ++part.version;
-    Particles::linearise(at, iteration, force);
+    HardeningSpring::linearise(at, iteration, force);
   }
   std::vector<std::vector<Vec3>> evaluated_at;
-
- protected:
-  Vec3 force_on(const Vec3& x) const override { return testing::HardeningSpring::force_at(x); }
-  Mat3 stiffness_of(const Vec3& x) const override {
-    return (1 + x.squaredNorm()) * Mat3::Identity() + 2 * x * x.transpose();
-  }
 };
 
 TEST(Stepper, PartThatIsSolvedStandsStillWhileAnotherGoesOn) {
@@ -201,7 +195,7 @@ TEST(Stepper, SaysWhyAStepIsNotSolved) {
 TEST(Stepper, ReturnsUnfinishedAfterTheGivenIterationsAndContinuesFromThere) {
   testing::HardeningSpring spring;
   const State now{{{2, 0, 0}}, {{0, 3, 0}}};
-  for (Method method : {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2}) {
+  for (Method method : kMethods) {
     Stepper stepper(method, kTight);
     State whole = now, continued = now;
     const StepReport at_once = stepper.step(spring, now, 1, Vec3::Zero(), {}, whole);
