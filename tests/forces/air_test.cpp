@@ -71,31 +71,19 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   const Positions x = testing::moved_rigidly(testing::flat(kGrid)), v = testing::random_vectors(x.size(), 2, 1);
   const double rate = 50;
   Air air(kGrid, 0, {kRho, Vec3(1, 2, 0), kDrag});
-  std::vector<std::pair<Index, Index>> pairs;
-  air.append_couplings(pairs);
-  solver::BlockMatrix matrix(kGrid.size(), pairs);
-  solver::Assembly assembly(matrix);
-  air.attach(assembly);
-  testing::Place place(x, v);
-  Evaluation at = place.evaluation(rate);
-  at.assembly = {assembly, matrix};
-  air.add(at);
-  testing::complete(assembly, matrix);
+  const Eigen::MatrixXd matrix = testing::stiffness_of(air, x, v, rate);
   const auto force_at = [&](const Positions& velocities) { return testing::force_of(air, x, velocities); };
   constexpr double kEpsilon = 1e-6;
   for (unsigned trial = 0; trial < 6; ++trial) {
     // Changes all velocities by the same vector, or each by its own.
     Positions change = testing::random_vectors(x.size(), 1, 2 + trial);
     if (trial < 3) change.assign(x.size(), change[0]);
-    Positions after = v, before = v, product(x.size(), Vec3::Zero());
+    Positions after = v, before = v;
     for (std::size_t i = 0; i < x.size(); ++i) after[i] += kEpsilon * change[i], before[i] -= kEpsilon * change[i];
     const Positions f_after = force_at(after), f_before = force_at(before);
-    matrix.multiply<Vec3>(change, product, 0, x.size());
-    double of_matrix = 0, of_force = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      of_matrix += change[i].dot(product[i]);
-      of_force -= rate * change[i].dot(f_after[i] - f_before[i]) / (2 * kEpsilon);
-    }
+    const auto direction = testing::dense(change);
+    const double of_matrix = direction.dot(matrix * direction);
+    const double of_force = rate * direction.dot(testing::dense(f_before) - testing::dense(f_after)) / (2 * kEpsilon);
     // For equal changes of all velocities, the matrix is the exact derivative. Tolerance: the central difference has
     // errors of order ε², and rounding errors divided by ε.
     if (trial < 3)

@@ -29,10 +29,7 @@ bool is_middle(std::size_t i) {
 
 /// Moves each particle by up to `size` [m] along each axis.
 Positions crumpled(const mesh::Sheet& sheet, double size) {
-  Positions x = sheet.rest;
-  const Positions noise = testing::random_vectors(x.size(), size, 5);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += noise[i];
-  return x;
+  return testing::shaken(sheet.rest, size, 5);
 }
 
 /// Deforms the cells to parallelograms in their plane. Moves each middle particle in the plane by up to `size` [m]
@@ -62,23 +59,12 @@ TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
   for (const Positions& x : {crumpled(sheet, 0.006), fold_up(sheet, 0.6), fold_up(sheet, 0.2)}) {
+    testing::expect_forces_from_energy(membrane, x, 1e-7, 1e-7);
     const Positions f = testing::force_of(membrane, x, testing::zeros(x));
-    double largest = 0;
-    for (const Vec3& force : f) largest = std::max(largest, force.norm());
-    constexpr double kStep = 1e-7;
     Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      sum += f[i], moment += x[i].cross(f[i]);
-      for (int axis = 0; axis < 3; ++axis) {
-        Positions more = x, less = x;
-        more[i][axis] += kStep, less[i][axis] -= kStep;
-        // Tolerance: the central difference has a truncation error of order kStep² and the rounding error of energies
-        // of 1e-2 J, divided by kStep; together 1e-9 N.
-        EXPECT_NEAR(f[i][axis], (membrane.energy(less) - membrane.energy(more)) / (2 * kStep), 1e-7 * largest);
-      }
-    }
-    EXPECT_LT(sum.norm(), 1e-12 * largest);
-    EXPECT_LT(moment.norm(), 1e-12 * largest);
+    for (std::size_t i = 0; i < x.size(); ++i) sum += f[i], moment += x[i].cross(f[i]);
+    EXPECT_LT(sum.norm(), 2e-12 * testing::largest(f));
+    EXPECT_LT(moment.norm(), 2e-12 * testing::largest(f));
   }
 }
 
@@ -151,19 +137,9 @@ TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinit
   CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
   const Positions flat = sheet.rest, v = testing::zeros(flat);
   const Eigen::MatrixXd k = testing::stiffness_of(membrane, flat, v, 0);
-  constexpr double kStep = 1e-7;
-  for (std::size_t i = 0; i < flat.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) {
-      Positions more = flat, less = flat;
-      more[i][axis] += kStep, less[i][axis] -= kStep;
-      const Positions f_more = testing::force_of(membrane, more, v), f_less = testing::force_of(membrane, less, v);
-      for (std::size_t j = 0; j < flat.size(); ++j) {
-        const Vec3 difference = (f_less[j] - f_more[j]) / (2 * kStep);
-        const auto row = 3 * static_cast<Eigen::Index>(j), column = 3 * static_cast<Eigen::Index>(i) + axis;
-        // Tolerance: a displacement of kStep causes stress, whose stiffness the matrix does not contain.
-        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);
-      }
-    }
+  const Eigen::MatrixXd differences = testing::stiffness_by_differences(membrane, flat, v, 0, 1e-7);
+  // Tolerance: a displacement causes stress, whose stiffness the matrix does not contain.
+  EXPECT_LT((k - differences).cwiseAbs().maxCoeff(), 1e-4 * kStiffness);
   const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006), v, 0);
   EXPECT_LT((m - m.transpose()).norm(), 1e-12 * m.norm());
   EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m).eigenvalues().minCoeff(), -1e-12 * m.norm());

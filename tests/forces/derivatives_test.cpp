@@ -130,20 +130,7 @@ constexpr double kRelative = 5e-8;
 TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const auto force = GetParam().make(kStiffness, 0);
-    Positions x = testing::crumpled(GetParam().grid, 0.003, seed);
-    const Positions f = testing::force_of(*force, x, testing::zeros(x));
-    for (std::size_t i = 0; i < x.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis) {
-        const double place = x[i][axis];
-        x[i][axis] = place + kDifference;
-        const double above = force->energy(x);
-        x[i][axis] = place - kDifference;
-        const double below = force->energy(x);
-        x[i][axis] = place;
-        // The second term of the tolerance is the rounding error of the energies, divided by the step.
-        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kDifference),
-                    kRelative * testing::largest(f) + 1e-15 * above / kDifference);
-      }
+    testing::expect_forces_from_energy(*force, testing::crumpled(GetParam().grid, 0.003, seed), kDifference, kRelative);
   }
 }
 
@@ -248,17 +235,7 @@ TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
 TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
   const auto force = GetParam().make(kStiffness, 5);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 1), v = testing::random_vectors(x.size(), 1, 2);
-  std::vector<std::pair<Index, Index>> pairs;
-  force->append_couplings(pairs);
-  solver::BlockMatrix matrix(GetParam().grid.size(), pairs);
-  solver::Assembly assembly(matrix);
-  force->attach(assembly);
-  testing::Place place(x, v);
-  Evaluation at = place.evaluation(kRate);
-  at.assembly = {assembly, matrix};
-  force->add(at);
-  const Positions alone = testing::force_of(*force, x, v, kRate);
-  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(solver::vec3_of(place.force[i]), alone[i]);
+  EXPECT_EQ(testing::linearised(*force, x, v, kRate).force, testing::force_of(*force, x, v, kRate));
 }
 
 TEST_P(Derivatives, RangesOfParticlesAddUpToTheSameBits) {

@@ -79,13 +79,7 @@ struct RaggedClamp {
   mesh::Sheet sheet = mesh::make_sheet_from_mesh(mesh);
   std::vector<char> held = held_up_to(mesh.uv, 0.05), none = std::vector<char>(mesh.uv.size());
   TriangleBend bend{sheet, 0, {kRigidity, 1e-5}, held};
-  Positions x, v;
-
-  RaggedClamp() {
-    const Positions noise = testing::random_vectors(sheet.rest.size(), 0.004, 11);
-    for (std::size_t i = 0; i < noise.size(); ++i) x.push_back(sheet.rest[i] + noise[i]);
-    v = testing::random_vectors(x.size(), 0.1, 12);
-  }
+  Positions x = testing::shaken(sheet.rest, 0.004, 11), v = testing::random_vectors(x.size(), 0.1, 12);
 };
 
 TEST(HeldBend, RaggedClampHasTheJacobianOfItsForceAndIsDefinite) {

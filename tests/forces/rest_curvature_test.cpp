@@ -83,18 +83,9 @@ TEST(RestCurvature, ForceAndJacobianAreDerivatives) {
   for (double curvature : {8.0, -8.0})
     for (unsigned seed = 1; seed <= 2; ++seed) {
       TriangleBend bend(rest_of(mesh, curvature), 0, {1, 0});
-      Positions x = rolled(mesh, 0.5 * curvature);
-      const Positions noise = testing::random_vectors(x.size(), 0.003, seed), still = testing::zeros(x);
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] += noise[i];
-      const Positions f = testing::force_of(bend, x, still);
+      const Positions x = testing::shaken(rolled(mesh, 0.5 * curvature), 0.003, seed), still = testing::zeros(x);
       constexpr double kEpsilon = 4e-7;
-      for (std::size_t i = 0; i < x.size(); ++i)
-        for (int axis = 0; axis < 3; ++axis) {
-          Positions above = x, below = x;
-          above[i][axis] += kEpsilon, below[i][axis] -= kEpsilon;
-          const double slope = (bend.energy(above) - bend.energy(below)) / (2 * kEpsilon);
-          EXPECT_NEAR(f[i][axis], -slope, 5e-8 * testing::largest(f) + 1e-15 * bend.energy(x) / kEpsilon);
-        }
+      testing::expect_forces_from_energy(bend, x, kEpsilon, 5e-8);
       const Eigen::MatrixXd exact = testing::jacobian_of(bend, x, still, 0);
       const Eigen::MatrixXd differences = testing::stiffness_by_differences(bend, x, still, 0, kEpsilon);
       EXPECT_LT((exact - differences).cwiseAbs().maxCoeff(), 5e-8 * exact.cwiseAbs().maxCoeff());
@@ -106,9 +97,7 @@ TEST(RestCurvature, DefiniteJacobianIsPositiveSemidefiniteAndExactAtRest) {
   TriangleBend bend(sheet, 0, {1, 0});
   const Positions still = testing::zeros(sheet.rest);
   for (unsigned seed = 0; seed <= 4; ++seed) {
-    Positions x = sheet.rest;
-    const Positions noise = testing::random_vectors(x.size(), seed == 0 ? 0 : 0.006, seed);
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] += noise[i];
+    const Positions x = testing::shaken(sheet.rest, seed == 0 ? 0 : 0.006, seed);
     const Eigen::MatrixXd k = testing::stiffness_of(bend, x, still, 0);
     const double scale = k.cwiseAbs().maxCoeff();
     EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
@@ -123,9 +112,7 @@ TEST(RestCurvature, DefiniteJacobianIsPositiveSemidefiniteAndExactAtRest) {
 TEST(RestCurvature, NoForceSumsUpOrTurns) {
   const mesh::Sheet sheet = rest_of(testing::delaunay_sheet(testing::kGrid, 0.3, 3), -8);
   const TriangleBend bend(sheet, 0, {1, 1e-3, 1e-2});
-  Positions x = sheet.rest;
-  const Positions noise = testing::random_vectors(x.size(), 0.004, 1);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += noise[i];
+  const Positions x = testing::shaken(sheet.rest, 0.004, 1);
   const Positions f = testing::force_of(bend, x, testing::random_vectors(x.size(), 1, 2));
   Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
   for (std::size_t i = 0; i < x.size(); ++i) sum += f[i], torque += x[i].cross(f[i]);

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <cmath>
-#include <vector>
+#include <algorithm>
 
+#include "forces/sheets.hpp"
 #include "physics/mesh/mesh.hpp"
 #include "physics/mesh/shapes.hpp"
 
@@ -22,31 +21,16 @@ mesh::RigidFrame plate() {
   return {mesh.topology.triangles, mesh.positions};
 }
 
-using PaddedVec3s = std::vector<solver::PaddedVec3<double>>;
-using Frame = std::array<Vec3, 4>;
+using testing::Positions;
 
-Frame moved(const mesh::RigidFrame& frame, const Mat3& by) {
-  Frame x;
-  for (std::size_t k = 0; k < 4; ++k) x[k] = by * frame.particles()[k] + Vec3(1, -2, 3);
+Positions moved(const mesh::RigidFrame& frame, const Mat3& by) {
+  Positions x;
+  for (const Vec3& particle : frame.particles()) x.emplace_back(by * particle + Vec3(1, -2, 3));
   return x;
 }
 
-PaddedVec3s quads_of(const Frame& frame) {
-  PaddedVec3s result;
-  for (const Vec3& x : frame) result.push_back(solver::padded<double>(x));
-  return result;
-}
-
-Frame forces_at(const Rigidity& rigidity, const Frame& x,
-                const Frame& v = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, double rate = 0) {
-  const PaddedVec3s positions = quads_of(x), velocities = quads_of(v);
-  PaddedVec3s force(4, solver::PaddedVec3<double>{});
-  Evaluation at{positions, velocities, force};
-  at.rate = rate;
-  rigidity.add(at);
-  Frame result;
-  for (std::size_t k = 0; k < 4; ++k) result[k] = solver::vec3_of(force[k]);
-  return result;
+Positions forces_at(const Rigidity& rigidity, const Positions& x) {
+  return testing::force_of(rigidity, x, testing::zeros(x));
 }
 
 const Mat3 kTurn = Eigen::AngleAxisd(0.9, Vec3(2, -1, 2).normalized()).toRotationMatrix();
@@ -56,22 +40,13 @@ TEST(Rigidity, IsTheDescentOfItsEnergy) {
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
   Mat3 deform = kTurn;
   deform(0, 1) += 0.05, deform(2, 2) *= 1.1, deform(1, 0) -= 0.08;
-  const Frame x = moved(frame, deform);
-  const Frame force = forces_at(rigidity, x);
-  for (std::size_t k = 0; k < 4; ++k)
-    for (int axis = 0; axis < 3; ++axis) {
-      constexpr double kStep = 1e-6;
-      Frame low = x, high = x;
-      low[k][axis] -= kStep, high[k][axis] += kStep;
-      const double slope = (rigidity.energy(high) - rigidity.energy(low)) / (2 * kStep);
-      EXPECT_NEAR(force[k][axis], -slope, 1e-5 * kMass * kStiffness * 0.1);
-    }
+  testing::expect_forces_from_energy(rigidity, moved(frame, deform), 1e-6, 1e-4);
 }
 
 TEST(Rigidity, LetsBodiesMoveAndTurn) {
   const mesh::RigidFrame frame = plate();
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
-  const Frame x = moved(frame, kTurn);
+  const Positions x = moved(frame, kTurn);
   EXPECT_LT(rigidity.energy(x), 1e-20 * kMass * kStiffness);
   for (const Vec3& force : forces_at(rigidity, x)) EXPECT_LT(force.norm(), 1e-12 * kMass * kStiffness);
 }
@@ -81,7 +56,7 @@ TEST(Rigidity, HasNoResultantAndNoMoment) {
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
   Mat3 deform = kTurn;
   deform(0, 0) *= 1.2, deform(1, 2) += 0.1;
-  const Frame x = moved(frame, deform), force = forces_at(rigidity, x);
+  const Positions x = moved(frame, deform), force = forces_at(rigidity, x);
   Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
   double largest = 0;
   for (std::size_t k = 0; k < 4; ++k) {
@@ -101,7 +76,7 @@ TEST(Rigidity, HasOneFrequencyForStretchesOfThinAndThick) {
   for (int axis = 0; axis < 3; ++axis) {
     Mat3 stretch = Mat3::Identity();
     stretch(axis, axis) += kStrain;
-    const Frame x = moved(frame, stretch), start = moved(frame, Mat3::Identity());
+    const Positions x = moved(frame, stretch), start = moved(frame, Mat3::Identity());
     double moved_sq = 0;  // mass-weighted mean square of the displacement [m²]
     for (std::size_t k = 0; k < 4; ++k) moved_sq += 0.25 * (x[k] - start[k]).squaredNorm();
     // The expected energy is ½ m kStiffness times the mean square of the displacement. Tolerance: the strain has a term
@@ -115,15 +90,15 @@ TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
   // the middle of the step; at the end, it has its rest shape.
   const mesh::RigidFrame frame = plate();
   const Rigidity rigidity(frame, 0, kMass, kStiffness);
-  const Frame from = moved(frame, Mat3::Identity()),
-              to = moved(frame, Eigen::AngleAxisd(0.4, Vec3::UnitZ()).toRotationMatrix());
+  const Positions from = moved(frame, Mat3::Identity()),
+                  to = moved(frame, Eigen::AngleAxisd(0.4, Vec3::UnitZ()).toRotationMatrix());
   constexpr double kStepLength = 0.01;
-  Frame middle, v;
+  Positions middle(4), v(4);
   for (std::size_t k = 0; k < 4; ++k) {
     middle[k] = 0.5 * (from[k] + to[k]);
     v[k] = (to[k] - from[k]) / kStepLength;
   }
-  for (const Vec3& force : forces_at(rigidity, middle, v, 2 / kStepLength))
+  for (const Vec3& force : testing::force_of(rigidity, middle, v, 2 / kStepLength))
     EXPECT_LT(force.norm(), 1e-12 * kMass * kStiffness);
   // With rate 0, the force follows from the strain of `middle`.
   EXPECT_GT(forces_at(rigidity, middle)[0].norm(), 1e-4 * kMass * kStiffness);
@@ -132,36 +107,11 @@ TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
 TEST(Rigidity, IsLinearisedAsItChanges) {
   const mesh::RigidFrame frame = plate();
   Rigidity rigidity(frame, 0, kMass, kStiffness);
-  solver::BlockMatrix::Couplings couplings;
-  rigidity.append_couplings(couplings);
-  solver::BlockMatrix matrix(4, std::move(couplings), {});
-  solver::Assembly assembly(matrix);
-  rigidity.attach(assembly);
-  assembly.clear();
-  assembly.keep_constant();
-  const Frame x = moved(frame, kTurn);
-  const PaddedVec3s positions = quads_of(x), velocities(4, solver::PaddedVec3<double>{});
-  PaddedVec3s force(4, solver::PaddedVec3<double>{});
-  Evaluation at{positions, velocities, force};
-  assembly.start(0, 4, matrix);
-  at.assembly = {assembly, matrix};
-  rigidity.add(at);
-  assembly.complete_pairs(0, 4, matrix);
-  assembly.complete_rows(0, 4, matrix);
+  const Positions x = moved(frame, kTurn), still = testing::zeros(x);
   // Without strain, the matrix is the exact Jacobian.
-  for (std::size_t k = 0; k < 4; ++k)
-    for (int axis = 0; axis < 3; ++axis) {
-      constexpr double kStep = 1e-7;
-      Frame low = x, high = x;
-      low[k][axis] -= kStep, high[k][axis] += kStep;
-      const Frame of_low = forces_at(rigidity, low), of_high = forces_at(rigidity, high);
-      matrix.for_each_block(0, 4, [&](Index row, Index column, const Mat3& block) {
-        if (column != static_cast<Index>(k)) return;
-        const Vec3 slope =
-            (of_low[static_cast<std::size_t>(row)] - of_high[static_cast<std::size_t>(row)]) / (2 * kStep);
-        EXPECT_LT((block.col(axis) - slope).norm(), 1e-4 * kMass * kStiffness);
-      });
-    }
+  const Eigen::MatrixXd differences = testing::stiffness_by_differences(rigidity, x, still, 0, 1e-7);
+  EXPECT_LT((testing::stiffness_of(rigidity, x, still, 0) - differences).cwiseAbs().maxCoeff(),
+            1e-4 * kMass * kStiffness);
 }
 
 }  // namespace

@@ -47,11 +47,13 @@ inline Positions random_vectors(std::size_t count, double size, unsigned seed) {
 }
 
 /// Moves every particle by up to `size` [m] along each axis.
-inline Positions crumpled(const mesh::Grid& grid, double size, unsigned seed) {
-  Positions x = flat(grid);
+inline Positions shaken(Positions x, double size, unsigned seed) {
   const Positions noise = random_vectors(x.size(), size, seed);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += noise[i];
   return x;
+}
+inline Positions crumpled(const mesh::Grid& grid, double size, unsigned seed) {
+  return shaken(flat(grid), size, seed);
 }
 
 /// Rotates about an oblique axis and translates.
@@ -85,14 +87,17 @@ struct Place {
     at.rate = rate;
     return at;
   }
+  Positions forces() const {
+    Positions f;
+    for (const auto& of_particle : force) f.push_back(solver::vec3_of(of_particle));
+    return f;
+  }
 };
 
 inline Positions force_of(const Force& force, const Positions& x, const Positions& v, double rate = 0) {
   Place place(x, v);
   force.add(place.evaluation(rate));
-  Positions f;
-  for (const auto& of_particle : place.force) f.push_back(solver::vec3_of(of_particle));
-  return f;
+  return place.forces();
 }
 
 inline Eigen::MatrixXd dense(const solver::BlockMatrix& matrix) {
@@ -107,8 +112,12 @@ inline void complete(const solver::Assembly& assembly, solver::BlockMatrix& matr
   assembly.complete_rows(0, matrix.rows(), matrix);
 }
 
-/// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, including its constant part.
-inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate) {
+/// Forces, and −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, including its constant part.
+struct Linearised {
+  Positions force;
+  Eigen::MatrixXd stiffness;
+};
+inline Linearised linearised(Force& force, const Positions& x, const Positions& v, double rate) {
   std::vector<std::pair<Index, Index>> pairs;
   force.append_couplings(pairs);
   solver::BlockMatrix matrix(static_cast<Index>(x.size()), pairs);
@@ -120,7 +129,10 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
   at.assembly = {assembly, matrix};
   force.add(at);
   complete(assembly, matrix);
-  return dense(matrix);
+  return {place.forces(), dense(matrix)};
+}
+inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate) {
+  return linearised(force, x, v, rate).stiffness;
 }
 
 /// Expects that evaluating ranges of particles, from the last to the first, gives the same forces and blocks as
@@ -172,6 +184,23 @@ inline Eigen::Map<const Eigen::VectorXd> dense(const Positions& x) {
 
 inline double largest(const Positions& x) {
   return dense(x).cwiseAbs().maxCoeff();
+}
+
+/// Expects that the elastic forces are minus the gradient of the energy, by central differences over `step` [m].
+/// `tolerance`: relative to the largest force.
+inline void expect_forces_from_energy(const Force& force, Positions x, double step, double tolerance) {
+  const Positions f = force_of(force, x, zeros(x));
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = x[i][axis];
+      x[i][axis] = place + step;
+      const double above = force.energy(x);
+      x[i][axis] = place - step;
+      const double below = force.energy(x);
+      x[i][axis] = place;
+      // The second term of the tolerance is the rounding error of the energies, divided by the step.
+      EXPECT_NEAR(f[i][axis], -(above - below) / (2 * step), tolerance * largest(f) + 1e-15 * above / step);
+    }
 }
 
 /// −(∂f/∂x + rate ∂f/∂v) by central differences at ε and at half of it, extrapolated so that the error of order ε²
