@@ -82,22 +82,13 @@ void rotate_sample(RotationSpline::Sample& p, const Vec3& w, double b, double db
   p.rotation = e * p.rotation;
 }
 
-std::vector<double> times_of(const PoseTrack& track) {
-  std::vector<double> times;
-  for (const auto& key : track.keys) times.push_back(key.time);
-  return times.empty() ? std::vector{0.0} : times;
-}
-
-std::vector<Vec3> positions_of(const PoseTrack& track, const Pose& rest) {
-  std::vector<Vec3> positions;
-  for (const auto& key : track.keys) positions.push_back(key.pose.position);
-  return positions.empty() ? std::vector{rest.position} : positions;
-}
-
-std::vector<Pose> poses_of(const PoseTrack& track, const Pose& rest) {
-  std::vector<Pose> poses;
-  for (const auto& key : track.keys) poses.push_back(key.pose);
-  return poses.empty() ? std::vector{rest} : poses;
+/// The results of of(key) for all keys; without keys, that for the rest pose.
+template <class Of>
+auto of_each_key(const PoseTrack& track, const Pose& rest, const Of& of) {
+  std::vector<decltype(of(PoseKey()))> results;
+  for (const PoseKey& key : track.keys) results.push_back(of(key));
+  if (results.empty()) results.push_back(of(PoseKey{0, rest}));
+  return results;
 }
 
 }  // namespace
@@ -148,10 +139,10 @@ RotationSpline::Sample RotationSpline::at(double t) const {
 }
 
 Track::Track(const PoseTrack& track, const Pose& rest)
-    : times_(times_of(track)),
-      position_(track.interpolation, times_of(track), positions_of(track, rest)),
-      rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
-      moving_(track.keys.size() > 1) {}
+    : times_(of_each_key(track, rest, [](const PoseKey& key) { return key.time; })),
+      position_(track.interpolation, times_,
+                of_each_key(track, rest, [](const PoseKey& key) { return key.pose.position; })),
+      rotation_(track.interpolation, times_, of_each_key(track, rest, [](const PoseKey& key) { return key.pose; })) {}
 
 // A time within 1e-12 s of a key counts as the time of the key. Otherwise a track that ends at this
 // key and a track with further keys would give poses that differ by rounding errors. Contacts of

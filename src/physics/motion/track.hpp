@@ -81,13 +81,12 @@ class Track {
   PoseSample at(double t) const;
 
   /// Whether the track has more than one key.
-  bool is_moving() const { return moving_; }
+  bool is_moving() const { return times_.size() > 1; }
 
  private:
-  std::vector<double> times_;  // of the keys [s]
+  std::vector<double> times_;  // of the keys [s]; without keys, one time
   Spline<3> position_;
   RotationSpline rotation_;
-  bool moving_;
 };
 
 }  // namespace weft::motion
