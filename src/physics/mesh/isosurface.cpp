@@ -199,13 +199,8 @@ MirroredMesh join_mirror_image(const Mesh& half) {
     joined.image.push_back(place[v]);
   }
   auto& triangles = joined.mesh.topology.triangles;
-  const auto take = [](const std::vector<Index>& list, Index v) { return list[v]; };
-  for (const Triangle& t : half.topology.triangles) {
-    triangles.push_back({take(place, t[0]), take(place, t[1]), take(place, t[2])});
-  }
-  for (const Triangle& t : half.topology.triangles) {
-    triangles.push_back({take(image, t[0]), take(image, t[2]), take(image, t[1])});
-  }
+  for (const Triangle& t : half.topology.triangles) triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
+  for (const Triangle& t : half.topology.triangles) triangles.push_back({image[t[0]], image[t[2]], image[t[1]]});
   return joined;
 }
 

@@ -51,12 +51,9 @@ RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3
   if (triangles.empty() || !is_closed(triangles))
     throw std::invalid_argument("a closed surface whose triangles face the same way");
   Moments moments;
-  const Vec3 origin =
-      vertices[static_cast<std::size_t>(triangles.front()[0])];  // near the body, to keep rounding errors small
+  const Vec3 origin = vertices[triangles.front()[0]];  // near the body, to keep rounding errors small
   for (const Triangle& t : triangles)
-    add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin,
-                    vertices[static_cast<std::size_t>(t[1])] - origin,
-                    vertices[static_cast<std::size_t>(t[2])] - origin, moments);
+    add_tetrahedron(vertices[t[0]] - origin, vertices[t[1]] - origin, vertices[t[2]] - origin, moments);
   if (!(std::abs(moments.volume) > largest_flat_volume(triangles, vertices)))
     throw std::invalid_argument("a surface around some volume");
   const Vec3 middle = moments.first / moments.volume;
