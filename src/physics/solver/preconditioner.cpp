@@ -254,7 +254,7 @@ void Preconditioner<Real>::sum_aggregate_blocks(std::size_t index) {
     std::fill_n(own.begin(), depth, Mat3::Zero());
     std::fill_n(own_scalars.begin(), depth, 0.0);
     const double weight = system_->norm_weights.empty() ? 0 : system_->norm_weights[i];
-    own[0] -= is_free(i) ? Mat3(weight * Mat3::Identity()) : filtered(i, weight * Mat3::Identity(), i);
+    own[0] -= filtered(i, weight * Mat3::Identity(), i);
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s) {
       const Index j = full.columns[s];
       const Eigen::Map<const Mat3> block(matrix.values().data() + 9 * at(s));
@@ -340,7 +340,7 @@ template <class Real>
 typename Preconditioner<Real>::BlocksWithTerms Preconditioner<Real>::lump_terms() const {
   BlocksWithTerms lumped = make_blocks_with_terms();
   const auto add = [&](Index i, double weight, const Mat3& stiffness) {
-    lumped.of(i) += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
+    lumped.of(i) += filtered(i, weight * stiffness, i);
   };
   for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, 1, term.stiffness);
   for_each_term(*system_, [&](const auto& term) {
