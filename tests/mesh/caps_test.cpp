@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "physics/mesh/geometry.hpp"
 #include "physics/mesh/shapes.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::mesh {
 namespace {
@@ -17,24 +17,18 @@ std::vector<Triangle> kept_of(const Mesh& mesh, Test test) {
   return kept;
 }
 
-double volume(const std::vector<Triangle>& triangles, const std::vector<Vec3>& x) {
-  double six = 0;
-  for (const Triangle& t : triangles) six += x[t[0]].dot(x[t[1]].cross(x[t[2]]));
-  return six / 6;
-}
-
 TEST(Caps, CloseASphereThatWasCutTwice) {
   const Mesh sphere = make_sphere(1, 48);
   std::vector<Triangle> kept = kept_of(sphere, [](const Vec3& x) { return std::abs(x.z()) < 0.5; });
   ASSERT_FALSE(inspect(kept, sphere.positions.size()).border.empty());
   close_cuts(sphere.topology.triangles, sphere.positions, kept);
   const TopologyReport report = inspect(kept, sphere.positions.size());
-  EXPECT_TRUE(report.border.empty());
-  EXPECT_TRUE(report.manifold());
+  EXPECT_TRUE(support::watertight(report));
   // The volume of a unit sphere between z = -h and h is 2 π (h - h³/3). The cuts are ragged: h is between 0.5 and 0.61,
   // one row of triangles (7.5 degrees) higher. Tolerance: 48 segments reduce the volume by 1 %.
-  EXPECT_GT(volume(kept, sphere.positions), 0.98 * 2 * 3.1416 * (0.5 - 0.125 / 3));
-  EXPECT_LT(volume(kept, sphere.positions), 2 * 3.1416 * (0.61 - 0.61 * 0.61 * 0.61 / 3));
+  const double volume = support::enclosed_volume(kept, sphere.positions);
+  EXPECT_GT(volume, 0.98 * 2 * 3.1416 * (0.5 - 0.125 / 3));
+  EXPECT_LT(volume, 2 * 3.1416 * (0.61 - 0.61 * 0.61 * 0.61 / 3));
 }
 
 TEST(Caps, LeaveBordersOfTheWholeOpen) {

@@ -1,22 +1,18 @@
 #include "physics/mesh/ply.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 
-#include "core/error.hpp"
 #include "support/ply.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::mesh {
 namespace {
 
-namespace fs = std::filesystem;
 using Triangles = std::vector<std::array<Index, 3>>;
 
 // Values that reveal a change of any bit.
@@ -24,40 +20,14 @@ const std::vector<Vec3> kPositions{
     {0, -0.0, 1.0 / 3}, {1e-310, std::numeric_limits<double>::max(), -1}, {0.1, 0.2, 0.30000000000000004}};
 const Triangles kTriangles{{0, 1, 2}, {2, 1, 0}};
 
-class Ply : public testing::Test {
+class Ply : public support::TestFolder {
  protected:
-  Ply() : folder_(fs::path(testing::TempDir()) / ("weft_ply_" + std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Ply() override { fs::remove_all(folder_); }
-
-  fs::path file() const { return folder_ / "mesh.ply"; }
-
-  static std::string bytes_of(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-
-  void put(const std::string& bytes) const { std::ofstream(file(), std::ios::binary) << bytes; }
-
-  fs::path folder_;
+  std::filesystem::path file() const { return folder_ / "mesh.ply"; }
 };
-
-/// Text of the error, preceded by its exit code.
-template <class Action>
-std::string error_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return std::to_string(static_cast<int>(error.code())) + " " + error.what();
-  }
-  return "none";
-}
 
 TEST_F(Ply, FilesHoldLittleEndianDoublesAndTriangles) {
   write_ply(file(), kPositions, kTriangles);
-  const std::string bytes = bytes_of(file());
+  const std::string bytes = support::read_bytes(file());
   const std::string header =
       "ply\nformat binary_little_endian 1.0\ncomment Weft, metres\nelement vertex 3\nproperty double x\n"
       "property double y\nproperty double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
@@ -74,7 +44,7 @@ TEST_F(Ply, HasValuesOfVerticesUnderTheirName) {
   const std::vector<Vec2> uv{{0, 0}, {0.5, 0}, {0, 0.25}};
   const std::vector<float> strain{0.01F, 0.5F, 0.125F};
   write_ply(file(), kPositions, kTriangles, {.uv = uv, .values = strain, .values_name = "strain"});
-  const std::string bytes = bytes_of(file());
+  const std::string bytes = support::read_bytes(file());
   const std::string names =
       "property double z\nproperty float s\nproperty float t\nproperty float strain\nelement face";
   ASSERT_NE(bytes.find(names), std::string::npos) << bytes.substr(0, 300);
@@ -105,16 +75,16 @@ TEST_F(Ply, OfNothingIsAFileToo) {
 }
 
 TEST_F(Ply, ReplacesAnOlderFileAndLeavesNothingElse) {
-  put("older");
+  support::write_bytes(file(), "older");
   write_ply(file(), kPositions, kTriangles);
   EXPECT_EQ(support::read_ply(file()).triangles, kTriangles);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+  EXPECT_EQ(files().size(), 1U);
 }
 
 TEST_F(Ply, ToAPlaceThatCannotBeWrittenIsAnOutputError) {
-  put("a file where a folder is needed");
-  const std::string text = error_of([&] { write_ply(file() / "mesh.ply", kPositions, kTriangles); });
-  EXPECT_EQ(text.substr(0, 2), "6 ") << text;
+  support::write_bytes(file(), "a file where a folder is needed");
+  support::expect_error(ExitCode::output_failed, "mesh.ply",
+                        [&] { write_ply(file() / "mesh.ply", kPositions, kTriangles); });
 }
 
 }  // namespace
