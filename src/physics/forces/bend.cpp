@@ -143,11 +143,9 @@ void Bend::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double
   for_all([&](const auto& d) {
     const VecLanes of_x = weighted_sum(d, x), of_v = weighted_sum(d, v);
     for (std::size_t l = 0; l < 4; ++l) {
-      const Vec3 velocity(of_v.x[l], of_v.y[l], of_v.z[l]);
-      Vec3 c(of_x.x[l], of_x.y[l], of_x.z[l]);
-      if (rate > 0) c -= velocity / rate;
-      const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity));
-      const Mat3 stiffness = d.area[l] * (rigidity_ * Mat3::Identity() + rate * tangent * c * c.transpose());
+      const Mat3 damping =
+          damping_.stiffness({of_x.x[l], of_x.y[l], of_x.z[l]}, {of_v.x[l], of_v.y[l], of_v.z[l]}, rate);
+      const Mat3 stiffness = d.area[l] * (rigidity_ * Mat3::Identity() + damping);
       for (std::size_t a = 0; a < d.particles.size(); ++a)
         for (std::size_t b = 0; b < d.particles.size(); ++b)
           jacobian.add(jacobian.slot(d.particles[a][l], d.particles[b][l]), d.weights[a][l] * d.weights[b][l],

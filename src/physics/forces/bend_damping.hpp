@@ -62,8 +62,8 @@ class BendDamping {
     const Scalar smooth_sq = rate * rate + kStickRate * kStickRate * residual_sq;
     return viscosity_ / (c_sq + kFlatCurvature * kFlatCurvature) + friction_ / sqrt(residual_sq * smooth_sq);
   }
-  /// The derivative of the moment with respect to κ̇ is tangent(‖c‖², c·κ̇) c cᵀ.
-  double tangent(double c_sq, double rate) const;
+  /// Exact derivative of the moment with respect to κ̇, times `rate`, at the curvature κ and its rate of change κ̇.
+  Mat3 stiffness(const Vec3& curvature, const Vec3& change, double rate) const;
 
  private:
   double viscosity_, friction_;

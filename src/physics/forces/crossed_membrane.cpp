@@ -11,8 +11,6 @@ using solver::PackedBlock;
 
 namespace {
 
-// Lower bound of length / rest length of a thread. It keeps the matrix finite.
-constexpr double kCollapsed = 1e-12;
 // θ: fraction of ⟨g²⟩ that enters the lengths. With θ = 1, a cell that bends along one direction
 // tends to become narrower along the other direction; its neighbours and clamps resist this.
 // (Measured: errors of the tip position of a cantilever of 16 cells, with stretch stiffnesses of
@@ -220,7 +218,7 @@ CrossedMembrane::CellWeights CrossedMembrane::cell_weights_of(const Cell& cell, 
 // Length / rest length of a triangle's threads, including the terms of the cell's height and skew.
 Vec2 CrossedMembrane::lengths_of(const Gradient& s, const CellWeights& cell_weights, const State& state) {
   const Vec2 added = state.height * state.height * cell_weights.of_height + state.skew * cell_weights.of_skew;
-  return (Vec2(s.u.squaredNorm(), s.v.squaredNorm()) + added).cwiseSqrt().cwiseMax(kCollapsed);
+  return (Vec2(s.u.squaredNorm(), s.v.squaredNorm()) + added).cwiseSqrt().cwiseMax(kMinStretch);
 }
 
 Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& state) const {

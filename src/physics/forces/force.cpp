@@ -4,6 +4,15 @@
 
 namespace weft::forces {
 
+Mat3 spring_stiffness(const Vec3& d, const Vec3& w, double rest_length, double elasticity, double viscosity,
+                      double rate) {
+  const double length = std::max(d.norm(), kMinStretch * rest_length);
+  const Vec3 n = d / length;
+  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+  return (elasticity + rate * viscosity) * along + elasticity * (1 - rest_length / length) * across +
+         viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
+}
+
 double Membrane::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
   for_each_strain(x, [&](double strain, std::span<const Index>) { largest = std::max(largest, strain); });

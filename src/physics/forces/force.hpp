@@ -118,6 +118,16 @@ class Force {
   virtual void set_held(std::span<const char> /*held*/) {}
 };
 
+/// Lower bound of length / rest length of a piece of thread or rope. It keeps the stiffness of a piece of length 0,
+/// which has no direction, finite.
+inline constexpr double kMinStretch = 1e-12;
+
+/// Exact −(∂f/∂x + rate ∂f/∂v) of a spring with viscosity [N/m], for Force::add_jacobian(). `d`, `w`: its vector [m]
+/// and the relative velocity of its ends [m/s]; `elasticity`, `viscosity`: force per lengthening [N/m] and per rate of
+/// lengthening [N·s/m].
+Mat3 spring_stiffness(const Vec3& d, const Vec3& w, double rest_length, double elasticity, double viscosity,
+                      double rate);
+
 /// A force against strain in the plane of a sheet or along a rope. It also measures this strain.
 class Membrane : public Force {
  public:

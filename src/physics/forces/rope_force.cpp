@@ -6,10 +6,6 @@
 namespace weft::forces {
 namespace {
 
-// Lower bound of a piece's length, relative to its rest length. The bound keeps the matrix finite: a piece of length 0
-// has no direction.
-constexpr double kMinPieceStretch = 1e-12;
-
 template <class Points>
 Vec3 vec_at(const Points& x, Index i) {
   return solver::vec3_of(x[at(i)]);
@@ -105,7 +101,7 @@ void RopeForce::add(const Evaluation& at) const {
 void RopeForce::add_stretch(const Piece& piece, const Evaluation& at) const {
   const Index a = piece.particles[0], b = piece.particles[1];
   const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
-  const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
+  const double length = std::max(d.norm(), kMinStretch * piece.rest);
   const Vec3 n = d / length;
   double tension = piece.elasticity * (length - piece.rest);
   if (piece.viscosity > 0)
@@ -174,21 +170,13 @@ void RopeForce::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, d
                              solver::BlockMatrix& jacobian) const {
   for (const Piece& piece : pieces_) {
     const auto [a, b] = piece.particles;
-    const Vec3 d = x[at(b)] - x[at(a)], w = v[at(b)] - v[at(a)];
-    const double length = std::max(d.norm(), kMinPieceStretch * piece.rest);
-    const Vec3 n = d / length;
-    const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
-    const Mat3 k = (piece.elasticity + rate * piece.viscosity) * along +
-                   piece.elasticity * (1 - piece.rest / length) * across +
-                   piece.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
-    jacobian.add_spring(a, b, k);
+    jacobian.add_spring(a, b,
+                        spring_stiffness(x[at(b)] - x[at(a)], v[at(b)] - v[at(a)], piece.rest, piece.elasticity,
+                                         piece.viscosity, rate));
   }
   for (const BendElement& bend : bends_) {
-    const Vec3 velocity = second_difference(bend, v);
-    Vec3 c = second_difference(bend, x);
-    if (rate > 0) c -= velocity / rate;
-    const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity));
-    const Mat3 stiffness = bend.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
+    const Mat3 damping = damping_.stiffness(second_difference(bend, x), second_difference(bend, v), rate);
+    const Mat3 stiffness = bend.length * (parameters_.bend * Mat3::Identity() + damping);
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
         jacobian.add(jacobian.slot(bend.particles[a], bend.particles[b]), bend.weights[a] * bend.weights[b], stiffness);

@@ -1,6 +1,5 @@
 #include "physics/forces/stretch.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace weft::forces {
@@ -64,8 +63,7 @@ void Stretch::add(const Evaluation& at) const {
   ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
     const Edges& edges = packs_[p];
     const VecLanes d = gather(at.x, edges.j) - gather(at.x, edges.i);
-    // An edge of length 0 has no direction; the lower bound of its length keeps the matrix finite.
-    const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
+    const Lanes length = max(sqrt(dot(d, d)), kMinStretch * edges.rest_length);
     const VecLanes n = 1 / length * d;
     Lanes tension = edges.elasticity * (length - edges.rest_length);
     if (viscous_)
@@ -97,14 +95,9 @@ void Stretch::add(const Evaluation& at) const {
 void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                            solver::BlockMatrix& jacobian) const {
   for_each_edge([&](const Edge& edge) {
-    const Vec3 d = x[edge.j] - x[edge.i], w = v[edge.j] - v[edge.i];
-    const double length = std::max(d.norm(), 1e-12 * edge.rest_length);
-    const Vec3 n = d / length;
-    const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
-    const Mat3 k = (edge.elasticity + rate * edge.viscosity) * along +
-                   (edge.elasticity * (1 - edge.rest_length / length)) * across +
-                   edge.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
-    jacobian.add_spring(edge.i, edge.j, k);
+    jacobian.add_spring(edge.i, edge.j,
+                        spring_stiffness(x[edge.j] - x[edge.i], v[edge.j] - v[edge.i], edge.rest_length,
+                                         edge.elasticity, edge.viscosity, rate));
   });
 }
 

@@ -11,9 +11,6 @@ namespace {
 
 // Factors of the parts uu, vv and uv of the energy: the sum over ab counts uv twice, as uv and vu.
 const Vec3 kMultiplicity(1, 1, 2);
-// Smallest norm of the rest curvature of a triangle, times the √ of its area (without unit).
-// Smaller values are rounding errors and become 0.
-constexpr double kMinRestCurvature = 1e-9;
 
 /// The plane of a triangle: its unit normal, and the gradients of the barycentric coordinates.
 struct Plane {
@@ -44,7 +41,7 @@ Vec3 extract_rest_curvature(CurvatureStencil& stencil, double area, const std::a
   Mat3 curved = Mat3::Zero();
   for (std::size_t k = 0; k < stencil.vertices.size(); ++k)
     curved += rest[stencil.vertices[k]] * stencil.weights[k].transpose();
-  if (curved.norm() * std::sqrt(area) < kMinRestCurvature) return Vec3::Zero();
+  if (curved.norm() * std::sqrt(area) < kRoundoff) return Vec3::Zero();
   const std::span<const Index> corners(stencil.vertices);
   const Vec3 normal = triangle_plane(corners_of(corners, rest)).normal;
   Eigen::Matrix2d sides;
@@ -295,11 +292,8 @@ void TriangleBend::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v
       jacobian.add(jacobian.slot(particle[a], particle[b]), block);
     };
     for (int k = 0; k < 3; ++k) {
-      Vec3 c = curved.col(k);
-      if (rate > 0) c -= velocity.col(k) / rate;
-      const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity.col(k)));
-      const Mat3 stiffness =
-          element.area * kMultiplicity[k] * (rigidity_ * Mat3::Identity() + rate * tangent * c * c.transpose());
+      const Mat3 stiffness = element.area * kMultiplicity[k] *
+                             (rigidity_ * Mat3::Identity() + damping_.stiffness(curved.col(k), velocity.col(k), rate));
       for (std::size_t a = 0; a < particle.size(); ++a)
         for (std::size_t b = 0; b < particle.size(); ++b)
           add_block(a, b, weights_[element.begin + a][k] * weights_[element.begin + b][k] * stiffness);

@@ -20,9 +20,6 @@ constexpr int kMaxRings = 3;
 // (across_opposite). A larger correction makes the slope a small difference of large numbers; fit_quadratic() then adds
 // a ring.
 constexpr double kMaxCorrection = 1;
-// Tolerance for rounding errors: of moments (see correct_weights), whose coordinates are about 1,
-// and of weights times the area of their triangle.
-constexpr double kMomentTolerance = 1e-9;
 
 /// Derivative of a function at the middle of an edge, along the outward normal of the edge's first triangle, as a
 /// weighted sum of the function's values at vertices [1/m].
@@ -117,7 +114,7 @@ Eigen::VectorXd correct_weights(const Eigen::VectorXd& weights, const Eigen::Mat
                                 const Eigen::VectorXd& wanted) {
   const Eigen::VectorXd moment_error = wanted - moments * weights;
   const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(moment_error);
-  if ((moments * correction - moment_error).norm() < kMomentTolerance &&
+  if ((moments * correction - moment_error).norm() < kRoundoff &&
       correction.norm() < kMaxCorrection * std::numbers::sqrt2)
     return weights + correction;
   return {};
@@ -297,7 +294,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::
     // Omits vertices whose weights cancel by symmetry up to rounding, unless pins may change the weights.
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
-          (depends_on_pins || weight.norm() * area > kMomentTolerance))
+          (depends_on_pins || weight.norm() * area > kRoundoff))
         append(vertex, weight);
   }
   return stencils;

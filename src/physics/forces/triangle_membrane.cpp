@@ -11,9 +11,6 @@ namespace weft::forces {
 
 namespace {
 
-// Lower bound of ‖s_u‖ and ‖s_v‖. It keeps the stiffness of a thread of length 0, which has no direction, finite.
-constexpr double kMinStretch = 1e-12;
-
 // ‖s‖, at least kMinStretch
 Lanes length_of(const VecLanes& s) {
   return max(sqrt(dot(s, s)), lanes_of(kMinStretch));

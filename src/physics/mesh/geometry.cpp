@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace weft::mesh {
-namespace {
-
-// Volume up to which a surface counts as flat, relative to its area to the power 3/2. This ratio is
-// 0.09 for a sphere, and for a flat surface about 1e-16, because of rounding.
-constexpr double kFlatVolume = 1e-9;
-
-}  // namespace
 
 double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions) {
   double sum = 0;
@@ -19,7 +12,9 @@ double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> p
 }
 
 double largest_flat_volume(std::span<const Triangle> triangles, std::span<const Vec3> positions) {
-  return kFlatVolume * std::pow(surface_area(triangles, positions), 1.5);
+  // The ratio of the volume to the area to the power 3/2 is 0.09 for a sphere, and for a flat surface about 1e-16,
+  // because of rounding.
+  return kRoundoff * std::pow(surface_area(triangles, positions), 1.5);
 }
 
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals) {
