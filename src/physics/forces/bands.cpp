@@ -39,9 +39,8 @@ void Bands::interpolate_rest_shape(double progress) {
 }
 
 void Bands::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
-  for (const auto& [p, weights, stiffness, scalars] : bends_)
-    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(p[k], p[(k + 1) % 3]);
+  for (const Piece& piece : pieces_) append_pairs_of(piece.particles, pairs);
+  for (const Bend& bend : bends_) append_pairs_of(bend.particles, pairs);
 }
 
 void Bands::attach(const solver::Assembly& assembly) {

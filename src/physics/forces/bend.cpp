@@ -92,15 +92,9 @@ void Bend::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
 }
 
 void Bend::attach(const solver::Assembly& assembly) {
-  const auto find_scalars = [&](auto& packs) {
-    for (auto& d : packs)
-      for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a)
-        for (std::size_t b = a + 1; b < d.particles.size(); ++b, ++pair)
-          for (std::size_t l = 0; l < 4; ++l)
-            d.scalars[pair][l] = assembly.scalar(d.particles[a][l], d.particles[b][l]);
-  };
-  find_scalars(lines_.packs);
-  find_scalars(cells_.packs);
+  const auto scalar = [&](Index i, Index j) { return assembly.scalar(i, j); };
+  for (auto& lines : lines_.packs) find_pairs(lines.particles, lines.scalars, scalar);
+  for (auto& cells : cells_.packs) find_pairs(cells.particles, cells.scalars, scalar);
 }
 
 void Bend::partition(std::span<const Index> bounds) {

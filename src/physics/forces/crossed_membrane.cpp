@@ -59,9 +59,7 @@ CrossedMembrane::CrossedMembrane(const mesh::Sheet& sheet, Index first, const St
 }
 
 void CrossedMembrane::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Cell& cell : cells_)
-    for (std::size_t a = 0; a < 5; ++a)
-      for (std::size_t b = a + 1; b < 5; ++b) pairs.emplace_back(cell.particles[a], cell.particles[b]);
+  for (const Cell& cell : cells_) append_pairs_of(cell.particles, pairs);
 }
 
 void CrossedMembrane::attach(const solver::Assembly& assembly) {

@@ -4,6 +4,11 @@
 
 namespace weft::forces {
 
+void append_pairs_of(std::span<const Index> particles, std::vector<std::pair<Index, Index>>& pairs) {
+  for (std::size_t a = 0; a < particles.size(); ++a)
+    for (std::size_t b = a + 1; b < particles.size(); ++b) pairs.emplace_back(particles[a], particles[b]);
+}
+
 Mat3 spring_stiffness(const Vec3& d, const Vec3& w, double rest_length, double elasticity, double viscosity,
                       double rate) {
   const double length = std::max(d.norm(), kMinStretch * rest_length);

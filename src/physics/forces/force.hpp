@@ -118,6 +118,9 @@ class Force {
   virtual void set_held(std::span<const char> /*held*/) {}
 };
 
+/// Appends all pairs of these particles, for Force::append_couplings().
+void append_pairs_of(std::span<const Index> particles, std::vector<std::pair<Index, Index>>& pairs);
+
 /// Lower bound of length / rest length of a piece of thread or rope. It keeps the stiffness of a piece of length 0,
 /// which has no direction, finite.
 inline constexpr double kMinStretch = 1e-12;

@@ -122,6 +122,15 @@ inline void add_scalars(const solver::AssemblyRows& assembly, const IndexLanes& 
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
+/// Sets found[pair][lane] to find(i, j) for each pair 01, 02, ... 12, ... of the particles of an element.
+template <std::size_t Count, class Find>
+void find_pairs(const std::array<IndexLanes, Count>& particles, std::array<IndexLanes, Count*(Count - 1) / 2>& found,
+                const Find& find) {
+  for (std::size_t a = 0, pair = 0; a < Count; ++a)
+    for (std::size_t b = a + 1; b < Count; ++b, ++pair)
+      for (std::size_t l = 0; l < 4; ++l) found[pair][l] = find(particles[a][l], particles[b][l]);
+}
+
 /// Calls body(index, lane, is_used) for the four lanes of pack number `pack` of `count` elements. In the last pack,
 /// lanes after the last element repeat it, with is_used = false.
 template <class Body>

@@ -73,9 +73,8 @@ bool RopeForce::set_length_ratio(double ratio) {
 }
 
 void RopeForce::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
-  for (const BendElement& bend : bends_)
-    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(bend.particles[k], bend.particles[(k + 1) % 3]);
+  for (const Piece& piece : pieces_) append_pairs_of(piece.particles, pairs);
+  for (const BendElement& bend : bends_) append_pairs_of(bend.particles, pairs);
 }
 
 void RopeForce::attach(const solver::Assembly& assembly) {

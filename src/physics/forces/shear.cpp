@@ -53,18 +53,12 @@ void Shear::for_each_cell(const Body& body) const {
 }
 
 void Shear::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for_each_cell([&](const Cell& cell) {
-    for (int a = 0; a < 4; ++a)
-      for (int b = a + 1; b < 4; ++b) pairs.emplace_back(cell.corners[a], cell.corners[b]);
-  });
+  for_each_cell([&](const Cell& cell) { append_pairs_of(cell.corners, pairs); });
 }
 
 void Shear::attach(const solver::Assembly& assembly) {
   for (Cells& cells : packs_)
-    for (std::size_t lane = 0; lane < 4; ++lane)
-      for (std::size_t a = 0, pair = 0; a < 4; ++a)
-        for (std::size_t b = a + 1; b < 4; ++b, ++pair)
-          cells.blocks[pair][lane] = assembly.block(cells.corners[a][lane], cells.corners[b][lane]);
+    find_pairs(cells.corners, cells.blocks, [&](Index i, Index j) { return assembly.block(i, j); });
 }
 
 Shear::Strain Shear::strain(const Cell& cell, std::span<const Vec3> x) {

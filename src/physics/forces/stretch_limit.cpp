@@ -80,13 +80,8 @@ void StretchLimit::copy_rest_shape(const TriangleMembrane& membrane) {
 }
 
 void StretchLimit::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  const auto couple_all = [&](const auto& pieces) {
-    for (const auto& piece : pieces)
-      for (std::size_t a = 0; a < piece.corners; ++a)
-        for (std::size_t b = a + 1; b < piece.corners; ++b) pairs.emplace_back(piece.particles[a], piece.particles[b]);
-  };
-  couple_all(threads_);
-  couple_all(crossings_);
+  for (const Thread& thread : threads_) append_pairs_of(std::span(thread.particles).first(thread.corners), pairs);
+  for (const Crossing& c : crossings_) append_pairs_of(std::span(c.particles).first(c.corners), pairs);
 }
 
 template <class Piece, class OfCorners>

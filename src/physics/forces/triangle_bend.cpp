@@ -130,9 +130,7 @@ TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::si
 }
 
 void TriangleBend::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Element& element : elements_)
-    for (std::size_t a = element.begin; a < element.end; ++a)
-      for (std::size_t b = a + 1; b < element.end; ++b) pairs.emplace_back(particles_[a], particles_[b]);
+  for (const Element& element : elements_) append_pairs_of(particles(element), pairs);
 }
 
 // False if rest curvature needs full blocks.

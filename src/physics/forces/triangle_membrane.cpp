@@ -157,17 +157,11 @@ void TriangleMembrane::copy_rest_state(const TriangleMembrane& other) {
 }
 
 void TriangleMembrane::append_couplings(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Element& e : elements_)
-    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(e.particles[k], e.particles[(k + 1) % 3]);
+  for (const Element& e : elements_) append_pairs_of(e.particles, pairs);
 }
 
 void TriangleMembrane::attach(const solver::Assembly& assembly) {
-  for (Triangles& t : packs_)
-    for (std::size_t l = 0; l < 4; ++l) {
-      t.blocks[0][l] = assembly.block(t.corners[0][l], t.corners[1][l]);
-      t.blocks[1][l] = assembly.block(t.corners[0][l], t.corners[2][l]);
-      t.blocks[2][l] = assembly.block(t.corners[1][l], t.corners[2][l]);
-    }
+  for (Triangles& t : packs_) find_pairs(t.corners, t.blocks, [&](Index i, Index j) { return assembly.block(i, j); });
 }
 
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
