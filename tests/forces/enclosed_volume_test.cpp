@@ -64,7 +64,6 @@ TEST(EnclosedVolume, OfAnOpenTubeCountsAsClosedByFlatLids) {
     }
   const double base = 0.5 * kAround * kSphereRadius * kSphereRadius * std::sin(2 * std::numbers::pi / kAround);
   EXPECT_NEAR(volume_of(tube), base * kHeight, 1e-16);
-  EXPECT_EQ(EnclosedVolume(tube.topology.triangles, tube.positions).openings(), 2u);
 }
 
 TEST(EnclosedVolume, HasAsDerivativeForcesThatBalanceAndAreItsCentralDifferences) {
@@ -72,7 +71,6 @@ TEST(EnclosedVolume, HasAsDerivativeForcesThatBalanceAndAreItsCentralDifferences
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)  // makes the mesh asymmetric
     mesh.positions[i] += 0.02 * Vec3(std::sin(3.0 * i), std::sin(5.0 * i + 1), std::sin(7.0 * i + 2));
   const EnclosedVolume volume(mesh.topology.triangles, mesh.positions);
-  ASSERT_EQ(volume.openings(), 1u);
   std::vector<Vec3> x = mesh.positions, gradient(x.size()), unused(x.size());
   volume.evaluate(x, gradient);
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();

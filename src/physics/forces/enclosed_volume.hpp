@@ -31,9 +31,6 @@ class EnclosedVolume {
   /// Whether this volume [m³] is zero up to rounding, or negative.
   bool is_flat(double volume) const { return volume <= flat_; }
 
-  /// Number of openings of the surface.
-  std::size_t openings() const { return borders_.size(); }
-
  private:
   std::vector<Index> star_begin_;            // per vertex: its first entry in star_; last: the size of star_
   std::vector<std::array<Index, 2>> star_;   // the two other corners of each triangle of the vertex star

@@ -56,7 +56,6 @@ EdgeSet collect_edges(std::span<const Triangle> triangles) {
       set.of_triangle[side->triangle][side->corner] = edge;
       if (side - first < 2) entry.triangles[side - first] = side->triangle;
     }
-    if (last - first > 2) set.non_manifold.push_back(edge);
     set.edges.push_back(entry);
   });
   return set;

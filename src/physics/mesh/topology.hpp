@@ -16,14 +16,13 @@ using Quad = std::array<Index, 4>;
 /// An undirected edge and the triangles on its two sides.
 struct Edge {
   std::array<Index, 2> vertices{};         ///< lower index first
-  std::array<Index, 2> triangles{-1, -1};  ///< in ascending order; the second is -1 if the edge lies on the border
+  std::array<Index, 2> triangles{-1, -1};  ///< the first two in ascending order; the second is -1 on the border
 };
 
 /// All edges of a triangle list, sorted by their vertex pair.
 struct EdgeSet {
   std::vector<Edge> edges;
   std::vector<std::array<Index, 3>> of_triangle;  ///< indices into `edges`; edge k joins corners k and (k + 1) % 3
-  std::vector<Index> non_manifold;                ///< edges with more than two triangles; Edge stores the first two
 };
 
 /// Collects each edge once. Vertex indices must be in range (see inspect()). Time O(n log n).
