@@ -181,6 +181,20 @@ inline LinearSystem system_of_parts(Random& random) {
   return system;
 }
 
+struct Solved {
+  std::vector<Vec3> x;
+  LinearReport report;
+};
+/// A solve by a new solver.
+inline Solved solved(const LinearSystem& system, std::span<const Vec3> b, const LinearGoal& goal,
+                     int max_iterations = 1000, const Directions& directions = {}) {
+  ConjugateGradient cg;
+  cg.prepare(system);
+  std::vector<Vec3> x(b.size());
+  const LinearReport report = cg.solve(b, goal, max_iterations, x, directions);
+  return {x, report};
+}
+
 /// √(bᵀ P⁻¹ b) with the preconditioner P, for the components of b in the free directions.
 inline double norm(ConjugateGradient& cg, std::vector<Vec3> b) {
   cg.filter(b);

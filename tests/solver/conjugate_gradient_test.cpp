@@ -47,10 +47,8 @@ TEST(ConjugateGradient, WithAggregatesAgreesWithTheDirectSolutionUnderContactsAn
     LinearSystem system = testing::random_system(kRows, 30, random);
     cut_groups(system, counts);
     const auto b = random.vectors(kRows);
-    std::vector<Vec3> x(kRows);
-    ConjugateGradient cg;
-    cg.prepare(system);
-    EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
+    const auto [x, report] = testing::solved(system, b, {1e-13});
+    EXPECT_TRUE(report.converged);
     const Eigen::VectorXd expected = direct_solution(system, b);
     // Tolerance: that of the previous test, times ten for the rounding errors of more levels.
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
@@ -105,11 +103,9 @@ TEST(ConjugateGradient, AggregatesReduceTheIterationsOnAStiffChain) {
   for (const auto& [i, j] : links) system.matrix.add_spring(i, j, 1e6 * Mat3::Identity());
   const auto iterations = [&](const std::vector<Index>& counts) {
     cut_groups(system, counts);
-    std::vector<Vec3> b(kRows, Vec3::Zero()), x(kRows);
+    std::vector<Vec3> b(kRows, Vec3::Zero());
     b[0] = Vec3(0, 0, 1);
-    ConjugateGradient cg;
-    cg.prepare(system);
-    const LinearReport report = cg.solve(b, {2e-3}, 10000, x);
+    const LinearReport report = testing::solved(system, b, {2e-3}, 10000).report;
     EXPECT_TRUE(report.converged);
     return report.iterations;
   };
@@ -126,10 +122,8 @@ TEST(ConjugateGradient, WithoutConstraintsAgreesWithTheDirectSolution) {
   LinearSystem system = testing::random_system(30, 0, random);
   system.constraints.clear();
   const auto b = random.vectors(30);
-  std::vector<Vec3> x(30);
-  ConjugateGradient cg;
-  cg.prepare(system);
-  EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
+  const auto [x, report] = testing::solved(system, b, {1e-13});
+  EXPECT_TRUE(report.converged);
   const Eigen::VectorXd expected = testing::dense(system.matrix).ldlt().solve(testing::flat(b));
   EXPECT_LT((testing::flat(x) - expected).norm(), 1e-10 * expected.norm());
 }
@@ -159,11 +153,7 @@ TEST(ConjugateGradient, PinnedParticlesStayAtExactlyZero) {
 TEST(ConjugateGradient, ObliqueConstraintsAreKeptToRounding) {
   Random random(4);
   const LinearSystem system = testing::random_system(40, 30, random);
-  const auto b = random.vectors(40);
-  std::vector<Vec3> x(40);
-  ConjugateGradient cg;
-  cg.prepare(system);
-  cg.solve(b, {1e-12}, 1000, x);
+  const std::vector<Vec3> x = testing::solved(system, random.vectors(40), {1e-12}).x;
   for (const ParticleConstraint& c : system.constraints) {
     const Vec3& entry = x[c.particle];
     // Tolerance: each of about 100 iterations adds a rounding error.
@@ -244,11 +234,8 @@ TEST(ConjugateGradient, ErrorsAreMeasuredInTheMassWeightedNorm) {
     system.matrix.add(system.matrix.diagonal(i), (i < 20 ? 1e8 : 1.0) * (Mat3::Identity() + spread));
   }
   system.norm_weights.assign(kRows, 1);
-  const auto b = random.vectors(kRows);
-  std::vector<Vec3> x(kRows);
-  ConjugateGradient cg;
-  cg.prepare(system);
-  const LinearReport report = cg.solve(b, {}, 1, x);  // the matrix is block-diagonal: one iteration
+  // The matrix is block-diagonal: one iteration.
+  const auto [x, report] = testing::solved(system, random.vectors(kRows), {}, 1);
   EXPECT_LE(report.errors[0], testing::flat(x).norm() * (1 + 1e-12));
   EXPECT_GT(report.errors[0], 0.99 * testing::flat(x).norm());
 }
@@ -368,10 +355,7 @@ TEST(ConjugateGradient, TranslationIsExactInSinglePrecisionHoweverStiffTheThread
   system.diagonal_terms.clear();
   // The blocks of each row sum to the weight, so this force moves all particles by (1, 2, 3).
   const std::vector<Vec3> b(system.norm_weights.size(), Vec3(1, 2, 3));
-  std::vector<Vec3> x(b.size());
-  ConjugateGradient cg;
-  cg.prepare(system);
-  const LinearReport report = cg.solve(b, {0.1}, 100, x, {.start = b});
+  const auto [x, report] = testing::solved(system, b, {0.1}, 100, {.start = b});
   EXPECT_LE(report.iterations, 1);
   // Tolerance: single precision rounds results by 6e-8 of their size. Sums of blocks of size 1e6, in double precision,
   // have a rounding error of 1e-10.
@@ -412,11 +396,7 @@ TEST(ConjugateGradient, NeedsNoMoreIterationsThanThereAreEigenvalues) {
     system.matrix.add_scalar(system.matrix.slot(j, i), -1);
   }
   Random random(9);
-  const auto b = random.vectors(kRows);
-  std::vector<Vec3> x(kRows);
-  ConjugateGradient cg;
-  cg.prepare(system);
-  const LinearReport report = cg.solve(b, {1e-8}, 1000, x);
+  const LinearReport report = testing::solved(system, random.vectors(kRows), {1e-8}).report;
   EXPECT_TRUE(report.converged);
   // The error of an iterate is known only after further iterations, here about a fifth of all.
   EXPECT_LE(report.iterations, kRows + kRows / 4);
@@ -443,10 +423,7 @@ TEST(ConjugateGradient, NegativeCurvatureIsReported) {
   system.matrix.add_scalar(system.matrix.slot(0, 1), 2);
   system.matrix.add_scalar(system.matrix.slot(1, 0), 2);
   const std::vector<Vec3> b{Vec3(1, 0, 0), Vec3(-1, 0, 0)};
-  std::vector<Vec3> x(2);
-  ConjugateGradient cg;
-  cg.prepare(system);
-  const LinearReport report = cg.solve(b, {1e-6}, 10, x);
+  const LinearReport report = testing::solved(system, b, {1e-6}, 10).report;
   EXPECT_FALSE(report.definite);
   EXPECT_FALSE(report.converged);
 }
@@ -461,10 +438,8 @@ TEST(ConjugateGradient, GivesTheSameBitsOnAnyNumberOfThreads) {
   std::vector<LinearReport> reports;
   for (int threads : {1, 2, 3, 2}) {
     set_thread_count(threads);
-    std::vector<Vec3> x(kRows);
-    ConjugateGradient cg;
-    cg.prepare(system);
-    reports.push_back(cg.solve(b, {1e-6}, 200, x));
+    const auto [x, report] = testing::solved(system, b, {1e-6}, 200);
+    reports.push_back(report);
     solutions.push_back(x);
   }
   set_thread_count(0);

@@ -28,10 +28,8 @@ TEST(RankOneTerms, AreSolvedExactlyHoweverStiffTheyAre) {
       add_term(system, 0, kRows, stiffness, random);
       add_term(system, 0, kRows, 10 * stiffness, random);
       const auto b = random.vectors(kRows);
-      std::vector<Vec3> x(kRows);
-      ConjugateGradient cg;
-      cg.prepare(system);
-      EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
+      const auto [x, report] = testing::solved(system, b, {1e-13});
+      EXPECT_TRUE(report.converged);
       const Eigen::VectorXd expected = direct_solution(system, b);
       EXPECT_LT((flat(x) - expected).norm(), 1e-9 * expected.norm()) << stiffness;  // measured: 1e-10
     }
@@ -44,11 +42,7 @@ TEST(RankOneTerms, TakeNoMoreIterationsWhereTheyAreStiff) {
     LinearSystem system = testing::random_system(kRows, 100, random);
     cut_groups(system, {50, 12});
     if (stiffness > 0) add_term(system, 0, kRows, stiffness, random);
-    const auto b = random.vectors(kRows);
-    std::vector<Vec3> x(kRows);
-    ConjugateGradient cg;
-    cg.prepare(system);
-    const LinearReport report = cg.solve(b, {1e-3}, 1000, x);
+    const LinearReport report = testing::solved(system, random.vectors(kRows), {1e-3}).report;
     EXPECT_TRUE(report.converged && report.definite);
     return report.iterations;
   };
