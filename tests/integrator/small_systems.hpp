@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -31,7 +32,7 @@ class Particles : public System {
   }
   void linearise(const StagePoint& at, int, std::span<Vec3> force) override {
     forces(at, force);
-    system_.matrix.set_zero();
+    std::ranges::fill(system_.matrix.values(), 0.0);
     for (std::size_t i = 0; i < masses_.size(); ++i) {
       const solver::Slot slot = system_.matrix.diagonal(static_cast<Index>(i));
       system_.matrix.add_scalar(slot, at.rate * at.rate * masses_[i]);
@@ -105,7 +106,7 @@ class Saddle : public System {
   }
   void linearise(const StagePoint& at, int, std::span<Vec3> force) override {
     forces(at, force);
-    system_.matrix.set_zero();
+    std::ranges::fill(system_.matrix.values(), 0.0);
     for (Index i : {0, 1}) {
       system_.matrix.add_scalar(system_.matrix.diagonal(i), at.rate * at.rate);
       system_.matrix.add_scalar(system_.matrix.slot(i, 1 - i), s_);

@@ -63,7 +63,7 @@ class ClothModel {
 
   /// Exact −∂f/∂x for these coordinates.
   Eigen::SparseMatrix<double> stiffness(const std::vector<Eigen::Index>& dofs) {
-    matrix_.set_zero();
+    std::ranges::fill(matrix_.values(), 0.0);
     const std::vector<Vec3> zero(x.size(), Vec3::Zero());
     for (const auto& force : forces_) force->add_jacobian(x, zero, 0, matrix_);
     std::vector<Eigen::Index> row(3 * x.size(), -1);

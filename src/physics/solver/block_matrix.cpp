@@ -64,11 +64,6 @@ Slot BlockMatrix::slot(Index row, Index column) const {
   return ~in_isotropic;
 }
 
-void BlockMatrix::set_zero() {
-  std::fill(values_.begin(), values_.end(), 0.0);
-  std::fill(scalars_.begin(), scalars_.end(), 0.0);
-}
-
 template <class Vector>
 void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const {
   const auto& [full, isotropic, diagonal] = *layout_;

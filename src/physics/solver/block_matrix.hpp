@@ -62,8 +62,6 @@ class BlockMatrix {
   Slot slot(Index row, Index column) const;
   Slot diagonal(Index row) const { return layout_->diagonal[row]; }
 
-  void set_zero();
-
   void add(Slot slot, const Mat3& block) { add(slot, 1, block); }
   /// Adds `factor` times the block. The slot must not be negative.
   void add(Slot slot, double factor, const Mat3& block) {
