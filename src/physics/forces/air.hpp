@@ -32,7 +32,6 @@ class Air final : public Force {
   Air(const mesh::Sheet& sheet, Index first, const AirParameters& parameters);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
-  void attach(const solver::Assembly& /*assembly*/) override {}
   void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> /*x*/) const override { return 0; }

@@ -21,7 +21,6 @@ class Bands final : public Force {
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void partition(std::span<const Index> /*bounds*/) override {}  // every range evaluates all elements, which are few
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;

@@ -89,12 +89,12 @@ class Force {
   virtual bool isotropic() const { return false; }
   /// Looks up the blocks and scalars of the pairs from append_couplings(). Call once, when the
   /// sparsity pattern is known.
-  virtual void attach(const solver::Assembly& assembly) = 0;
+  virtual void attach(const solver::Assembly& /*assembly*/) {}
 
   /// Prepares ranges of particles that threads may evaluate at the same time: range r is
   /// [bounds[r], bounds[r + 1]). `bounds` ascends, and the ranges contain all particles of the
-  /// force. Call after attach().
-  virtual void partition(std::span<const Index> bounds) = 0;
+  /// force. Call after attach(). By default, every range evaluates all elements.
+  virtual void partition(std::span<const Index> /*bounds*/) {}
 
   /// Adds the forces and, if `at.assembly` is set, the matrix; see Evaluation.
   virtual void add(const Evaluation& at) const = 0;

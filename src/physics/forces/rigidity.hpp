@@ -28,7 +28,6 @@ class Rigidity final : public Force {
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
-  void partition(std::span<const Index> /*bounds*/) override {}  // every range evaluates the whole body
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
 

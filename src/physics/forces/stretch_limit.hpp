@@ -77,8 +77,6 @@ class StretchLimit final : public Force {
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
   void append_couplings(std::vector<std::pair<Index, Index>>& pairs) const override;
-  /// Does nothing, because add() looks up the blocks of the few pieces that lock at a time.
-  void attach(const solver::Assembly& /*assembly*/) override {}
   void partition(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
