@@ -1,6 +1,7 @@
 #include "physics/integrator/stepper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -30,19 +31,11 @@ double largest_coordinate(const solver::DiagonalBlock& rows, std::span<const Vec
 }  // namespace
 
 std::string_view describe(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::solved:
-      return "solved";
-    case Verdict::unfinished:
-      return "not yet solved";
-    case Verdict::not_finite:
-      return "a position or force is not finite";
-    case Verdict::newton_stalled:
-      return "Newton's method did not reach its tolerance";
-    case Verdict::indefinite:
-      return "the linear system is not positive definite";
-  }
-  return "unknown";
+  // In the order of the enumeration.
+  static constexpr std::array<std::string_view, 5> kWords{
+      "solved", "not yet solved", "a position or force is not finite", "Newton's method did not reach its tolerance",
+      "the linear system is not positive definite"};
+  return kWords[static_cast<std::size_t>(verdict)];
 }
 
 Stepper::Stage Stepper::begin(const State& now, double h) {
