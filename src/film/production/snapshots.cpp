@@ -5,15 +5,20 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <filesystem>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/log.hpp"
 #include "film/assets/camera_file.hpp"
+#include "film/environment/picture_places.hpp"
 #include "film/image/color.hpp"
 #include "film/image/picture.hpp"
 #include "film/scene/fabrics.hpp"
+#include "physics/mesh/geometry.hpp"
 
 namespace weft::production {
 namespace {
@@ -74,6 +79,30 @@ scene::Look look_of(const scene::Cloth& cloth) {
   return look;
 }
 
+std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
+  return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
+}
+
+/// Textures from picture files. Decodes each file once.
+class Pictures {
+ public:
+  /// Throws Error(scene_invalid) if the file cannot be read. This happens if it has changed since the scene was
+  /// checked.
+  std::shared_ptr<const frame::Texture> of_file(const std::filesystem::path& file) {
+    std::shared_ptr<const frame::Texture>& texture = known_[file];
+    if (texture) return texture;
+    try {
+      return texture = texture_of(image::read_picture(file));
+    } catch (const std::exception& error) {
+      throw Error(ExitCode::scene_invalid, "{}: expected a picture (PNG, JPEG or TGA): {}", file.string(),
+                  error.what());
+    }
+  }
+
+ private:
+  std::map<std::filesystem::path, std::shared_ptr<const frame::Texture>> known_;
+};
+
 /// Sets the colours of an appearance and, if there is a picture, maps it along weft and warp.
 void apply_paint(frame::Appearance& look, const scene::Paint& paint, Pictures& pictures) {
   look.color = paint.color;
@@ -118,7 +147,7 @@ void apply_look(frame::Surface& surface, const scene::Look& look, Pictures& pict
   apply_paint(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth && surface.kind != frame::ObjectKind::rope)
     surface.appearance.thread_spacing = 0;
-  // The texture coordinates of obstacles already are coordinates of the picture (place_picture()).
+  // The texture coordinates of obstacles already are coordinates of the picture (places_of()).
   if (surface.kind == frame::ObjectKind::obstacle) {
     surface.appearance.paint.texture_from_uv.setIdentity();
     surface.appearance.coat = look.gloss.value_or(0);
@@ -160,10 +189,6 @@ std::shared_ptr<frame::Surface> make_cloth_surface(const model::Cloth& cloth, co
   return surface;
 }
 
-std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
-  return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
-}
-
 /// Surface part with a material of a character's file. If the picture of the material cannot be decoded, warns and
 /// leaves the picture out.
 frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
@@ -171,8 +196,7 @@ frame::SurfacePart part_of(const character::Material& material, const std::strin
   part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
   frame::Paint& paint = part.appearance.paint;
   if (!material.pixels.empty()) {
-    paint.texture =
-        std::make_shared<const frame::Texture>(frame::Texture{material.width, material.height, material.pixels});
+    paint.texture = texture_of({material.width, material.height, material.pixels});
     paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::clamp;
     paint.alpha = frame::Paint::Alpha::over_color;
     return part;
@@ -230,25 +254,9 @@ std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
   stage->sky_intensity = scene.render.sky_intensity;
   stage->exposure = scene.render.exposure;
   stage->motion_blur = scene.render.motion_blur;
-  switch (scene.render.heat) {
-    case scene::HeatQuantity::none:
-      stage->heat = frame::Stage::Heat::none;
-      break;
-    case scene::HeatQuantity::strain:
-      stage->heat = frame::Stage::Heat::strain;
-      break;
-    case scene::HeatQuantity::speed:
-      stage->heat = frame::Stage::Heat::speed;
-      break;
-  }
+  stage->heat = static_cast<frame::Stage::Heat>(scene.render.heat);
   stage->heat_max = scene.render.heat_max;
   return stage;
-}
-
-Box3 box_around(std::span<const Vec3> positions) {
-  Box3 box;
-  for (const Vec3& position : positions) box.extend(position);
-  return box;
 }
 
 /// Bounding box of a body over sampled times from 0 to `duration` [s].
@@ -258,7 +266,7 @@ Box3 bounds_over_run(const model::Model& model, std::size_t body, double duratio
   Box3 bounds;
   for (int k = 0; k <= (model.bodies[body].may_move ? kSamples : 0); ++k) {
     model.place(body, duration * k / kSamples, positions);
-    bounds.extend(box_around(positions));
+    bounds.extend(mesh::bounding_box(positions));
   }
   return bounds;
 }
@@ -344,22 +352,12 @@ motion::Spline<10> light_track(const scene::Light& light) {
 
 }  // namespace
 
-std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::path& file) {
-  std::shared_ptr<const frame::Texture>& texture = known_[file];
-  if (texture) return texture;
-  try {
-    return texture = texture_of(image::read_picture(file));
-  } catch (const std::exception& error) {
-    throw Error(ExitCode::scene_invalid, "{}: expected a picture (PNG, JPEG or TGA): {}", file.string(), error.what());
-  }
-}
-
-SceneLooks::SceneLooks(const scene::Scene& scene, const environment::Environment& environment)
-    : stage_(make_stage(scene)) {
-  for (const auto& obstacle : scene.obstacles)
-    if (obstacle.look.image) picture_places_[obstacle.name] = places_of(scene, obstacle, pictures_);
+SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
+    : stage_(make_stage(scene)), mounts_(scene, environment) {
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name,
+                        .aperture = camera.aperture,
+                        .focus = camera.focus,
                         .kind = scene::is_computed(camera.kind) ? static_cast<frame::Camera::Kind>(camera.kind)
                                                                 : frame::Camera::Kind::placed,
                         .subjects = camera.subjects,
@@ -367,8 +365,6 @@ SceneLooks::SceneLooks(const scene::Scene& scene, const environment::Environment
                         .elevation = camera.elevation,
                         .margin = camera.margin,
                         .smoothing = camera.smoothing});
-    cameras_.back().aperture = camera.aperture;
-    cameras_.back().focus = camera.focus;
     camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? file_track(scene, camera)
                                                                     : placed_track(scene, camera));
     orbits_.push_back(camera.orbit);
@@ -378,20 +374,31 @@ SceneLooks::SceneLooks(const scene::Scene& scene, const environment::Environment
     if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilmHeight / sensor_heights_.back();
   }
   for (const scene::Light& light : scene.lights) {
-    frame::Light result;
-    result.name = light.name;
-    result.kind = light.spot ? frame::Light::Kind::spot : frame::Light::Kind::sun;
-    result.cone_angle = light.cone_angle;
-    result.color = light.color;
-    result.softness = light.softness;
-    lights_.push_back(result);
+    lights_.push_back({.name = light.name,
+                       .kind = light.spot ? frame::Light::Kind::spot : frame::Light::Kind::sun,
+                       .cone_angle = light.cone_angle,
+                       .color = light.color,
+                       .softness = light.softness});
     light_tracks_.push_back(light_track(light));
   }
-  const auto follows = [](const scene::Camera& camera) { return !camera.follow.empty(); };
-  if (std::ranges::any_of(scene.cameras, follows)) mounts_.emplace(scene, environment);
+  Pictures pictures;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const model::Cloth& cloth = environment.model.cloths[c];
+    const auto surface = make_cloth_surface(cloth, environment.cloths[c], look_of(scene.cloths[c]), pictures);
+    surface->run_bounds = mesh::bounding_box(cloth.start);
+    surfaces_.push_back(surface);
+  }
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    const auto surface = make_body_surface(environment.model.bodies[b], environment.bodies[b], pictures);
+    // The first bodies are the obstacles.
+    if (b < scene.obstacles.size() && scene.obstacles[b].look.image)
+      surface->paint_uv = places_of(scene, scene.obstacles[b], pictures);
+    surface->run_bounds = bounds_over_run(environment.model, b, scene.time.duration);
+    surfaces_.push_back(surface);
+  }
 }
 
-std::vector<frame::Camera> SceneLooks::cameras_at(double time) const {
+std::vector<frame::Camera> SnapshotMaker::cameras_at(double time) const {
   std::vector<frame::Camera> cameras = cameras_;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     const auto& [spline, cuts] = camera_tracks_[c];
@@ -407,7 +414,7 @@ std::vector<frame::Camera> SceneLooks::cameras_at(double time) const {
   return cameras;
 }
 
-std::vector<frame::Light> SceneLooks::lights_at(double time) const {
+std::vector<frame::Light> SnapshotMaker::lights_at(double time) const {
   std::vector<frame::Light> lights = lights_;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const LightValue value = light_tracks_[l].at(time).value;
@@ -419,33 +426,12 @@ std::vector<frame::Light> SceneLooks::lights_at(double time) const {
   return lights;
 }
 
-void SceneLooks::set_stage_cameras_and_lights(frame::FrameSnapshot& snapshot) const {
+void SnapshotMaker::set_looks(frame::FrameSnapshot& snapshot) const {
+  snapshot.surfaces = surfaces_;
   snapshot.stage = stage_;
   snapshot.cameras = cameras_at(snapshot.time);
-  if (mounts_) mounts_->move(snapshot);
+  mounts_.move(snapshot);
   snapshot.lights = lights_at(snapshot.time);
-}
-
-void SceneLooks::place_picture(frame::Surface& surface) const {
-  const auto places = picture_places_.find(surface.name);
-  if (places != picture_places_.end()) surface.paint_uv = places->second;
-}
-
-SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
-    : looks_(scene, environment) {
-  Pictures pictures;
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const model::Cloth& cloth = environment.model.cloths[c];
-    const auto surface = make_cloth_surface(cloth, environment.cloths[c], look_of(scene.cloths[c]), pictures);
-    surface->run_bounds = box_around(cloth.start);
-    surfaces_.push_back(surface);
-  }
-  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
-    const auto surface = make_body_surface(environment.model.bodies[b], environment.bodies[b], pictures);
-    looks_.place_picture(*surface);
-    surface->run_bounds = bounds_over_run(environment.model, b, scene.time.duration);
-    surfaces_.push_back(surface);
-  }
 }
 
 frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const model::Model& model,
@@ -454,7 +440,6 @@ frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const model::Mode
   auto snapshot = std::make_shared<frame::FrameSnapshot>();
   snapshot->frame = frame;
   snapshot->time = time;
-  snapshot->surfaces = surfaces_;
   for (const model::Cloth& cloth : model.cloths) {
     const auto of_cloth = particles.first(cloth.start.size());
     snapshot->states.push_back({{of_cloth.begin(), of_cloth.end()}, {}});
@@ -469,14 +454,13 @@ frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const model::Mode
     snapshot->states.push_back({std::vector<Vec3>(model.bodies[b].mesh.positions.size()), {}});
     model.place(b, time, snapshot->states.back().positions);
   }
-  looks_.set_stage_cameras_and_lights(*snapshot);
+  set_looks(*snapshot);
   return snapshot;
 }
 
 frame::SnapshotPtr SnapshotMaker::with_looks(const frame::FrameSnapshot& snapshot) const {
   auto copy = std::make_shared<frame::FrameSnapshot>(snapshot);
-  copy->surfaces = surfaces_;
-  looks_.set_stage_cameras_and_lights(*copy);
+  set_looks(*copy);
   return copy;
 }
 

@@ -1,16 +1,11 @@
 // Makes snapshots of frames from the environment of a scene and the positions of its particles.
 #pragma once
 
-#include <filesystem>
-#include <map>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "film/environment/environment.hpp"
-#include "film/environment/picture_places.hpp"
 #include "film/frame/frame_snapshot.hpp"
 #include "film/production/camera_mounts.hpp"
 #include "film/scene/scene.hpp"
@@ -22,46 +17,6 @@ namespace weft::production {
 struct CameraTrack {
   motion::Spline<7> spline;  ///< position and target [m], field of view [degrees] or focal length [mm]
   std::vector<double> cuts;  ///< times at which the camera jumps [s], increasing
-};
-
-/// Textures from picture files. Decodes each file once.
-class Pictures {
- public:
-  /// Throws Error(scene_invalid) if the file cannot be read. This happens if it has changed since the scene was
-  /// checked.
-  std::shared_ptr<const frame::Texture> of_file(const std::filesystem::path& file);
-
- private:
-  std::map<std::filesystem::path, std::shared_ptr<const frame::Texture>> known_;
-};
-
-/// The data of a scene that are drawn but not simulated: appearance of objects, stage (background, exposure, heat
-/// colours), cameras and lights.
-class SceneLooks {
- public:
-  SceneLooks(const scene::Scene& scene, const environment::Environment& environment);
-
-  /// Sets stage, cameras and lights of a snapshot. The time of the snapshot and the positions of its objects must
-  /// already be set.
-  void set_stage_cameras_and_lights(frame::FrameSnapshot& snapshot) const;
-  /// Sets the texture coordinates of an obstacle that has a picture; does not change other surfaces.
-  void place_picture(frame::Surface& surface) const;
-
- private:
-  std::vector<frame::Camera> cameras_at(double time) const;
-  std::vector<frame::Light> lights_at(double time) const;
-
-  std::map<std::string, environment::PicturePlaces> picture_places_;  // by name of the obstacle, if it has a picture
-  Pictures pictures_;
-  std::shared_ptr<const frame::Stage> stage_;
-  std::vector<frame::Camera> cameras_;
-  std::vector<frame::Light> lights_;
-  std::vector<CameraTrack> camera_tracks_;
-  // Values of light tracks: direction, position, target, intensity.
-  std::vector<motion::Spline<10>> light_tracks_;
-  std::vector<double> orbits_;          // rate of the azimuth of each camera [degrees/s]
-  std::vector<double> sensor_heights_;  // height of each sensor [mm]; 0 for cameras with a field of view
-  std::optional<CameraMounts> mounts_;
 };
 
 /// Makes the snapshots of a run. All snapshots share the data that do not change during the run.
@@ -80,8 +35,22 @@ class SnapshotMaker {
   frame::SnapshotPtr with_looks(const frame::FrameSnapshot& snapshot) const;
 
  private:
-  const SceneLooks looks_;
+  /// Sets surfaces, stage, cameras and lights of a snapshot, which must already have its time and the positions of its
+  /// objects.
+  void set_looks(frame::FrameSnapshot& snapshot) const;
+  std::vector<frame::Camera> cameras_at(double time) const;
+  std::vector<frame::Light> lights_at(double time) const;
+
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
+  std::shared_ptr<const frame::Stage> stage_;
+  std::vector<frame::Camera> cameras_;
+  std::vector<frame::Light> lights_;
+  std::vector<CameraTrack> camera_tracks_;
+  // Values of light tracks: direction, position, target, intensity.
+  std::vector<motion::Spline<10>> light_tracks_;
+  std::vector<double> orbits_;          // rate of the azimuth of each camera [degrees/s]
+  std::vector<double> sensor_heights_;  // height of each sensor [mm]; 0 for cameras with a field of view
+  CameraMounts mounts_;
 };
 
 }  // namespace weft::production
