@@ -146,7 +146,7 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
   const MovingPins moving(environment);
   std::set<std::size_t> jumps, fast;
   HeldParticles held;
-  const double start = -scene.preroll_frames() / scene.time.fps;
+  const double start = scene.start_time();
   moving.pins.held_at(start, environment.model, held);
   for (const integrator::HeldParticle& particle : held) {
     const std::size_t pin = moving.pins.pin_of(particle.constraint.particle, start);
@@ -191,7 +191,7 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
 std::vector<std::string> find_far_pins(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
   if (!any_pin(scene, follows)) return found;
-  const double start = -scene.preroll_frames() / scene.time.fps;
+  const double start = scene.start_time();
   std::vector<Vec3> x;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
     for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
@@ -275,7 +275,7 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
       return may_be_in ? collision::nearest_point(p, body.mesh.topology.triangles, x).height : 1;
     };
     // Also tests the start positions, because keys may begin inside the body.
-    const double start = -scene.preroll_frames() / scene.time.fps;
+    const double start = scene.start_time();
     sample_at(start);
     for (const integrator::HeldParticle& particle : held)
       if (height_of(moving.start[static_cast<std::size_t>(particle.constraint.particle)]) > 0)
