@@ -20,14 +20,18 @@ using scene::Scene;
 
 constexpr const char* kNoCloth = "no cloth";
 
+// Such as "1 key" or "2 keys".
+std::string counted(auto count, std::string_view what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 // Item for a part that some cloths use. Its reason is, for example, "2 of 3 cloths"; or `absent` if no cloth uses the
 // part.
 template <class Test>
 PlanItem cloth_item(std::string part, const Scene& scene, Test needs, std::string_view absent) {
   const auto count = std::count_if(scene.cloths.begin(), scene.cloths.end(), needs);
   if (count == 0) return {std::move(part), false, std::string(scene.cloths.empty() ? kNoCloth : absent)};
-  return {std::move(part), true,
-          fmt::format("{} of {} cloth{}", count, scene.cloths.size(), scene.cloths.size() == 1 ? "" : "s")};
+  return {std::move(part), true, fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))};
 }
 
 PlanItem item_if(std::string part, bool used, std::string present, std::string absent) {
@@ -77,9 +81,6 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
 
 // Adds the parts that the plan lists only if the scene has them.
 void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
-  const auto counted = [](std::size_t count, const char* what) {
-    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-  };
   if (const auto count = std::ranges::count_if(scene.cloths, [](const Cloth& c) { return c.pressure.has_effect(); }))
     items.push_back({"force: pressure of enclosed air", true,
                      fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))});
@@ -91,7 +92,7 @@ void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
     items.push_back(
         {"motion: rigid bodies", true, fmt::format("{} of {}", count, counted(scene.obstacles.size(), "obstacle"))});
   if (const auto count = std::ranges::count_if(scene.obstacles, [](const auto& o) { return !o.follow.empty(); }))
-    items.push_back({"motion: obstacles that follow", true, counted(static_cast<std::size_t>(count), "obstacle")});
+    items.push_back({"motion: obstacles that follow", true, counted(count, "obstacle")});
   if (!scene.physics.keys.empty())
     items.push_back({"force: keyed gravity and wind", true, counted(scene.physics.keys.size(), "key")});
   if (!scene.fans.empty()) {
@@ -107,9 +108,9 @@ void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
     pins += cloth.pins.size();
     fading += std::ranges::count_if(cloth.pins, [](const scene::Pin& pin) { return pin.fade > 0; });
   }
-  const auto groups = [](auto count) { return fmt::format("{} group{}", count, count == 1 ? "" : "s"); };
-  items.push_back(item_if("constraint: pins", pins > 0, groups(pins), "no pin"));
-  items.push_back(item_if("force: springs that fade around pins", fading > 0, groups(fading), "no pin has a fade"));
+  items.push_back(item_if("constraint: pins", pins > 0, counted(pins, "group"), "no pin"));
+  items.push_back(
+      item_if("force: springs that fade around pins", fading > 0, counted(fading, "group"), "no pin has a fade"));
 }
 
 // The bounding volume hierarchy, and the parts of collision detection that a scene can switch on and off.
@@ -121,8 +122,8 @@ void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& i
                             any ? "off in contact.search" : "nothing collides"));
   };
   part("bounding volume hierarchy", true,
-       fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[static_cast<std::size_t>(search.tree)],
-                   kBounds[static_cast<std::size_t>(search.bounds)], search.leaf, search.leaf == 1 ? "" : "s"));
+       fmt::format("{} of {}, {} to a leaf", kTrees[static_cast<std::size_t>(search.tree)],
+                   kBounds[static_cast<std::size_t>(search.bounds)], counted(search.leaf, "triangle")));
   part("reuse of candidates and features", search.reuse, "while nothing has moved far");
   part("separation lists", search.separation_lists, "walks go on where the last one stopped");
   part("velocity cones", search.velocity_cones, "slow bounds are left as they are");
@@ -151,8 +152,8 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
                                     [&](const scene::Obstacle& o) { return scene::has_prescribed_motion(scene, o); });
   const bool with_obstacles = collides_with_obstacles(scene);
-  std::string bodies = fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s");
-  if (characters > 0) bodies += fmt::format(", {} character{}", characters, characters == 1 ? "" : "s");
+  std::string bodies = counted(obstacles, "obstacle");
+  if (characters > 0) bodies += ", " + counted(characters, "character");
   const bool self = collides_with_itself(scene);
   const char* without_obstacles = obstacles + characters == 0 ? "no obstacle collides"
                                   : !scene.contact.obstacles  ? "contact.obstacles is false"
@@ -168,8 +169,7 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                           "particles against obstacles",
                           with_obstacles ? "contact.response is springs" : without_obstacles));
   plan_search(scene.contact.search, with_obstacles || self, items);
-  items.push_back(item_if("motion: key frames", moving > 0,
-                          fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));
+  items.push_back(item_if("motion: key frames", moving > 0, counted(moving, "obstacle"), "no obstacle moves"));
 }
 
 // Adds an item with the source of the rest shape for each cloth from a mesh file, and an item with the fit for each
@@ -203,9 +203,8 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(item_if("preparation: layers", layers.size() > 1,
                           fmt::format("{}, put on at frames {}", layers.size(), begins),
                           "no cloth is worn over another"));
-  items.push_back(item_if("preparation: preroll", frames > 0,
-                          fmt::format("{} frame{} before the first", frames, frames == 1 ? "" : "s"),
-                          "time.preroll is 0"));
+  items.push_back(
+      item_if("preparation: preroll", frames > 0, counted(frames, "frame") + " before the first", "time.preroll is 0"));
 }
 
 // Adds an item for each part of a character that does not collide, and one with the size of the key frames of each
@@ -218,8 +217,8 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
       items.push_back({fmt::format("collision: {} of {}", part, character.name), false,
                        fmt::format("cloth passes through {} of {} vertices", vertices, count.vertices)});
     items.push_back({fmt::format("motion: character {}", character.name), true,
-                     fmt::format("{} key frame{} of {} vertices, {:.4g} MB, {}", count.keys, count.keys == 1 ? "" : "s",
-                                 count.vertices, static_cast<double>(count.bytes) / 1e6,
+                     fmt::format("{} of {} vertices, {:.4g} MB, {}", counted(count.keys, "key frame"), count.vertices,
+                                 static_cast<double>(count.bytes) / 1e6,
                                  character.interpolation == scene::Interpolation::cubic ? "cubic" : "linear")});
   }
 }
@@ -265,9 +264,8 @@ std::vector<PlanItem> plan(const Scene& scene) {
       item_if("render: depth of field",
               std::ranges::any_of(scene.cameras, [](const scene::Camera& each) { return each.aperture > 0; }),
               "a camera has an aperture", "no camera has an aperture"));
-  const bool camera = !scene.cameras.empty();
-  items.push_back(item_if("render: automatic framing", !camera, "no camera named",
-                          fmt::format("{} camera{}", scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s")));
+  items.push_back(item_if("render: automatic framing", scene.cameras.empty(), "no camera named",
+                          counted(scene.cameras.size(), "camera")));
   return items;
 }
 
