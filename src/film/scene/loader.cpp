@@ -30,26 +30,17 @@ void read_document(toml::table document, const Batches& batches, Scene& scene, F
           std::filesystem::absolute(scene.file.parent_path() / sequence->files).lexically_normal().string();
   add_rope_cloths(scene);
   check(scene, findings);
-  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
-    const Place place = findings.place_in_file(findings.entry("obstacle", i) + ".file");
-    scene.obstacles[i].line = place.line;
-    scene.obstacles[i].column = place.column;
-  }
-  for (std::size_t i = 0; i < scene.characters.size(); ++i) {
-    const Place place = findings.place_in_file(findings.entry("character", i));
-    scene.characters[i].line = place.line;
-    scene.characters[i].column = place.column;
-  }
-  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-    const Place place = findings.place_in_file(findings.entry("camera", i));
-    scene.cameras[i].line = place.line;
-    scene.cameras[i].column = place.column;
-  }
-  for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
-    const Place place = findings.place_in_file(entry_of_cloth(scene, i, findings));
-    scene.cloths[i].line = place.line;
-    scene.cloths[i].column = place.column;
-  }
+  const auto set_places = [&](auto& objects, const auto& key_of) {
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      const Place place = findings.place_in_file(key_of(i));
+      objects[i].line = place.line;
+      objects[i].column = place.column;
+    }
+  };
+  set_places(scene.obstacles, [&](std::size_t i) { return findings.entry("obstacle", i) + ".file"; });
+  set_places(scene.characters, [&](std::size_t i) { return findings.entry("character", i); });
+  set_places(scene.cameras, [&](std::size_t i) { return findings.entry("camera", i); });
+  set_places(scene.cloths, [&](std::size_t i) { return entry_of_cloth(scene, i, findings); });
 }
 
 /// Loads a scene. `text`: content of the file; nullopt if the file cannot be read (`findings` then contains this
