@@ -24,18 +24,19 @@ namespace {
 // Maximum number of particles of all rectangles of cloth together. Their data fit into the memory of a workstation.
 constexpr long kMaxParticles = 4'000'000;
 
-template <class Entries>
-std::vector<std::string> names_of(const Entries& entries) {
+/// The names of all entries of the lists, one list after the other.
+template <class... Lists>
+std::vector<std::string> names_of(const Lists&... lists) {
   std::vector<std::string> names;
-  for (const auto& entry : entries) names.push_back(entry.name);
+  const auto add = [&](const auto& list) {
+    for (const auto& entry : list) names.push_back(entry.name);
+  };
+  (add(lists), ...);
   return names;
 }
 
 std::vector<std::string> names_of_all(const Scene& scene) {
-  std::vector<std::string> names = names_of(scene.cloths);
-  for (const std::string& name : names_of(scene.obstacles)) names.push_back(name);
-  for (const std::string& name : names_of(scene.characters)) names.push_back(name);
-  return names;
+  return names_of(scene.cloths, scene.obstacles, scene.characters);
 }
 
 /// Reports `name`, the value of `key`, unless it is in `names` or empty. `kind`: the named objects in the message, such
@@ -150,12 +151,9 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   check_times(pin.motion.keys, path, findings);
   check_rotation_changes(pin.motion.keys, path, findings);
   const Followed followed = scene::followed(pin.follow);
-  const std::vector<std::string> characters = names_of(scene.characters);
-  std::vector<std::string> bodies = names_of(scene.obstacles);
-  bodies.insert(bodies.end(), characters.begin(), characters.end());
   // A text such as ".head" names a part but no body.
-  check_reference(followed.body.empty() ? pin.follow : followed.body, bodies, "an obstacle or character",
-                  path + ".follow", findings);
+  check_reference(followed.body.empty() ? pin.follow : followed.body, names_of(scene.obstacles, scene.characters),
+                  "an obstacle or character", path + ".follow", findings);
   for (const Obstacle& obstacle : scene.obstacles)
     if (obstacle.name == followed.body && is_dynamic(obstacle))
       findings.report(
@@ -163,7 +161,8 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
           fmt::format("expected a body that keys move, got {}, which has a mass; [[attach]] ties cloth to it",
                       in_quotes(obstacle.name)));
   if (!followed.part.empty() && !findings.has_mistake(path + ".follow"))
-    check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
+    check_reference(followed.body, names_of(scene.characters), "a character before the part", path + ".follow",
+                    findings);
   if (pin.fade > 0 && !pin.strength)
     findings.report(
         path + ".fade",
@@ -173,21 +172,14 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   check_part(cloth, pin, path, findings);
 }
 
-void check_wearer(const Scene& scene, const Cloth& cloth, const std::string& path, Findings& findings) {
-  if (!cloth.wearer.empty())
-    check_reference(cloth.wearer, names_of(scene.characters), "a character", path + ".wearer", findings);
-}
-
 void check_friction_pairs(const Scene& scene, Findings& findings) {
-  const std::vector<std::string> names = names_of_all(scene);
-  std::vector<std::string> names_of_bodies = names_of(scene.obstacles);
-  for (const std::string& name : names_of(scene.characters)) names_of_bodies.push_back(name);
+  const std::vector<std::string> names = names_of_all(scene), bodies = names_of(scene.obstacles, scene.characters);
   for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
     const FrictionPair& pair = scene.contact.pairs[i];
     const std::string path = fmt::format("contact.pair.{}", i);
     check_reference(pair.first, names, "a cloth, rope, obstacle or character", path + ".first", findings);
     check_reference(pair.second, names, "a cloth, rope, obstacle or character", path + ".second", findings);
-    const auto is_cloth = [&](const std::string& name) { return !std::ranges::count(names_of_bodies, name); };
+    const auto is_cloth = [&](const std::string& name) { return !std::ranges::count(bodies, name); };
     if (!findings.has_mistake(path + ".first") && !findings.has_mistake(path + ".second") && !is_cloth(pair.first) &&
         !is_cloth(pair.second))
       findings.report(path + ".second", fmt::format("expected a cloth or rope as one of the two, since two bodies "
@@ -256,7 +248,7 @@ void check_cloths(const Scene& scene, Findings& findings) {
       findings.report(path + ".particles",
                       fmt::format("expected at most {} in all cloths together, got {}", kMaxParticles, particles));
     }
-    check_wearer(scene, cloth, path, findings);
+    check_reference(cloth.wearer, names_of(scene.characters), "a character", path + ".wearer", findings);
     if (cloth.rest == ClothRest::mesh && cloth.uv_scale)
       findings.report(path + ".uv_scale", "expected none beside rest = \"mesh\", got one");
     check_look(cloth, path, findings);
@@ -335,8 +327,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
 }
 
 void check_characters(const Scene& scene, Findings& findings) {
-  std::vector<std::string> others = names_of(scene.cloths);
-  for (const std::string& name : names_of(scene.obstacles)) others.push_back(name);
+  const std::vector<std::string> others = names_of(scene.cloths, scene.obstacles);
   for (std::size_t i = 0; i < scene.characters.size(); ++i) {
     const Character& character = scene.characters[i];
     const std::string& path = findings.entry("character", i);

@@ -31,20 +31,18 @@ std::vector<const Obstacle*> parents_of(const Scene& scene, const Obstacle& obst
 void check_followed(const Scene& scene, const std::string& follow, const std::string& key, Findings& findings) {
   if (follow.empty()) return;
   const Followed followed = scene::followed(follow);
-  std::vector<std::string> obstacles, characters;
-  for (const Obstacle& each : scene.obstacles) obstacles.push_back(each.name);
-  for (const Character& each : scene.characters) characters.push_back(each.name);
-  if (std::ranges::find(characters, followed.body) != characters.end()) {
+  if (std::ranges::find(scene.characters, followed.body, &Character::name) != scene.characters.end()) {
     if (followed.part.empty())
       findings.report(key, fmt::format("expected a part of the character, such as \"{}.torso\" or \"{}.head\", got {}",
                                        followed.body, followed.body, in_quotes(follow)));
     return;
   }
   if (obstacle_named(scene, follow) != nullptr) return;
-  std::vector<std::string> all = obstacles;
-  all.insert(all.end(), characters.begin(), characters.end());
+  std::vector<std::string> bodies;
+  for (const Obstacle& each : scene.obstacles) bodies.push_back(each.name);
+  for (const Character& each : scene.characters) bodies.push_back(each.name);
   findings.report(key, fmt::format("expected the name of an obstacle, or a part of a character, got {}{}",
-                                   in_quotes(follow), suggestion(followed.body, all)));
+                                   in_quotes(follow), suggestion(followed.body, bodies)));
 }
 
 }  // namespace
