@@ -27,10 +27,10 @@ struct CharacterContext {
   const scene::Character& settings;
   std::string where;  ///< scene file, line, column and name, for messages
 
-  Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
+  Vec3 up() const { return scene::up_vector(scene.up); }
   assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
   /// Start of the run [s].
-  double begin() const { return -scene.preroll_frames() / scene.time.fps; }
+  double begin() const { return scene.start_time(); }
   /// Time at which the character begins to move [s].
   double motion_start() const { return settings.dressing + begin(); }
   character::Timing timing() const { return {motion_start(), settings.blend, settings.start, settings.speed}; }

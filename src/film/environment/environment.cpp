@@ -162,7 +162,7 @@ assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obs
 
 Environment::Environment(const scene::Scene& scene) {
   model.source = scene.file.string();
-  model.up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  model.up = scene::up_vector(scene.up);
   model.time = {.fps = scene.time.fps,
                 .preroll_frames = scene.preroll_frames(),
                 .step = scene.time.step,

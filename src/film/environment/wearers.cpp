@@ -143,7 +143,7 @@ const garment::Wearer& Wearers::carrier(const std::string& name, const std::stri
   const auto known = made_.find(name);
   if (known != made_.end()) return known->second;
   const auto found = std::ranges::find(scene_.characters, name, &scene::Character::name);
-  const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  const Vec3 up = scene::up_vector(scene_.up);
   const StandingBody standing = make_standing_body(scene_, *found, where);
   std::optional<Eigen::Isometry3d> axes = axes_by_joints(standing, up);
   if (!axes) {

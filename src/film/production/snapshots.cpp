@@ -247,7 +247,7 @@ environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obs
 
 std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
   auto stage = std::make_shared<frame::Stage>();
-  stage->up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  stage->up = scene::up_vector(scene.up);
   stage->look = static_cast<frame::Stage::Look>(scene.render.look);
   stage->sky_color = scene.render.sky_color;
   stage->ground_color = scene.render.ground_color;

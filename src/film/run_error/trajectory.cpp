@@ -14,10 +14,6 @@ namespace {
 
 constexpr int kFinestCut = 8;  // refinements are multiples of 1/8, which are exact in binary
 
-Vec3 up_of(const scene::Scene& scene) {
-  return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
-}
-
 // Whether the cloth is a grid of cells, not a mesh from a file, a sewing pattern or a rope.
 bool is_grid(const scene::Cloth& cloth) {
   return scene::rectangle_particles(cloth) > 0;
@@ -49,7 +45,7 @@ std::string_view unit_of(Quantity quantity) {
 
 Recorder::Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const simulation::FrameReport& report)
     : cloths_(scene.cloths.size()),
-      up_(up_of(scene)),
+      up_(scene::up_vector(scene.up)),
       start_area_(area_of(start, cloths_, Vec3::Zero())),
       kinetic_(report.kinetic_energy),
       elastic_(report.elastic_energy),
@@ -162,8 +158,7 @@ double cloth_size(const frame::FrameSnapshot& snapshot) {
   for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
     const frame::ObjectKind kind = snapshot.surfaces[s]->kind;
     if (kind != frame::ObjectKind::cloth && kind != frame::ObjectKind::rope) continue;
-    Eigen::AlignedBox3d box;
-    for (const Vec3& x : snapshot.states[s].positions) box.extend(x);
+    const Box3 box = mesh::bounding_box(snapshot.states[s].positions);
     if (!box.isEmpty()) largest = std::max(largest, box.sizes().maxCoeff());
   }
   return largest;

@@ -26,8 +26,7 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
       return false;
     }
     if (rope.closed) findings.report(path + ".closed", "expected points for a closed rope, got from and to");
-    const Vec3 up = scene.up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
-    const Vec3 way = *rope.to - *rope.from;
+    const Vec3 up = up_vector(scene.up), way = *rope.to - *rope.from;
     const double span = (way - up.dot(way) * up).norm(), least = kMinRopeSpan * rope.diameter;
     if (hangs_slack(rope) && span < least) {
       findings.report(

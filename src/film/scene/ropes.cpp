@@ -112,7 +112,7 @@ RopeShape start_shape(const Rope& rope, UpAxis up) {
   if (!rope.points.empty())
     path = path_through(rope);
   else if (hangs_slack(rope))
-    path = catenary(*rope.from, *rope.to, *wanted, up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY());
+    path = catenary(*rope.from, *rope.to, *wanted, up_vector(up));
   else
     path = {*rope.from, *rope.to};
   double length = 0;

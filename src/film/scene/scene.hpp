@@ -56,6 +56,11 @@ inline constexpr int kMaxFrames = 100'000;  ///< maximum of duration * fps
 
 enum class UpAxis { y, z };
 
+/// The unit vector along the up axis.
+inline Vec3 up_vector(UpAxis up) {
+  return up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+}
+
 enum class HeatQuantity { none, strain, speed };
 
 /// Length of the film, frame rate and time steps.
