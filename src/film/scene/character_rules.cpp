@@ -37,10 +37,8 @@ const Table& part_rules() {
                  "material of the character's file; all triangles with it form the part")
           .by_default("by `name`")
           .excludes("bone")
-          .plain(Type::boolean, "collide", &BodyPart::collide,
-                 "whether it collides; false: cloth, ropes and bodies pass through it")
-          .number("friction", &BodyPart::friction, within(0, 10), "",
-                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
+          .plain(Type::boolean, "collide", &BodyPart::collide, kWhetherItCollides)
+          .number("friction", &BodyPart::friction, within(0, 10), "", kFrictionOfBoth)
           .by_default("that of the character")
           .number("thickness", &BodyPart::thickness, within(0, 1), "m",
                   "thickness of padding: cloth keeps half of it as additional distance")
@@ -183,10 +181,8 @@ const Table& character_rules() {
           .by_default("as many as the clip has, but 10 to 120")
           .choice("interpolation", &Character::interpolation, kInterpolations,
                   "interpolation between its key frames; cubic is smooth")
-          .number("friction", &Character::friction, within(0, 10), "",
-                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
-          .plain(Type::boolean, "collide", &Character::collide,
-                 "whether it collides; false: cloth, ropes and bodies pass through it")
+          .number("friction", &Character::friction, within(0, 10), "", kFrictionOfBoth)
+          .plain(Type::boolean, "collide", &Character::collide, kWhetherItCollides)
           .list(Type::list, "part", &Character::parts, part_rules())
           .table("look", &Character::look, character_look_rules())
           .not_simulated()

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "film/scene/rule.hpp"
@@ -29,6 +30,45 @@ inline Look rope_look() {
   Look look = look_of(Vec3(0.80, 0.72, 0.56));
   look.roughness = 0.85;
   return look;
+}
+
+// Documentation that several keys share.
+inline constexpr std::string_view kBetweenKeys = "interpolation between the entries of `keys`; cubic is smooth";
+inline constexpr std::string_view kWhetherItCollides =
+    "whether it collides; false: cloth, ropes and bodies pass through it";
+inline constexpr std::string_view kFrictionOfBoth =
+    "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides";
+/// Documented default of a value that a key frame omits.
+inline const std::string kDefaultOfKey = "as in the key before; in the first key, the value given beside `keys`";
+
+/// Adds the row of the time of a key frame.
+template <class Key>
+void key_time_row(TableBuilder<Key>& rows) {
+  rows.number("time", &Key::time, kTimeRange, "s", "time of the scene; later than that of the key before")
+      .need(Need::required);
+}
+
+// A fan, camera or light has at least one key frame. The first one stores the values that its table gives directly.
+
+/// Returns a function that returns a member of the first key frame.
+template <class Key, class Field>
+auto of_first_key(Field Key::*field) {
+  return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
+}
+/// Appends entry i of `keys` with its defaults, which are the values of the entry before. Entry 0 already exists.
+template <class S>
+void copy_key_before(S& owner, std::size_t i) {
+  if (i == 0) return;
+  const auto last = owner.keys.back();
+  owner.keys.push_back(last);
+}
+template <class S>
+bool moves(S& owner) {
+  return owner.keys.size() > 1;
+}
+template <class S>
+bool stands_still(S& owner) {
+  return owner.keys.size() == 1;
 }
 
 /// Rotation about the fixed x axis, then the y axis, then the z axis, by these angles [degrees].
@@ -68,8 +108,5 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
 /// Rules for the look of an obstacle, and for that of a character.
 const Table& obstacle_look_rules();
 const Table& character_look_rules();
-
-/// Documented default of a value that a key frame omits.
-inline const std::string kDefaultOfKey = "as in the key before; in the first key, the value given beside `keys`";
 
 }  // namespace weft::scene

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "film/scene/common_rules.hpp"
 #include "film/scene/fabrics.hpp"
 #include "film/scene/table_builder.hpp"
 
@@ -63,8 +64,7 @@ const Table& material_rules() {
           .number("thickness", &Material::thickness, above(0, 1), "m",
                   "distance that contact keeps between two layers; limited to a quarter of the particle spacing")
           .by_default(of_fabric)
-          .number("friction", &Material::friction, within(0, 10), "",
-                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
+          .number("friction", &Material::friction, within(0, 10), "", kFrictionOfBoth)
           .by_default(of_fabric)
           .number("drag", &Material::drag, within(0, 100), "",
                   "drag coefficient of motion along the normal; 0: no air resistance")

@@ -26,8 +26,7 @@ const Table& gust_rules() {
 const Table& physics_key_rules() {
   static const Table kTable =
       TableBuilder<PhysicsKey>("Gravity and wind at one time.")
-          .number("time", &PhysicsKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-          .need(Need::required)
+          .with(key_time_row<PhysicsKey>)
           .vector("gravity", &PhysicsKey::gravity, kXyz, kGravity, "m/s²", "gravity at this time")
           .by_default(kDefaultOfKey)
           .vector("wind", &PhysicsKey::wind, kXyz, kWind, "m/s", "wind at this time")
@@ -36,21 +35,10 @@ const Table& physics_key_rules() {
   return kTable;
 }
 
-/// Returns a function that returns a member of the first key frame of a fan. This key frame stores the values that the
-/// table of the fan gives directly.
-template <class Field>
-auto own_of_fan(Field FanKey::*field) {
-  return [field](Fan& fan) -> Field& { return fan.keys.front().*field; };
-}
-bool fan_stands_still(Fan& fan) {
-  return fan.keys.size() == 1;
-}
-
 const Table& fan_key_rules() {
   static const Table kTable =
       TableBuilder<FanKey>("The fan at one time.")
-          .number("time", &FanKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-          .need(Need::required)
+          .with(key_time_row<FanKey>)
           .vector("position", &FanKey::position, kXyz, kPositionRange, "m", "centre of the fan's disc")
           .by_default(kDefaultOfKey)
           .vector("direction", &FanKey::direction, kXyz, kPositionRange, "",
@@ -74,8 +62,7 @@ const Table& physics_rules() {
                   "density of the air, which causes drag; 0: no air")
           .vector("wind", &Physics::wind, kXyz, kWind, "m/s", "mean velocity of the air, the same everywhere")
           .table("gusts", &Physics::gusts, gust_rules())
-          .choice("interpolation", &Physics::interpolation, kInterpolations,
-                  "interpolation between the entries of `keys`; cubic is smooth")
+          .choice("interpolation", &Physics::interpolation, kInterpolations, kBetweenKeys)
           .by_default("cubic")
           .written_if([](Physics& physics) { return !physics.keys.empty(); })
           .list(Type::keys, "keys", &Physics::keys, physics_key_rules(),
@@ -92,30 +79,26 @@ const Table& fan_rules() {
       TableBuilder<Fan>("A fan that blows air in a cone, in addition to the wind of [physics].")
           .plain(Type::name, "name", &Fan::name, "unique name of the fan")
           .need(Need::required)
-          .vector("position", own_of_fan(&FanKey::position), kXyz, kPositionRange, "m", "centre of the fan's disc")
+          .vector("position", of_first_key(&FanKey::position), kXyz, kPositionRange, "m", "centre of the fan's disc")
           .need(Need::here_or_in_first_key)
-          .written_if(fan_stands_still)
-          .vector("direction", own_of_fan(&FanKey::direction), kXyz, kPositionRange, "",
+          .written_if(stands_still<Fan>)
+          .vector("direction", of_first_key(&FanKey::direction), kXyz, kPositionRange, "",
                   "direction in which it blows, of any length but 0")
           .nonzero()
           .need(Need::here_or_in_first_key)
-          .written_if(fan_stands_still)
-          .number("speed", own_of_fan(&FanKey::speed), within(0, 1000), "m/s",
+          .written_if(stands_still<Fan>)
+          .number("speed", of_first_key(&FanKey::speed), within(0, 1000), "m/s",
                   "speed of the air at the centre of the disc; 0: off")
-          .written_if(fan_stands_still)
+          .written_if(stands_still<Fan>)
           .number("radius", &Fan::radius, kSizeRange, "m", "radius of the disc, where the cone begins")
           .number("angle", &Fan::angle, within(1, 170), "degrees",
                   "full opening angle of the cone; a round jet in free air has 24")
           .number("falloff", &Fan::falloff, within(0, 4), "",
                   "the speed falls with this power of the distance from the apex of the cone: 1 as in a free jet, 0 "
                   "not at all")
-          .choice("interpolation", &Fan::interpolation, kInterpolations,
-                  "interpolation between the entries of `keys`; cubic is smooth")
-          .list(Type::keys, "keys", &Fan::keys, fan_key_rules(),
-                [](Fan& fan, std::size_t i) {
-                  if (i > 0) fan.keys.push_back(FanKey(fan.keys.back()));
-                })
-          .written_if([](Fan& fan) { return fan.keys.size() > 1; })
+          .choice("interpolation", &Fan::interpolation, kInterpolations, kBetweenKeys)
+          .list(Type::keys, "keys", &Fan::keys, fan_key_rules(), copy_key_before<Fan>)
+          .written_if(moves<Fan>)
           .build();
   return kTable;
 }

@@ -37,8 +37,7 @@ const Table& pin_key_rules() {
   static const auto kPlaceOf = [](PinKey& key) -> Vec3& { return key.pose.position; };
   static const Table kTable =
       TableBuilder<PinKey>("Where a pin holds its particles at one time.")
-          .number("time", &PinKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-          .need(Need::required)
+          .with(key_time_row<PinKey>)
           .vector("offset", kPlaceOf, kXyz, kPositionRange, "m", "displacement of the particles from where they start")
           .by_default("as in the key before; in the first key, none")
           .excludes("position")
@@ -79,7 +78,7 @@ void holding_rows(TableBuilder<Pin>& rows) {
 void moving_rows(TableBuilder<Pin>& rows) {
   rows.choice(
           "interpolation", [](Pin& pin) -> Interpolation& { return pin.motion.interpolation; }, kInterpolations,
-          "interpolation between the entries of `keys`; cubic is smooth")
+          kBetweenKeys)
       .list(
           Type::keys, "keys", [](Pin& pin) -> std::vector<PinKey>& { return pin.motion.keys; }, pin_key_rules(),
           [](Pin& pin, std::size_t i) {

@@ -17,18 +17,16 @@ struct Quantity {
 
 Table key_table(const Quantity& quantity) {
   return TableBuilder<PressureKey>("The air inside at one time.")
-      .number("time", &PressureKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-      .need(Need::required)
+      .with(key_time_row<PressureKey>)
       .number(quantity.key, &PressureKey::value, quantity.range, quantity.unit, quantity.documentation)
-      .by_default("as in the key before; in the first key, the value given beside `keys`")
+      .by_default(kDefaultOfKey)
       .build();
 }
 
 /// Adds the rows of the quantity, its interpolation and its key frames.
 void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const Table& keys) {
   rows.number(quantity.key, &Pressure::value, quantity.range, quantity.unit, quantity.documentation)
-      .choice("interpolation", &Pressure::interpolation, kInterpolations,
-              "interpolation between the entries of `keys`; cubic is smooth")
+      .choice("interpolation", &Pressure::interpolation, kInterpolations, kBetweenKeys)
       .list(Type::keys, "keys", &Pressure::keys, keys, [](Pressure& pressure, std::size_t i) {
         pressure.keys.push_back(i == 0 ? PressureKey{0, pressure.value} : PressureKey(pressure.keys.back()));
       });

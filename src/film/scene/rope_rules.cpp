@@ -17,8 +17,7 @@ std::vector<std::string> rope_material_names() {
 const Table& rope_key_rules() {
   static const Table kTable =
       TableBuilder<RopeKey>("Length of the rope at one time.")
-          .number("time", &RopeKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-          .need(Need::required)
+          .with(key_time_row<RopeKey>)
           .number("length", &RopeKey::length, kSizeRange, "m",
                   "length at rest; a change is distributed evenly over the rope, as if a winch pulled it in")
           .need(Need::required)
@@ -82,13 +81,11 @@ const Table& rope_rules() {
           .by_default(of_material)
           .number("damping", &Rope::damping, within(0, 10), "s",
                   "viscosity of stretch and bending, relative to their stiffness")
-          .number("friction", &Rope::friction, within(0, 10), "",
-                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
+          .number("friction", &Rope::friction, within(0, 10), "", kFrictionOfBoth)
           .number("drag", &Rope::drag, within(0, 100), "",
                   "drag coefficient of motion across the rope; 0: no air resistance")
           .vector("velocity", &Rope::velocity, kXyz, within(-1e4, 1e4), "m/s", "initial velocity")
-          .choice("interpolation", &Rope::interpolation, kInterpolations,
-                  "interpolation between the entries of `keys`; cubic is smooth")
+          .choice("interpolation", &Rope::interpolation, kInterpolations, kBetweenKeys)
           .list(Type::keys, "keys", &Rope::keys, rope_key_rules())
           .table("look", &Rope::look, rope_look_rules())
           .not_simulated()

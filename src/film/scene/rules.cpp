@@ -128,8 +128,7 @@ const Table& cloth_look_rules() {
 const Table& pose_key_rules() {
   static const Table kTable =
       TableBuilder<PoseKey>("The pose at one time.")
-          .number("time", &PoseKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-          .need(Need::required)
+          .with(key_time_row<PoseKey>)
           .with([](auto& rows) { pose_rows(rows, &PoseKey::pose, "position at this time", kDefaultOfKey); })
           .build();
   return kTable;
@@ -141,7 +140,7 @@ void track_rows(TableBuilder<S>& rows, Member track, Start start) {
   const auto keys = [track](S& s) -> std::vector<PoseKey>& { return std::invoke(track, s).keys; };
   rows.choice(
       "interpolation", [track](S& s) -> Interpolation& { return std::invoke(track, s).interpolation; }, kInterpolations,
-      "interpolation between the entries of `keys`; cubic is smooth");
+      kBetweenKeys);
   rows.list(Type::keys, "keys", keys, pose_key_rules(), [keys, start](S& s, std::size_t i) {
     keys(s).push_back(i == 0 ? PoseKey{0, start(s)} : PoseKey(keys(s).back()));
   });
@@ -354,10 +353,8 @@ const Table& obstacle_rules() {
                  "obstacle, or part of a character such as \"man.head\", with which it moves; its own pose and keys "
                  "say where it would be if the followed body stayed where it is at the start of the run")
           .by_default("none")
-          .number("friction", &Obstacle::friction, within(0, 10), "",
-                  "Coulomb friction coefficient; a contact uses the geometric mean of the coefficients of both sides")
-          .plain(Type::boolean, "collide", &Obstacle::collide,
-                 "whether it collides; false: cloth, ropes and bodies pass through it")
+          .number("friction", &Obstacle::friction, within(0, 10), "", kFrictionOfBoth)
+          .plain(Type::boolean, "collide", &Obstacle::collide, kWhetherItCollides)
           .table("look", &Obstacle::look, obstacle_look_rules())
           .not_simulated()
           .with([](auto& rows) { track_rows(rows, &Obstacle::motion, [](Obstacle& o) { return o.pose; }); })

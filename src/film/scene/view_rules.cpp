@@ -6,29 +6,6 @@
 namespace weft::scene {
 namespace {
 
-// Appends entry i of `keys` of a camera or light, with its defaults. Entry 0 already exists; its defaults are the
-// values that the table of the camera or light gives directly. The defaults of each later entry are the values of the
-// entry before.
-template <class S>
-void copy_key_before(S& owner, std::size_t i) {
-  if (i == 0) return;
-  const auto last = owner.keys.back();
-  owner.keys.push_back(last);
-}
-template <class S>
-bool moves(S& owner) {
-  return owner.keys.size() > 1;
-}
-template <class S>
-bool stands_still(S& owner) {
-  return owner.keys.size() == 1;
-}
-/// Returns a function that returns a member of the first key frame.
-template <class Key, class Field>
-auto own(Field Key::*field) {
-  return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
-}
-
 const Range kFieldOfView = within(1, 170);    // [degrees]
 const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
@@ -47,7 +24,7 @@ void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& o
 /// Adds the rows of the focal length and the sensor width of a camera.
 template <class Stands>
 void focal_rows(TableBuilder<Camera>& rows, Stands stands) {
-  focal_length_row(rows, own(&CameraKey::focal_length), "none", stands);
+  focal_length_row(rows, of_first_key(&CameraKey::focal_length), "none", stands);
   rows.number("sensor_width", &Camera::sensor_width, within(0.1, 1000), "mm",
               "width of the sensor along the longer side of the picture; only with focal_length")
       .by_default("36")
@@ -60,8 +37,7 @@ bool has_field_of_view(Camera& camera) {
 const Table& camera_key_rules() {
   static const Table kTable =
       TableBuilder<CameraKey>("The view at one time.")
-          .number("time", &CameraKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-          .need(Need::required)
+          .with(key_time_row<CameraKey>)
           .vector("position", &CameraKey::position, kXyz, kPositionRange, "m", "position of the camera")
           .by_default(kDefaultOfKey)
           .vector("target", &CameraKey::target, kXyz, kPositionRange, "m",
@@ -79,18 +55,18 @@ const Table& camera_key_rules() {
 
 /// Adds the keys of a placed camera, with or without key frames.
 void placed_camera_rows(TableBuilder<Camera>& rows) {
-  rows.vector("position", own(&CameraKey::position), kXyz, kPositionRange, "m", "position of the camera")
+  rows.vector("position", of_first_key(&CameraKey::position), kXyz, kPositionRange, "m", "position of the camera")
       .need(Need::here_or_in_first_key)
       .written_if(stands_still<Camera>)
-      .vector("target", own(&CameraKey::target), kXyz, kPositionRange, "m",
+      .vector("target", of_first_key(&CameraKey::target), kXyz, kPositionRange, "m",
               "point at which the camera looks, the middle of the picture")
       .need(Need::here_or_in_first_key)
       .written_if(stands_still<Camera>)
-      .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical field of view")
+      .number("field_of_view", of_first_key(&CameraKey::field_of_view), kFieldOfView, "degrees",
+              "vertical field of view")
       .written_if([](Camera& camera) { return stands_still(camera) && has_field_of_view(camera); })
       .with([](auto& own_rows) { focal_rows(own_rows, stands_still<Camera>); })
-      .choice("interpolation", &Camera::interpolation, kInterpolations,
-              "interpolation between the entries of `keys`; cubic is smooth")
+      .choice("interpolation", &Camera::interpolation, kInterpolations, kBetweenKeys)
       .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), copy_key_before<Camera>)
       .written_if(moves<Camera>)
       .plain(Type::text, "follow", &Camera::follow,
@@ -133,7 +109,8 @@ void direction_rows(TableBuilder<Camera>& rows) {
               "elevation angle of the camera as seen from the subject")
       .number("orbit", &Camera::orbit, within(-3600, 3600), "degrees/s",
               "rate at which the azimuth grows: the camera moves around the subject, to the right")
-      .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical field of view")
+      .number("field_of_view", of_first_key(&CameraKey::field_of_view), kFieldOfView, "degrees",
+              "vertical field of view")
       .by_default("30")
       .written_if(has_field_of_view)
       .with([](auto& own_rows) { focal_rows(own_rows, stands_still<Camera>); })
@@ -155,8 +132,7 @@ void file_rows(TableBuilder<Camera>& rows) {
 /// Rules of a key frame of a light. `rows`: adds the keys that only suns have, or those that only spots have.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("The light at one time.")
-      .number("time", &LightKey::time, kTimeRange, "s", "time of the scene; later than that of the key before")
-      .need(Need::required)
+      .with(key_time_row<LightKey>)
       .with(rows)
       .number("intensity", &LightKey::intensity, kIntensity, "",
               "brightness; with 1, a white surface that faces the light looks white, for a spot at its target")
@@ -211,11 +187,11 @@ const Table& camera_rules() {
           .variant("follow", Rows().with(direction_rows).with(smoothing_row))
           .variant("close", Rows().with(direction_rows).with(smoothing_row))
           .variant("track", Rows()
-                                .vector("position", own(&CameraKey::position), kXyz, kPositionRange, "m",
+                                .vector("position", of_first_key(&CameraKey::position), kXyz, kPositionRange, "m",
                                         "position of the camera")
                                 .need(Need::required)
-                                .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees",
-                                        "vertical field of view")
+                                .number("field_of_view", of_first_key(&CameraKey::field_of_view), kFieldOfView,
+                                        "degrees", "vertical field of view")
                                 .by_default("as wide as the subject needs in all frames")
                                 .written_if(has_field_of_view)
                                 .with([](auto& rows) { focal_rows(rows, stands_still<Camera>); })
@@ -241,30 +217,30 @@ const Table& light_rules() {
           .choice("kind", &Light::spot, {"sun", "spot"}, "sun: parallel light; spot: a cone of light from one place")
           .selects()
           .color("color", &Light::color, "color of the light")
-          .number("intensity", own(&LightKey::intensity), kIntensity, "",
+          .number("intensity", of_first_key(&LightKey::intensity), kIntensity, "",
                   "brightness; with 1, a white surface that faces the light looks white, for a spot at its target")
           .written_if(stands_still<Light>)
           .number("softness", &Light::softness, within(0, 90), "degrees",
                   "angular width of the source as seen from the scene; wider: softer shadows; above 40 counts as 40")
-          .choice("interpolation", &Light::interpolation, kInterpolations,
-                  "interpolation between the entries of `keys`; cubic is smooth")
+          .choice("interpolation", &Light::interpolation, kInterpolations, kBetweenKeys)
           .variant("sun", Rows()
-                              .vector("direction", own(&LightKey::direction), kXyz, kPositionRange, "",
+                              .vector("direction", of_first_key(&LightKey::direction), kXyz, kPositionRange, "",
                                       "direction in which the light travels, of any length but 0")
                               .nonzero()
                               .by_default("[-0.4, -0.5, -1] where z is up, turned with the up axis")
                               .written_if(stands_still<Light>)
                               .with(keys_row(sun_key_rules())))
-          .variant("spot",
-                   Rows()
-                       .vector("position", own(&LightKey::position), kXyz, kPositionRange, "m", "position of the lamp")
-                       .by_default("5 m up the up axis")
-                       .written_if(stands_still<Light>)
-                       .vector("target", own(&LightKey::target), kXyz, kPositionRange, "m", "point at which it shines")
-                       .written_if(stands_still<Light>)
-                       .number("cone_angle", &Light::cone_angle, within(1, 170), "degrees",
-                               "full opening angle of the cone of light")
-                       .with(keys_row(spot_key_rules())))
+          .variant("spot", Rows()
+                               .vector("position", of_first_key(&LightKey::position), kXyz, kPositionRange, "m",
+                                       "position of the lamp")
+                               .by_default("5 m up the up axis")
+                               .written_if(stands_still<Light>)
+                               .vector("target", of_first_key(&LightKey::target), kXyz, kPositionRange, "m",
+                                       "point at which it shines")
+                               .written_if(stands_still<Light>)
+                               .number("cone_angle", &Light::cone_angle, within(1, 170), "degrees",
+                                       "full opening angle of the cone of light")
+                               .with(keys_row(spot_key_rules())))
           .build();
   return kTable;
 }
