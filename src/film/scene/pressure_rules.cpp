@@ -51,15 +51,10 @@ const Table& pressure_rules() {
       TableBuilder<Pressure>(
           "Air that the cloth encloses, from the start or, if it is sewn, from the end of sewing. An opening counts as "
           "closed by triangles from its border to the middle of that border.")
-          .choice_by(
-              "control", {"gauge", "air", "fill"},
-              "quantity that the scene gives: the pressure (gauge), or the amount of air (air, fill); the pressure of "
-              "a given amount follows from the volume at constant temperature, with 101325 Pa outside",
-              [](Pressure& p) { return static_cast<std::size_t>(p.control); },
-              [](Pressure& p, std::size_t index) {
-                p.control = static_cast<PressureControl>(index);
-                p.value = p.control == PressureControl::fill ? 1 : 0;
-              })
+          .choice("control", &Pressure::control, {"gauge", "air", "fill"},
+                  "quantity that the scene gives: the pressure (gauge), or the amount of air (air, fill); the pressure "
+                  "of a given amount follows from the volume at constant temperature, with 101325 Pa outside")
+          .when_given([](Pressure& p) { p.value = p.control == PressureControl::fill ? 1 : 0; })
           .selects()
           .variant("gauge", Rows().with([](auto& rows) { quantity_rows(rows, kGauge, kGaugeKeys); }))
           .variant("air", Rows().with([](auto& rows) { quantity_rows(rows, kAir, kAirKeys); }))

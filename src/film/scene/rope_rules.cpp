@@ -68,11 +68,8 @@ const Table& rope_rules() {
                         "number of pieces between particles; each must be at least 1.5 diameters long")
           .by_default("as many as give pieces of 3 diameters")
           .number("diameter", &Rope::diameter, above(0, 1), "m", "diameter, for contact, air resistance and drawing")
-          .choice_by(
-              "material", rope_material_names(),
-              "material, which gives mass, stretch and bend for the diameter; steel is wire rope",
-              [](Rope& rope) { return static_cast<std::size_t>(rope.material); },
-              [](Rope& rope, std::size_t index) { rope.material = static_cast<int>(index); })
+          .choice("material", &Rope::material, rope_material_names(),
+                  "material, which gives mass, stretch and bend for the diameter; steel is wire rope")
           .number("mass", &Rope::mass, above(0, 1e4), "kg/m", "mass per length")
           .by_default(of_material)
           .number("stretch", &Rope::stretch, above(0, 1e10), "N", "stretching stiffness: force per strain (EA)")

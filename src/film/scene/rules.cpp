@@ -208,14 +208,11 @@ const Table& cloth_rules() {
       TableBuilder<Cloth>("A sheet of cloth: a rectangle, the shape of a mesh file, or sewn from a pattern.")
           .plain(Type::name, "name", &Cloth::name, "unique name among cloths, ropes, obstacles and characters")
           .need(Need::required)
-          .choice_by(
-              "shape", {"quads", "aligned_triangles", "crossed_triangles", "mesh", "pattern"},
-              "a rectangle of quads or of triangles, the triangles of a mesh file, or a sewing pattern",
-              [](Cloth& c) { return static_cast<std::size_t>(c.shape); },
-              [](Cloth& c, std::size_t index) {
-                c.shape = static_cast<ClothShape>(index);
-                if (c.shape == ClothShape::mesh) c.sewing = 0;  // the file contains the sewn shape
-              })
+          .choice("shape", &Cloth::shape, {"quads", "aligned_triangles", "crossed_triangles", "mesh", "pattern"},
+                  "a rectangle of quads or of triangles, the triangles of a mesh file, or a sewing pattern")
+          .when_given([](Cloth& c) {
+            if (c.shape == ClothShape::mesh) c.sewing = 0;  // the file contains the sewn shape
+          })
           .selects()
           .with(cloth_shape_rows)
           .with([](auto& rows) {
@@ -362,11 +359,6 @@ const Table& obstacle_rules() {
   return kTable;
 }
 
-void set_up_axis(Scene& s, std::size_t index) {
-  s.up = static_cast<UpAxis>(index);
-  s.physics.gravity = rotate_to_up_axis(s.up, Physics{}.gravity);
-}
-
 void append_cloth(Scene& s, std::size_t) {
   s.cloths.emplace_back().look.color = kClothColor;
 }
@@ -392,9 +384,8 @@ const Table& scene_rules() {
   // The rule of the up axis comes first, because the defaults of later keys depend on it.
   static const Table kTable =
       TableBuilder<Scene>("A scene of Weft: SI units, angles in degrees, colors in sRGB.")
-          .choice_by(
-              "up", {"y", "z"}, "axis that points up", [](Scene& s) { return static_cast<std::size_t>(s.up); },
-              set_up_axis)
+          .choice("up", &Scene::up, {"y", "z"}, "axis that points up")
+          .when_given([](Scene& s) { s.physics.gravity = rotate_to_up_axis(s.up, Physics{}.gravity); })
           .plain(Type::text, "title", &Scene::title, "title, for human readers; it is stored in videos")
           .not_simulated()
           .table("time", &Scene::time, time_rules())

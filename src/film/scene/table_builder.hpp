@@ -132,7 +132,8 @@ class TableBuilder : public RowBuilder {
     add(key, type, documentation);
     return bind_member(member);
   }
-  /// A choice, stored as an enumeration or a bool. `choices`: in the order of the enumeration, or for false and true.
+  /// A choice, stored as an enumeration, an index or a bool. `choices`: in the order of the enumeration, or for false
+  /// and true.
   template <class Member>
   TableBuilder& choice(std::string_view key, Member member, const Names& choices, std::string_view documentation) {
     using Field = std::remove_reference_t<std::invoke_result_t<Member, S&>>;

@@ -169,17 +169,14 @@ const Table& camera_rules() {
           .starting_from({.name = {}, .keys = {CameraKey{}}})
           .plain(Type::name, "name", &Camera::name, "unique name of the camera")
           .need(Need::required)
-          .choice_by(
-              "kind", {"placed", "whole", "follow", "close", "track", "file"},
-              "placed: by position and target. Computed from all frames before drawing: whole shows the whole run, "
-              "follow moves along at a constant distance, close is as near as the subject allows, track stands still "
-              "and turns. file: position and lens come from a file",
-              [](Camera& c) { return static_cast<std::size_t>(c.kind); },
-              [](Camera& c, std::size_t index) {
-                c.kind = static_cast<CameraKind>(index);
-                if (is_computed(c.kind)) c.keys.front().field_of_view = kComputedFieldOfView;
-                if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
-              })
+          .choice("kind", &Camera::kind, {"placed", "whole", "follow", "close", "track", "file"},
+                  "placed: by position and target. Computed from all frames before drawing: whole shows the whole run, "
+                  "follow moves along at a constant distance, close is as near as the subject allows, track stands "
+                  "still and turns. file: position and lens come from a file")
+          .when_given([](Camera& c) {
+            if (is_computed(c.kind)) c.keys.front().field_of_view = kComputedFieldOfView;
+            if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
+          })
           .selects()
           .with(lens_rows)
           .variant("placed", Rows().with(placed_camera_rows))
