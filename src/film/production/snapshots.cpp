@@ -50,8 +50,6 @@ frame::Appearance appearance(const scene::Look& look) {
 
 /// Default widths of the hems of garments, and of other cloth [m].
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
-// Ratio of thickness to density of cloth without a named fabric [m per kg/m²], estimated from the named fabrics.
-constexpr double kThicknessPerDensity = 2.2e-3;
 // kStrandTurnLength: length of a rope along which a strand turns once around the rope [diameters]. kMinTwistedDiameter:
 // minimum diameter of ropes that are drawn with strands [m]; thinner strands would be finer than a pixel and flicker.
 constexpr double kStrandTurnLength = 3.2, kMinTwistedDiameter = 0.009;
@@ -73,7 +71,8 @@ scene::Look look_of(const scene::Cloth& cloth) {
   look.sheer = look.sheer.value_or(finish.sheer);
   look.warp_fraction = finish.warp_fraction;
   look.threads = finish.threads;
-  look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessPerDensity * cloth.material.density;
+  look.cloth_thickness =
+      fabric ? fabric->measured.thickness.value : scene::kThicknessPerDensity * cloth.material.density;
   const double hem = cloth.shape == scene::ClothShape::pattern ? kGarmentHem : kHem;
   look.hem = look.hem.value_or(!fabric || fabric->frays ? hem : 0);
   return look;

@@ -38,7 +38,7 @@
 //                drape: 7.5 N/m.
 //   extension    EMT: weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, fabrics
 //                without threads 12 %
-//   thickness    2.2 mm per kg/m²; measured: 1.7 to 4
+//   thickness    kThicknessPerDensity
 //
 // Not measured but chosen are: friction (published for cloth on cloth: usually 0.2 to 0.6), contact thickness (several
 // times the thickness of the fabric, because contact cannot resolve the thickness itself), drag, and viscosity of
@@ -311,7 +311,7 @@ Measurements measurements(const Row& row) {
   const double bend = estimated_bend(row), skew = row.weave == Weave::woven ? std::sqrt(1.4) : 1;
   Measurements m;
   m.density = {row.density.value / 1000, row.density.estimated};
-  m.thickness = known_or(row.thickness, 1e-3, 2.2e-3 * m.density.value);
+  m.thickness = known_or(row.thickness, 1e-3, kThicknessPerDensity * m.density.value);
   m.extension_weft = known_or(both(row.extension).first, 0.01, extension_weft);
   m.extension_warp = known_or(both(row.extension).second, 0.01, extension_warp);
   m.shear = known_or(row.shear, 1, row.fitted_shear.value_or(estimated_shear(row)));

@@ -23,18 +23,12 @@ int dressing_frames(const Scene& scene) {
   return frames;
 }
 
-}  // namespace
-
-bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner) {
-  std::set<std::string> below;
-  add_below(scene, outer, below);
-  return below.contains(inner);
-}
-
+// The number of layers below each cloth: the number of other cloths in the longest chain that begins with this cloth
+// and in which each cloth is worn over the next one.
 std::vector<std::size_t> layer_depths(const Scene& scene) {
   std::vector<std::size_t> layers(scene.cloths.size(), 0);
-  // Repeats passes until nothing changes. One pass per cloth is enough: a chain without a cycle contains each cloth at
-  // most once. check_layers() (checks.cpp) reports cycles.
+  // One pass per cloth is enough: a chain without a cycle contains each cloth at most once. check_layers() (checks.cpp)
+  // reports cycles.
   bool has_changed = true;
   for (std::size_t pass = 0; has_changed && pass < scene.cloths.size(); ++pass) {
     has_changed = false;
@@ -49,6 +43,14 @@ std::vector<std::size_t> layer_depths(const Scene& scene) {
       }
   }
   return layers;
+}
+
+}  // namespace
+
+bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner) {
+  std::set<std::string> below;
+  add_below(scene, outer, below);
+  return below.contains(inner);
 }
 
 std::vector<Layer> list_layers(const Scene& scene) {

@@ -13,10 +13,6 @@ namespace weft::scene {
 /// the name `outer`.
 bool worn_over(const Scene& scene, const std::string& outer, const std::string& inner);
 
-/// The number of layers below each cloth: the number of other cloths in the longest chain that begins with this cloth
-/// and in which each cloth is worn over the next one. 0 if the cloth is worn over no other cloth.
-std::vector<std::size_t> layer_depths(const Scene& scene);
-
 using model::Layer;
 
 /// All layers from the skin outward, at least one. The layers are put on one after the other, at the beginnings of

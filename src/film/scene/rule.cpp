@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace weft::scene {
@@ -13,16 +14,11 @@ const Rule* Table::find(std::string_view key) const {
   return nullptr;
 }
 
-const Variant* Table::find_variant(std::string_view name) const {
-  for (const Variant& variant : variants) {
-    if (variant.name == name) return &variant;
-  }
-  return nullptr;
-}
-
 const Variant* Table::variant_of(void* target) const {
   if (selector.empty()) return nullptr;
-  return find_variant(std::get<std::string>(find(selector)->get(target)));
+  const auto selected = std::get<std::string>(find(selector)->get(target));
+  const auto found = std::ranges::find(variants, selected, &Variant::name);
+  return found == variants.end() ? nullptr : &*found;
 }
 
 std::string join_or(const std::vector<std::string>& words) {

@@ -96,9 +96,8 @@ struct Table {
   std::vector<Variant> variants;
   std::function<std::shared_ptr<void>()> make;  ///< makes the struct with its defaults
 
-  /// The rule of this key in `rules`, or the variant of this name; null if there is none.
+  /// The rule of this key in `rules`; null if there is none.
   const Rule* find(std::string_view key) const;
-  const Variant* find_variant(std::string_view name) const;
   /// The variant that the selector in the struct `target` selects; null if the table has no selector.
   const Variant* variant_of(void* target) const;
 };
