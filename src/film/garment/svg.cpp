@@ -38,7 +38,7 @@ std::string words_in(const pugi::xml_node& node) {
   return words;
 }
 
-void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
+void read_text(const Drawing& drawing, const pugi::xml_node& node, Group& group) {
   std::istringstream stream(words_in(node));
   std::string first, name, more;
   stream >> first;
@@ -51,7 +51,7 @@ void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node&
   if (!x || !y || node.child("textPath"))
     drawing.refuse(node, "expected x and y where a label stands, got something else");
   // An absent coordinate is 0 (SVG 1.1, section 10.4). Illustrator writes texts with a transform, but without x and y.
-  const Vec2 place = sheet.to_metres(node) * Vec2(*x, *y);
+  const Vec2 place = drawing.to_metres(node) * Vec2(*x, *y);
   if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got infinite or undefined ones");
   if (first == "origin") {
     group.origin = place;
@@ -75,15 +75,15 @@ bool is_mark(const pugi::xml_node& node) {
                      [&](const std::string& name) { return std::ranges::find(kMarks, name) != kMarks.end(); });
 }
 
-void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
+void read_group(const Drawing& drawing, const pugi::xml_node& node, Group& group) {
   for (const pugi::xml_node& child : node.children()) {
     const std::string_view kind = child.name();
     if (kind == "text") {
-      read_text(drawing, sheet, child, group);
+      read_text(drawing, child, group);
     } else if (is_mark(child)) {
       continue;
     } else if (kind == "g") {
-      read_group(drawing, sheet, child, group);
+      read_group(drawing, child, group);
     } else if (kind == "polygon" || kind == "rect" || (kind == "path" && is_closed_line(child))) {
       group.outlines.push_back(child);
     } else if (kind == "circle" || kind == "ellipse" || (kind == "polyline" && is_closed_line(child))) {
@@ -124,19 +124,19 @@ std::vector<std::string> name_edges(const Outline& outline, const std::vector<La
   return names;
 }
 
-DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node) {
+DrawnPanel read_panel_group(const Drawing& drawing, const pugi::xml_node& node) {
   Group group;
-  read_group(drawing, sheet, node, group);
+  read_group(drawing, node, group);
   if (group.outlines.empty()) group.outlines = std::move(group.others);
   if (group.outlines.size() != 1)
     drawing.refuse(node,
                    fmt::format("expected a group with one closed outline, got {}; name the outline itself by its id",
                                group.outlines.size()));
-  DrawnPanel panel{sheet.outline(group.outlines[0]), {}};
+  DrawnPanel panel{drawing.outline(group.outlines[0]), {}};
   if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
   // Without an origin text, uses the origin of the group, so that the panel does not change if the group is moved on
   // the sheet.
-  const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
+  const Vec2 origin = group.origin.value_or(drawing.to_metres(node) * Vec2(0, 0));
   for (Curve& curve : panel.outline)
     for (Vec2& p : curve.control) p -= origin;
   return panel;
@@ -146,10 +146,9 @@ DrawnPanel read_panel_group(const Drawing& drawing, const Sheet& sheet, const pu
 
 DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& id) {
   const Drawing drawing(file);
-  const Sheet sheet(drawing);
   const pugi::xml_node element = drawing.find(id);
-  if (std::string_view(element.name()) == "g") return read_panel_group(drawing, sheet, element);
-  return {sheet.outline(element), {}};
+  if (std::string_view(element.name()) == "g") return read_panel_group(drawing, element);
+  return {drawing.outline(element), {}};
 }
 
 }  // namespace weft::garment

@@ -255,6 +255,7 @@ Drawing::Drawing(const std::filesystem::path& file) : file_(file) {
   if (!result) refuse(result.offset, fmt::format("expected valid XML: {}", result.description()));
   DepthLimit limit;
   if (!document_.traverse(limit)) refuse(0, fmt::format("expected at most {} nested elements, got more", kMaxDepth));
+  unit_ = metres_per_unit(*this);
 }
 
 void Drawing::refuse(std::ptrdiff_t offset, const std::string& text) const {
@@ -324,26 +325,24 @@ bool is_closed_line(const pugi::xml_node& node) {
   return !data.empty() && parse_paths(data).mistake.empty();
 }
 
-Sheet::Sheet(const Drawing& drawing) : drawing_(drawing), unit_(metres_per_unit(drawing)) {}
-
-Affine Sheet::to_metres(const pugi::xml_node& element) const {
+Affine Drawing::to_metres(const pugi::xml_node& element) const {
   Affine transform = Affine::Identity();
-  for (pugi::xml_node node = element; node && node != drawing_.root(); node = node.parent()) {
-    if (std::string_view(node.name()) == "svg") transform = place_nested(drawing_, node) * transform;
-    transform = parse_transform(drawing_, node) * transform;
+  for (pugi::xml_node node = element; node && node != root(); node = node.parent()) {
+    if (std::string_view(node.name()) == "svg") transform = place_nested(*this, node) * transform;
+    transform = parse_transform(*this, node) * transform;
   }
   return Eigen::Scaling(unit_, -unit_) * transform;
 }
 
-Outline Sheet::outline(const pugi::xml_node& element) const {
-  std::vector<Outline> outlines = outlines_of(drawing_, element);
+Outline Drawing::outline(const pugi::xml_node& element) const {
+  std::vector<Outline> outlines = outlines_of(*this, element);
   const Affine transform = to_metres(element);
   std::vector<Box> boxes(outlines.size());
   for (std::size_t i = 0; i < outlines.size(); ++i)
     for (Curve& curve : outlines[i])
       for (Vec2& p : curve.control) {
         p = transform * p;
-        if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got infinite or undefined ones");
+        if (!p.allFinite()) refuse(element, "expected finite coordinates, got infinite or undefined ones");
         boxes[i].extend(p);
       }
   if (outlines.size() == 1) return std::move(outlines[0]);
@@ -354,9 +353,9 @@ Outline Sheet::outline(const pugi::xml_node& element) const {
       const double margin = std::max((inner.min() - outer.min()).maxCoeff(), (outer.max() - inner.max()).maxCoeff());
       if (outer.contains(inner) && margin <= kMaxAllowance) return std::move(outlines[i]);
     }
-  drawing_.refuse(element, fmt::format("expected one outline, or a seam line with its allowance around it, got {} "
-                                       "outlines",
-                                       outlines.size()));
+  refuse(element, fmt::format("expected one outline, or a seam line with its allowance around it, got {} "
+                              "outlines",
+                              outlines.size()));
 }
 
 }  // namespace weft::garment

@@ -13,7 +13,8 @@
 
 namespace weft::garment {
 
-/// A parsed SVG file; reports errors with their place in the file. Its functions throw Error(asset_unreadable).
+/// A parsed SVG file. Converts elements to outlines in metres, with y upward. Reports errors with their place in the
+/// file: its functions throw Error(asset_unreadable).
 class Drawing {
  public:
   explicit Drawing(const std::filesystem::path& file);
@@ -25,6 +26,10 @@ class Drawing {
   /// The element with an id or Inkscape label, or with a number such as "path:2"; refuses others.
   pugi::xml_node find(const std::string& id) const;
 
+  Eigen::Affine2d to_metres(const pugi::xml_node& element) const;
+  /// The outline of the panel that the element draws [m].
+  Outline outline(const pugi::xml_node& element) const;
+
  private:
   pugi::xml_node find_numbered(const std::string& id) const;
   std::string suggest_ids(const std::string& id) const;
@@ -32,6 +37,7 @@ class Drawing {
   std::filesystem::path file_;
   std::string text_;
   pugi::xml_document document_;
+  double unit_ = 1;  // size of one unit of the drawing [m]
 };
 
 /// A coordinate or a length of an element, in units of the element, which are CSS pixels; 0 if the text is empty. Of a
@@ -40,19 +46,5 @@ std::optional<double> parse_coordinate(std::string_view text);
 
 /// Whether an element is a path or polyline whose data give closed outlines.
 bool is_closed_line(const pugi::xml_node& node);
-
-/// Converts elements of a drawing to outlines in metres, with y upward.
-class Sheet {
- public:
-  explicit Sheet(const Drawing& drawing);
-
-  Eigen::Affine2d to_metres(const pugi::xml_node& element) const;
-  /// The outline of the panel that the element draws [m].
-  Outline outline(const pugi::xml_node& element) const;
-
- private:
-  const Drawing& drawing_;
-  const double unit_;  // size of one unit of the drawing [m]
-};
 
 }  // namespace weft::garment
