@@ -126,10 +126,6 @@ bool hangs_from_waist(const Pattern& pattern) {
   return (drawn.waist || drawn.hip) && top < 0.5 * (kWaistHeightRatio + kNeckHeightRatio) * *drawn.height;
 }
 
-bool is_on_arm(const Panel& panel) {
-  return panel.around == Around::left_arm || panel.around == Around::right_arm;
-}
-
 // For each panel, the height of its lowest corner at an armhole, in the drawing as it is turned at the start [m]:
 // - on the trunk, the lowest end of an edge that is sewn to a panel around an arm;
 // - on a panel around an arm, the lowest end of an edge that is sewn to a panel elsewhere;
@@ -155,9 +151,9 @@ std::vector<std::optional<double>> find_armholes(const Pattern& pattern) {
     const auto turned_start = [&](std::size_t e) { return Vec2(turn * panel.edges[e % count].curves.front().start()); };
     const auto add = [&](const Vec2& corner) { lowest[p] = std::min(lowest[p].value_or(corner.y()), corner.y()); };
     for (std::size_t e = 0; e < count; ++e)
-      if (partners[e] >= 0 && is_on_arm(pattern.panels[at(partners[e])]) != is_on_arm(panel))
+      if (partners[e] >= 0 && is_arm(pattern.panels[at(partners[e])].around) != is_arm(panel.around))
         add(turned_start(e)), add(turned_start(e + 1));
-    if (lowest[p] || is_on_arm(panel)) continue;
+    if (lowest[p] || is_arm(panel.around)) continue;
     const double origin = panel.position.value_or(Vec2(0, 0)).x();
     for (std::size_t e = 0; e < count; ++e) {
       const std::size_t next = (e + 1) % count;
@@ -259,7 +255,7 @@ void shorten_below_armholes(Pattern& pattern, double factor) {
   std::array<double, 2> levels{kInfinity, kInfinity};
   for (std::size_t p = 0; p < pattern.panels.size(); ++p)
     if (const Panel& panel = pattern.panels[p]; armholes[p] && start_height(panel)) {
-      double& level = levels[is_on_arm(panel) ? 1 : 0];
+      double& level = levels[is_arm(panel.around) ? 1 : 0];
       level = std::min(level, *start_height(panel) + start_scale(panel) * *armholes[p]);
     }
   for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
@@ -268,7 +264,7 @@ void shorten_below_armholes(Pattern& pattern, double factor) {
     // Points of the drawing below `limit` approach the height `fixed`. A panel of which no height is known is wholly
     // below the armholes: its seams place it.
     double fixed = 0, limit = kInfinity;
-    const double level = levels[is_on_arm(panel) ? 1 : 0];
+    const double level = levels[is_arm(panel.around) ? 1 : 0];
     if (armholes[p])
       fixed = limit = *armholes[p];
     else if (const std::optional<double> start = start_height(panel); start && std::isfinite(level))

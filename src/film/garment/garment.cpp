@@ -258,19 +258,16 @@ class Sewing {
       const Panel& panel = pattern_.panels[p];
       const bool inside = panel.from_inside();
       for (const mesh::Triangle& t : meshes_[p].triangles) {
-        mesh::Triangle joined{};
+        mesh::Triangle vertices = joined(p, t);
         std::array<Vec2, 3> material;
-        for (std::size_t k = 0; k < 3; ++k) {
-          joined[k] = vertex_of_point_[at(first_point_[p] + t[k])];
-          material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
-        }
+        for (std::size_t k = 0; k < 3; ++k) material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         // The drawing of a panel from the inside shows the back of the cloth. Exchanges left and right.
         if (inside) {
-          std::swap(joined[1], joined[2]);
+          std::swap(vertices[1], vertices[2]);
           std::swap(material[1], material[2]);
           for (Vec2& m : material) m.x() = -m.x();
         }
-        garment_.sheet.triangles.push_back(joined);
+        garment_.sheet.triangles.push_back(vertices);
         garment_.sheet.material.push_back(material);
         if (reinforced) garment_.sheet.reinforcements.push_back(panel.reinforcement);
         garment_.panel_of.push_back(static_cast<Index>(p));
@@ -302,13 +299,12 @@ class Sewing {
       for (const mesh::Triangle& t : meshes_[p].triangles)
         for (std::size_t k = 0; k < 3; ++k)
           garment_.uv[at(joined(p, t)[k])] = along_grain(pattern_.panels[p], meshes_[p].points[at(t[k])]);
-    for (std::size_t t = 0, p = 0, first = 0; t < garment_.sheet.triangles.size(); ++t) {
-      while (at(garment_.panel_of[t]) != p) first = t, ++p;
-      auto& of = corners.emplace_back();
-      mesh::Triangle own = meshes_[p].triangles[t - first];
-      if (pattern_.panels[p].from_inside()) std::swap(own[1], own[2]);
-      for (std::size_t k = 0; k < 3; ++k) of[k] = bent[p][at(own[k])];
-    }
+    for (std::size_t p = 0; p < meshes_.size(); ++p)
+      for (const mesh::Triangle& t : meshes_[p].triangles) {
+        auto& of = corners.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) of[k] = bent[p][at(t[k])];
+        if (pattern_.panels[p].from_inside()) std::swap(of[1], of[2]);
+      }
     std::vector<Vec3>& x = garment_.sheet.rest;
     x = join_in_space(garment_.sheet.triangles, corners, at(vertex_count_), spacing_, size_factor(*wearer_));
     move_out_of_skin(*wearer_, garment_.sheet.triangles, kClearanceRatio * pattern_.gap, x);

@@ -429,8 +429,8 @@ void Pattern::scale_by(const Vec2& factors, double rise) {
   const bool flat = !has_bent_panels();
   for (Panel& panel : panels) {
     if (flat && rise != 0 && !panel.position) panel.position = Vec2(0, 0);  // where such a panel starts
-    const bool on_arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
-    if (panel.position) *panel.position = panel.position->cwiseProduct(factors) + Vec2(0, on_arm ? 0 : rise);
+    if (panel.position)
+      *panel.position = panel.position->cwiseProduct(factors) + Vec2(0, is_arm(panel.around) ? 0 : rise);
     const Eigen::Rotation2Dd turn(panel.rotation * std::numbers::pi / 180);
     const bool turns = panel.rotation != 0 && factors.x() != factors.y();
     for (PanelEdge& edge : panel.edges)

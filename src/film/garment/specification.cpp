@@ -332,10 +332,9 @@ class Reader {
   Eigen::Affine2d map_to_worn(std::size_t p) const {
     const SpecPanel& panel = panels_[p];
     const Vec2 mirror(panel.mirrored ? -1 : 1, 1);
-    const bool arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
     Vec2 up(0, 1);
     // Files may draw legs apart, at an angle to the vertical. Such a panel starts upright.
-    if (arm)
+    if (is_arm(panel.around))
       up = direction_to_trunk(p).cwiseProduct(mirror);
     else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
       up = panel.is_limb() ? nearest_axis(height) : height.normalized();
@@ -372,7 +371,6 @@ class Reader {
       Panel panel;
       panel.name = of.name;
       panel.around = of.around;
-      const bool arm = of.around == Around::left_arm || of.around == Around::right_arm;
       // Panels of limbs start at the front or the back, unless they face sideways.
       const bool sideways = std::abs(of.outward.z()) < 0.5;
       double angle = std::atan2(of.outward.x(), of.outward.z());
@@ -396,7 +394,7 @@ class Reader {
       }
       // Seams determine the positions of panels around arms and neck, because bodies differ too much there for the
       // positions of the file.
-      if (arm || of.around == Around::neck) panel.position.reset();
+      if (is_arm(of.around) || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
       panel.turned = of.turned;
       of.worn = map;

@@ -15,8 +15,6 @@ namespace {
 // weight is so small that this term hardly changes lengths, but it determines where each connected set of panels
 // starts.
 constexpr double kAnchorWeight = 1e-4;
-// Number of smoothing rounds of inflate().
-constexpr int kSmoothingRounds = 10;
 
 double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 side = b - a;
@@ -36,20 +34,6 @@ std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) 
         sides[panel.back].insert({low, high});
       }
   return sides;
-}
-
-// In each round, moves each vertex whose `free` is set halfway to the mean position that its neighbours had before the
-// round.
-void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
-  for (int round = 0; round < kSmoothingRounds; ++round) {
-    const std::vector<Vec3> before = x;
-    for (std::size_t v = 0; v < x.size(); ++v) {
-      if (!free[v]) continue;
-      Vec3 sum = Vec3::Zero();
-      for (Index n : neighbours[v]) sum += before[at(n)];
-      x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
-    }
-  }
 }
 
 }  // namespace
@@ -94,8 +78,19 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
   for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());
   for (const mesh::Edge& edge : mesh::collect_edges(all).edges)
     if (edge.triangles[1] < 0) free[at(edge.vertices[0])] = free[at(edge.vertices[1])] = 0;
-  smooth(neighbours, free, x);
+  constexpr int kSmoothingRounds = 10;
+  for (int round = 0; round < kSmoothingRounds; ++round) smooth(neighbours, free, x);
   return x;
+}
+
+void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& chosen, std::span<Vec3> x) {
+  const std::vector<Vec3> before(x.begin(), x.end());
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    if (!chosen[v] || neighbours[v].empty()) continue;
+    Vec3 sum = Vec3::Zero();
+    for (const Index n : neighbours[v]) sum += before[at(n)];
+    x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
+  }
 }
 
 }  // namespace weft::garment

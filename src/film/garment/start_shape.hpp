@@ -35,4 +35,7 @@ std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t ve
 /// front and ≥ 0 at the back. Returns (across, depth, up) [m].
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
 
+/// Moves each vertex whose `chosen` is not 0 halfway to the mean position that its neighbours had before the call.
+void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& chosen, std::span<Vec3> x);
+
 }  // namespace weft::garment

@@ -139,7 +139,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
   const std::string& name = kAroundNames[static_cast<std::size_t>(part)];
   Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + dome_height : crown)}, floor};
   axis.corner_blend *= size;
-  const bool arm = part == Around::left_arm || part == Around::right_arm;
+  const bool arm = is_arm(part);
   const bool leg = part == Around::left_leg || part == Around::right_leg;
   const bool left = part == Around::left_arm || part == Around::left_leg;
   if (arm) {

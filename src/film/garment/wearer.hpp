@@ -50,6 +50,10 @@ enum class Around { none, torso, body, neck, head, left_arm, right_arm, left_leg
 inline const std::vector<std::string> kAroundNames = {"",         "torso",     "body",     "neck",     "head",
                                                       "left_arm", "right_arm", "left_leg", "right_leg"};
 
+inline bool is_arm(Around part) {
+  return part == Around::left_arm || part == Around::right_arm;
+}
+
 /// The part on the other side of the body; parts in the middle stay the same.
 Around mirrored(Around part);
 

@@ -165,7 +165,7 @@ class PanelPlacer {
       auto& [first, of_height] = eases_[part];
       first = step_ * static_cast<double>(of_level.begin()->first);
       const double slack = has_opening(part) ? kOpeningSlack * size_ : 0;
-      const bool arm = part == Around::left_arm || part == Around::right_arm;
+      const bool arm = is_arm(part);
       const double min_ease = arm ? std::min(kMinSleeveGap * size_ - pattern_.gap, 0.0) : 0;
       std::vector<double> raw;
       double widest = 0;
@@ -356,13 +356,7 @@ void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> tria
         for (std::size_t v = 0; v < x.size(); ++v)
           for (const Index n : neighbours[v]) moving[v] |= before[at(n)];
       }
-    const std::vector<Vec3> before(x.begin(), x.end());
-    for (std::size_t v = 0; v < x.size(); ++v) {
-      if (!moving[v] || neighbours[v].empty()) continue;
-      Vec3 sum = Vec3::Zero();
-      for (const Index n : neighbours[v]) sum += before[at(n)];
-      x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
-    }
+    smooth(neighbours, moving, x);
   }
 }
 
