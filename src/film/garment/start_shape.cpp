@@ -7,6 +7,7 @@
 #include <set>
 
 #include "film/garment/least_squares_positions.hpp"
+#include "film/garment/triangulation.hpp"
 
 namespace weft::garment {
 namespace {
@@ -15,12 +16,6 @@ namespace {
 // weight is so small that this term hardly changes lengths, but it determines where each connected set of panels
 // starts.
 constexpr double kAnchorWeight = 1e-4;
-
-double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 side = b - a;
-  const double fraction = std::clamp((p - a).dot(side) / std::max(side.squaredNorm(), 1e-30), 0.0, 1.0);
-  return (a + fraction * side - p).norm();
-}
 
 using VertexPair = std::array<Index, 2>;
 
@@ -67,7 +62,7 @@ std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec
   std::vector<Vec3> x(plane.size());
   for (std::size_t v = 0; v < plane.size(); ++v) {
     double d = shared.empty() ? depth : std::numeric_limits<double>::infinity();
-    for (const auto& [a, b] : shared) d = std::min(d, distance(plane[v], plane[at(a)], plane[at(b)]));
+    for (const auto& [a, b] : shared) d = std::min(d, std::sqrt(distance_sq(plane[v], plane[at(a)], plane[at(b)])));
     d = free[v] ? std::min(d, depth) : 0;
     const double off = free[v] ? kLayerDistance * layers[v] : 0;
     x[v] = {plane[v].x(), side_sign[v] * (std::sqrt(d * (2 * depth - d)) + off), plane[v].y()};

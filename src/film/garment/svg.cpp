@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <utility>
 
 #include "film/garment/svg_elements.hpp"
+#include "film/garment/triangulation.hpp"
 
 namespace weft::garment {
 namespace {
@@ -96,13 +98,9 @@ void read_group(const Drawing& drawing, const pugi::xml_node& node, Group& group
 double distance(const Curve& curve, const Vec2& from) {
   constexpr int kPieces = 16;
   double nearest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kPieces; ++i) {
-    const Vec2 start = curve.at(double(i) / kPieces), side = curve.at(double(i + 1) / kPieces) - start;
-    const double length_sq = side.squaredNorm();
-    const double fraction = length_sq > 0 ? std::clamp((from - start).dot(side) / length_sq, 0.0, 1.0) : 0;
-    nearest = std::min(nearest, (start + fraction * side - from).norm());
-  }
-  return nearest;
+  for (int i = 0; i < kPieces; ++i)
+    nearest = std::min(nearest, distance_sq(from, curve.at(double(i) / kPieces), curve.at(double(i + 1) / kPieces)));
+  return std::sqrt(nearest);
 }
 
 /// The edge name of each curve: the nearest label of its edge, or the number of the edge if the edge has no label.

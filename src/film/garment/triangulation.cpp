@@ -152,12 +152,6 @@ class Delaunay {
   Index last_ = 0;
 };
 
-double distance_sq(const Vec2& p, const Vec2& a, const Vec2& b) {
-  const Vec2 side = b - a;
-  const double fraction = std::clamp((p - a).dot(side) / side.squaredNorm(), 0.0, 1.0);
-  return (a + fraction * side - p).squaredNorm();
-}
-
 // The places along x, ascending, at which the horizontal line at y crosses the outline. A point on this line is inside
 // the outline if an odd number of them is below its x (even-odd rule).
 std::vector<double> crossings_at(std::span<const Vec2> outline, double y) {
@@ -177,6 +171,13 @@ bool is_far_from(std::span<const Vec2> outline, const Vec2& p, double distance) 
 }
 
 }  // namespace
+
+double distance_sq(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 side = b - a;
+  const double length_sq = side.squaredNorm();
+  const double fraction = length_sq > 0 ? std::clamp((p - a).dot(side) / length_sq, 0.0, 1.0) : 0;
+  return (a + fraction * side - p).squaredNorm();
+}
 
 FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside) {
   Delaunay delaunay(outline);

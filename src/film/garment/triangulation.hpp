@@ -29,6 +29,9 @@ FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside
 /// are smooth. With diagonals that alternate from row to row, every sharp fold is corrugated.
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing);
 
+/// Squared distance of the point `p` from the line between `a` and `b` [m²].
+double distance_sq(const Vec2& p, const Vec2& a, const Vec2& b);
+
 /// Area of a polygon [m²]; positive if it is counter-clockwise.
 double polygon_area(std::span<const Vec2> outline);
 
