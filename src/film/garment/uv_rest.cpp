@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "core/disjoint_sets.hpp"
 #include "physics/mesh/geometry.hpp"
@@ -65,21 +65,26 @@ std::vector<UvEdge> edges_of(const mesh::Mesh& mesh, std::span<const UvCorners> 
   return edges;
 }
 
+/// Weighted quantile: the smallest value such that all values up to it have at least `fraction` of the total weight. 0
+/// if there are no values. `values`: pairs of value and weight.
+double quantile(std::vector<std::pair<double, double>> values, double fraction) {
+  double total = 0, sum = 0;
+  for (const auto& [value, weight] : values) total += weight;
+  std::ranges::sort(values);
+  for (const auto& [value, weight] : values)
+    if ((sum += weight) >= fraction * total) return value;
+  return 0;
+}
+
 /// Median length of one UV unit [m]. Edges are weighted by their length in the UVs, because weights by length in the
 /// mesh would favour stretched edges.
 double median_scale(const std::vector<UvEdge>& edges) {
   std::vector<std::pair<double, double>> ratios;
-  double total = 0;
   for (const UvEdge& e : edges) {
     const double in_uv = std::hypot(e.du, e.dv);
     ratios.emplace_back(e.length / in_uv, in_uv);
-    total += in_uv;
   }
-  std::ranges::sort(ratios);
-  double sum = 0;
-  for (const auto& [ratio, in_uv] : ratios)
-    if ((sum += in_uv) >= 0.5 * total) return ratio;
-  return 1;
+  return quantile(std::move(ratios), 0.5);
 }
 
 /// Fits the lengths (su, sv) of a UV unit along u and v, so that (su du)² + (sv dv)² is the squared length of edges in
@@ -179,17 +184,6 @@ void replace_flat_triangles(const mesh::Mesh& mesh, double flattest, UvRest& res
     panel = own;
     ++rest.unusable;
   }
-}
-
-/// Weighted quantile: the smallest value such that all values up to it have at least `fraction` of the total weight. 0
-/// if there are no values. `values`: pairs of value and weight.
-double quantile(std::vector<std::pair<double, double>> values, double fraction) {
-  std::ranges::sort(values);
-  double total = 0, sum = 0;
-  for (const auto& [value, weight] : values) total += weight;
-  for (const auto& [value, weight] : values)
-    if ((sum += weight) >= fraction * total) return value;
-  return 0;
 }
 
 }  // namespace
