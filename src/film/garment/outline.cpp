@@ -98,7 +98,7 @@ class PathReader {
   void begin_outline() {
     outline_.clear();
     started_ = closed_ = false;
-    nearest_ = Vec2::Constant(kMaxCoordinate), farthest_ = -nearest_;
+    bounds_.setEmpty();
   }
   void fail(std::string text) {
     if (result_.mistake.empty()) result_.mistake = std::move(text);
@@ -176,9 +176,7 @@ class PathReader {
     } while (result_.mistake.empty() && number_follows());
   }
 
-  bool is_at_start() const {
-    return (pen_ - first_).norm() <= kMaxClosingGap * std::max(1e-9, (farthest_ - nearest_).norm());
-  }
+  bool is_at_start() const { return (pen_ - first_).norm() <= kMaxClosingGap * std::max(1e-9, bounds_.sizes().norm()); }
 
   void close() {
     closed_ = true;
@@ -229,8 +227,7 @@ class PathReader {
   }
   void extend_bounds(const Curve& curve) {
     ++curves_;
-    nearest_ = nearest_.cwiseMin(curve.start()).cwiseMin(curve.end());
-    farthest_ = farthest_.cwiseMax(curve.start()).cwiseMax(curve.end());
+    bounds_.extend(curve.start()).extend(curve.end());
   }
 
   std::string_view data_;
@@ -241,7 +238,7 @@ class PathReader {
   bool started_ = false, closed_ = false;
   char last_ = 'M';
   Vec2 pen_ = Vec2::Zero(), first_ = Vec2::Zero(), handle_ = Vec2::Zero();
-  Vec2 nearest_ = Vec2::Constant(kMaxCoordinate), farthest_ = Vec2::Constant(-kMaxCoordinate);
+  Eigen::AlignedBox2d bounds_;  // around the end points of the curves of the current outline
 };
 
 }  // namespace
