@@ -27,6 +27,17 @@ long euler_characteristic(const mesh::Sheet& sheet) {
          static_cast<long>(sheet.triangles.size());
 }
 
+double area_of_panels(const mesh::Sheet& sheet) {
+  double area = 0;
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) area += mesh::rest_area(sheet, t);
+  return area;
+}
+
+std::size_t intersecting_pairs(const mesh::Sheet& sheet) {
+  const support::TestedObject object{"garment", true, sheet.rest, sheet.triangles};
+  return support::find_intersections(std::span(&object, 1)).pairs.size();
+}
+
 // Counts openings: closed chains of border edges.
 std::size_t openings(const mesh::Sheet& sheet) {
   const auto border = mesh::inspect(sheet.triangles, sheet.rest.size()).border;
@@ -60,11 +71,8 @@ TEST(Garments, AreSurfacesWithTheOpeningsOfWhatTheyAre) {
 TEST(Garments, KeepAreaAndMeasuresOfTheirPanels) {
   const Pattern pattern = load_pattern(shipped("skirt"), "a test");
   const Garment garment = sew(pattern, 0.01, "a test");
-  double area = 0;
-  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
-    EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
-    area += mesh::rest_area(garment.sheet, t);
-  }
+  const double area = area_of_panels(garment.sheet);
+  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
   // Expected: two quarter rings, 0.45 m wide. Tolerance: the middle of a chord of c = 10 mm is up to c² / (8 R) inside
   // its arc, so the ring is narrower at the hem and wider at the waist, by less than 1e-4. The curves deviate from
   // their arcs by at most 2.7e-4 of a radius.
@@ -148,9 +156,7 @@ TEST_F(SewingText, ADartClosesAndALongerSideIsEasedIn) {
   EXPECT_NEAR(garment.seams[2].length_a, 0.38, 1e-9);
   EXPECT_NEAR(garment.seams[2].length_b, 0.30, 1e-9);
   EXPECT_EQ(garment.seams[2].vertices.size(), 18U);  // (0.38 + 0.30) / 2 / 0.02 = 17 segments
-  double area = 0;
-  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) area += mesh::rest_area(garment.sheet, t);
-  EXPECT_NEAR(area, 0.4 * 0.3 - 0.02 * 0.15 + 0.4 * 0.34, 1e-12);
+  EXPECT_NEAR(area_of_panels(garment.sheet), 0.4 * 0.3 - 0.02 * 0.15 + 0.4 * 0.34, 1e-12);
 }
 
 // The warp of the back runs across the panel.
@@ -193,15 +199,10 @@ TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
     EXPECT_TRUE(mesh::inspect(pillow.sheet.triangles, pillow.sheet.rest.size()).manifold()) << spacing;
     EXPECT_EQ(openings(pillow.sheet), 0U) << spacing;
     EXPECT_EQ(euler_characteristic(pillow.sheet), 2) << "a sphere, at " << spacing;
-    double area = 0, min_area = 1;
-    for (std::size_t t = 0; t < pillow.sheet.triangles.size(); ++t) {
-      area += mesh::rest_area(pillow.sheet, t);
-      min_area = std::min(min_area, mesh::rest_area(pillow.sheet, t));
-    }
-    EXPECT_NEAR(area, 2 * 0.5 * 0.4, 1e-12) << spacing;
-    EXPECT_GT(min_area, 0.02 * spacing * spacing) << "no needles, at " << spacing;
-    const support::TestedObject object{"pillow", true, pillow.sheet.rest, pillow.sheet.triangles};
-    EXPECT_EQ(support::find_intersections(std::span(&object, 1)).pairs.size(), 0U) << spacing;
+    EXPECT_NEAR(area_of_panels(pillow.sheet), 2 * 0.5 * 0.4, 1e-12) << spacing;
+    for (std::size_t t = 0; t < pillow.sheet.triangles.size(); ++t)
+      EXPECT_GT(mesh::rest_area(pillow.sheet, t), 0.02 * spacing * spacing) << "no needles, at " << spacing;
+    EXPECT_EQ(intersecting_pairs(pillow.sheet), 0U) << spacing;
     const Garment open = sew_text(panels + three, spacing);
     EXPECT_EQ(openings(open.sheet), 1U) << spacing;
     EXPECT_EQ(euler_characteristic(open.sheet), 1) << "a disk, at " << spacing;
@@ -245,8 +246,7 @@ TEST_F(SewingText, LayersOfFlatPanelsStartApart) {
   for (const double spacing : {0.03, 0.02}) {
     const Garment garment = sew_text(panels + seams, spacing);
     const std::vector<Vec3>& x = garment.sheet.rest;
-    const support::TestedObject object{"skirt", true, x, garment.sheet.triangles};
-    EXPECT_TRUE(support::find_intersections(std::span(&object, 1)).pairs.empty()) << spacing;
+    EXPECT_EQ(intersecting_pairs(garment.sheet), 0U) << spacing;
     for (const Index v : garment.edges.at("under.free")) EXPECT_NEAR(x[v].y(), -0.04, 1e-12);
     for (const Index v : garment.edges.at("over.free")) EXPECT_NEAR(x[v].y(), -0.05, 1e-12);
   }
@@ -298,9 +298,7 @@ TEST_F(SewingText, TwoLayersAreSewnAroundSharpCorners) {
     const mesh::Sheet pennant = sewn_layers("M 0 0 L 0.5 0.09 L 0 0.18 Z", 2, spacing);
     EXPECT_EQ(euler_characteristic(pennant), 1) << "a disk, at " << spacing;
     EXPECT_EQ(openings(pennant), 1U) << spacing;
-    double area = 0;
-    for (std::size_t t = 0; t < pennant.triangles.size(); ++t) area += mesh::rest_area(pennant, t);
-    EXPECT_NEAR(area, 0.5 * 0.18, 1e-12) << spacing;
+    EXPECT_NEAR(area_of_panels(pennant), 0.5 * 0.18, 1e-12) << spacing;
   }
 }
 

@@ -120,6 +120,12 @@ a = "sleeve.cap_back"
 b = "back.hole"
 )";
 
+// The vest with more keys of the seam on its right.
+std::string vest_with(const std::string& keys) {
+  const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
+  return std::string(kVest).replace(kVest.find(seam), seam.size(), seam + keys);
+}
+
 class Wrapping : public support::TestFolder {
  protected:
   Pattern pattern_of(const std::string& text) {
@@ -252,11 +258,7 @@ TEST_F(Wrapping, MirrorImagesHaveTheKeysOfTheirOriginalThatAreNotGiven) {
 }
 
 TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
-  const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
-  std::string buttoned = kVest;
-  buttoned.replace(buttoned.find(seam), seam.size(),
-                   "[[seam]]\na = \"front.right\"\nb = \"back.right\"\nbuttons = 3\nopen = 2\n");
-  const Garment sewn = sew_text(kVest), closed = sew_text(buttoned);
+  const Garment sewn = sew_text(kVest), closed = sew_text(vest_with("buttons = 3\nopen = 2\n"));
   EXPECT_EQ(closed.sheet.rest.size(), sewn.sheet.rest.size() + 26);  // one side is separate: 0.5 m in 20 mm
   ASSERT_EQ(closed.sheet.ties.size(), 3U);
   EXPECT_TRUE(sewn.sheet.ties.empty());
@@ -287,14 +289,9 @@ TEST_F(Wrapping, ClosuresBetweenTwoPartsWidenNoRing) {
 }
 
 TEST_F(Wrapping, SeamsThatTearAreTiesOfTheirLoadPerLength) {
-  const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
-  std::string text = kVest;
-  text.replace(text.find(seam), seam.size(), seam + "tearing_load = 300\n");
   // If there are more buttons than particles, the existing ties share the load.
-  std::string buttoned = kVest;
-  buttoned.replace(buttoned.find(seam), seam.size(), seam + "tearing_load = 300\nbuttons = 100\n");
-  for (const std::string& each : {text, buttoned}) {
-    const mesh::Sheet sheet = sew_text(each).sheet;
+  for (const std::string keys : {"tearing_load = 300\n", "tearing_load = 300\nbuttons = 100\n"}) {
+    const mesh::Sheet sheet = sew_text(vest_with(keys)).sheet;
     EXPECT_EQ(sheet.tearing_seams, std::vector<std::string>{"front.right + back.right"});
     double strength = 0;
     for (const mesh::Tie& tie : sheet.ties) {
@@ -306,11 +303,7 @@ TEST_F(Wrapping, SeamsThatTearAreTiesOfTheirLoadPerLength) {
 }
 
 TEST_F(Wrapping, AZipClosesFromEndToEnd) {
-  const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
-  std::string zipped = kVest, buttoned = kVest;
-  zipped.replace(zipped.find(seam), seam.size(), seam + "open = 2\n");
-  buttoned.replace(buttoned.find(seam), seam.size(), seam + "buttons = 3\n");
-  const Garment garment = sew_text(zipped);
+  const Garment garment = sew_text(vest_with("open = 2\n"));
   ASSERT_EQ(garment.closures.size(), 1U);
   const auto& pairs = garment.closures[0];
   ASSERT_EQ(pairs.size(), garment.sheet.ties.size());
@@ -318,7 +311,7 @@ TEST_F(Wrapping, AZipClosesFromEndToEnd) {
     EXPECT_EQ(pairs[k], (std::array{garment.sheet.ties[k].a, garment.sheet.ties[k].b}));
     EXPECT_EQ(pairs[k][0], garment.edges.at("front.right")[k]);
   }
-  EXPECT_TRUE(sew_text(buttoned).closures.empty());
+  EXPECT_TRUE(sew_text(vest_with("buttons = 3\n")).closures.empty());
 }
 
 TEST_F(Wrapping, AStifferPanelIsStifferAlone) {

@@ -10,6 +10,7 @@
 
 #include "film/scene/findings.hpp"
 #include "film/scene/loader.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::scene {
 namespace {
@@ -356,17 +357,9 @@ TEST_P(MalformedScene, IsReportedInExactlyTheseWords) {
 INSTANTIATE_TEST_SUITE_P(Scene, MalformedScene, testing::ValuesIn(kMalformed),
                          [](const auto& test) { return test.param.claim; });
 
-/// A folder that is deleted at the end of the test.
-class SceneFile : public testing::Test {
+class SceneFile : public support::TestFolder {
  protected:
-  SceneFile() { std::filesystem::create_directories(folder_); }
-  ~SceneFile() override { std::filesystem::remove_all(folder_); }
-
   std::string messages(const std::filesystem::path& file) { return load(file).describe(); }
-
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() /
-      ("weft_scene_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(SceneFile, ThatIsMissingIsNamed) {
