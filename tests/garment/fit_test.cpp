@@ -26,21 +26,27 @@ double radius(double z) {
   return 0.06;
 }
 
+// Adds a tube of `rings` rings of `around` points each. `place`: of a point, from the number of its ring and its angle.
+template <class Place>
+void add_tube(Wearer& wearer, int rings, int around, Region region, const Place& place) {
+  const auto first = static_cast<Index>(wearer.skin.size());
+  for (int j = 0; j < rings; ++j)
+    for (int i = 0; i < around; ++i) wearer.skin.push_back(place(j, 2 * std::numbers::pi * i / around));
+  for (int j = 0; j + 1 < rings; ++j)
+    for (int i = 0; i < around; ++i) {
+      const Index a = first + j * around + i, b = first + j * around + (i + 1) % around;
+      wearer.triangles.push_back({a, b, a + around});
+      wearer.triangles.push_back({b, b + around, a + around});
+    }
+  wearer.regions.resize(wearer.skin.size(), region);
+}
+
 Wearer round_wearer() {
-  constexpr int kAround = 96, kUp = 171;
   Wearer wearer;
-  for (int j = 0; j < kUp; ++j)
-    for (int i = 0; i < kAround; ++i) {
-      const double angle = 2 * std::numbers::pi * i / kAround, z = 0.01 * j;
-      wearer.skin.emplace_back(radius(z) * std::cos(angle), radius(z) * std::sin(angle), z);
-    }
-  for (int j = 0; j + 1 < kUp; ++j)
-    for (int i = 0; i < kAround; ++i) {
-      const int a = j * kAround + i, b = j * kAround + (i + 1) % kAround;
-      wearer.triangles.push_back({a, b, a + kAround});
-      wearer.triangles.push_back({b, b + kAround, a + kAround});
-    }
-  wearer.regions.assign(wearer.skin.size(), Region::trunk);
+  add_tube(wearer, 171, 96, Region::trunk, [](int ring, double angle) {
+    const double z = 0.01 * ring;
+    return Vec3(radius(z) * std::cos(angle), radius(z) * std::sin(angle), z);
+  });
   wearer.neck = 1.46;
   wearer.left_leg = Limb{Vec3(0.08, 0, 0.9), Vec3(0.08, 0, 0.5), Vec3(0.08, 0, 0.1)};
   wearer.right_leg = Limb{Vec3(-0.08, 0, 0.9), Vec3(-0.08, 0, 0.5), Vec3(-0.08, 0, 0.1)};
@@ -114,24 +120,14 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheNecks) {
 // Girth [m] of the arms, which are tubes. A figure with a short trunk has such thick arms.
 constexpr double kThickArm = 0.3;
 Wearer wearer_with_thick_arms() {
-  constexpr double kLength = 0.6;
-  constexpr int kAround = 64, kAlong = 61;
+  constexpr double kLength = 0.6, kRadius = kThickArm / (2 * std::numbers::pi);
+  constexpr int kAlong = 61;
   Wearer wearer = round_wearer();
   for (const double side : {1.0, -1.0}) {
-    const auto first = static_cast<Index>(wearer.skin.size());
-    for (int j = 0; j < kAlong; ++j)
-      for (int i = 0; i < kAround; ++i) {
-        const double angle = 2 * std::numbers::pi * i / kAround, radius = kThickArm / (2 * std::numbers::pi);
-        wearer.skin.emplace_back(side * (0.2 + kLength * j / (kAlong - 1)), radius * std::cos(angle),
-                                 1.4 + radius * std::sin(angle));
-      }
-    for (int j = 0; j + 1 < kAlong; ++j)
-      for (int i = 0; i < kAround; ++i) {
-        const Index a = first + j * kAround + i, b = first + j * kAround + (i + 1) % kAround;
-        wearer.triangles.push_back({a, b, a + kAround});
-        wearer.triangles.push_back({b, b + kAround, a + kAround});
-      }
-    wearer.regions.resize(wearer.skin.size(), side > 0 ? Region::left_arm : Region::right_arm);
+    add_tube(wearer, kAlong, 64, side > 0 ? Region::left_arm : Region::right_arm, [&](int ring, double angle) {
+      return Vec3(side * (0.2 + kLength * ring / (kAlong - 1)), kRadius * std::cos(angle),
+                  1.4 + kRadius * std::sin(angle));
+    });
     (side > 0 ? wearer.left_arm : wearer.right_arm) =
         Limb{Vec3(side * 0.2, 0, 1.4), Vec3(side * 0.45, 0, 1.4), Vec3(side * 0.7, 0, 1.4)};
   }
