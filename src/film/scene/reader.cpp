@@ -94,6 +94,11 @@ Value Reader::refuse(const toml::node& node, const std::string& path, const std:
   return {};
 }
 
+Value Reader::refuse_type(const toml::node& node, const Rule& rule, const std::string& path) {
+  return refuse(node, path,
+                fmt::format("expected {}, got {}", expectation(rule, path == rule.key), describe_node(node)));
+}
+
 void Reader::read(const toml::table& table, const Table& rules, void* target, const std::string& path) {
   const auto read_rules = [&](const std::vector<Rule>& own) {
     for (const Rule& rule : own)
@@ -132,7 +137,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
     if (const auto* inner = node->as_table()) {
       read(*inner, *rule.table, rule.inner(target), key);
     } else {
-      refuse(*node, key, fmt::format("expected {}, got {}", expectation(rule, path.empty()), describe_node(*node)));
+      refuse_type(*node, rule, key);
     }
   } else if (rule.type == Type::list || rule.type == Type::keys) {
     read_entries(*node, rule, target, key);
@@ -144,7 +149,7 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
 void Reader::read_entries(const toml::node& node, const Rule& rule, void* target, const std::string& path) {
   const toml::array* entries = node.as_array();
   if (entries == nullptr) {
-    refuse(node, path, fmt::format("expected {}, got {}", expectation(rule, path == rule.key), describe_node(node)));
+    refuse_type(node, rule, path);
     return;
   }
   if (static_cast<double>(entries->size()) > rule.range.high) {

@@ -56,6 +56,8 @@ class Reader {
   Value check_file(const toml::node& node, const std::string& text, const std::string& path);
 
   Value refuse(const toml::node& node, const std::string& path, const std::string& text);
+  /// Reports a value whose type is not that of the rule.
+  Value refuse_type(const toml::node& node, const Rule& rule, const std::string& path);
 
   Findings& findings_;
   std::filesystem::path folder_;

@@ -16,7 +16,7 @@ Value Reader::read_value(const toml::node& node, const Rule& rule, const std::st
   switch (rule.type) {
     case Type::boolean:
       if (const auto* flag = node.as_boolean()) return flag->get();
-      return refuse(node, path, fmt::format("expected true or false, got {}", describe_node(node)));
+      return refuse_type(node, rule, path);
     case Type::color:
       return read_color(node, rule, path);
     case Type::number:
@@ -34,7 +34,7 @@ Value Reader::read_value(const toml::node& node, const Rule& rule, const std::st
 Value Reader::read_text(const toml::node& node, const Rule& rule, const std::string& path) {
   const auto* string = node.as_string();
   if (string == nullptr) {
-    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+    return refuse_type(node, rule, path);
   }
   const std::string& text = string->get();
   if (rule.type == Type::text && rule.need == Need::required && text.empty())
@@ -57,13 +57,10 @@ Value Reader::read_texts(const toml::node& node, const Rule& rule, const std::st
   const auto* array = node.as_array();
   for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
     const auto* string = array->get(i)->as_string();
-    if (string == nullptr)
-      return refuse(*array->get(i), path,
-                    fmt::format("expected {}, got {}", expectation(rule), describe_node(*array->get(i))));
+    if (string == nullptr) return refuse_type(*array->get(i), rule, path);
     texts.push_back(string->get());
   }
-  if (texts.empty())
-    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+  if (texts.empty()) return refuse_type(node, rule, path);
   if (std::ranges::any_of(texts, &std::string::empty))
     return refuse(node, path, fmt::format("expected {}, got an empty one", expectation(rule)));
   return texts;
@@ -73,7 +70,7 @@ bool Reader::read_number(const toml::node& node, const Rule& rule, const std::st
   const auto* integer = node.as_integer();
   const auto* real = node.as_floating_point();
   if (integer == nullptr && real == nullptr) {
-    refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+    refuse_type(node, rule, path);
     return false;
   }
   number = integer != nullptr ? static_cast<double>(integer->get()) : real->get();
@@ -99,7 +96,7 @@ Value Reader::read_numbers(const toml::node& node, const Rule& rule, const std::
     return std::vector<double>(std::max<std::size_t>(1, rule.components.size()), number);
   }
   if (array == nullptr || array->size() != rule.components.size()) {
-    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+    return refuse_type(node, rule, path);
   }
   std::vector<double> numbers(array->size());
   for (std::size_t i = 0; i < numbers.size(); ++i) {
@@ -114,8 +111,7 @@ Value Reader::read_numbers(const toml::node& node, const Rule& rule, const std::
 
 Value Reader::read_points(const toml::node& node, const Rule& rule, const std::string& path) {
   const auto* array = node.as_array();
-  if (array == nullptr || array->empty())
-    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+  if (array == nullptr || array->empty()) return refuse_type(node, rule, path);
   std::vector<double> all;
   for (const toml::node& point : *array) {
     const Value numbers = read_numbers(point, rule, path);
@@ -133,7 +129,7 @@ Value Reader::read_color(const toml::node& node, const Rule& rule, const std::st
   const std::string& text = string->get();
   const auto is_hex = [](char c) { return std::isxdigit(static_cast<unsigned char>(c)) != 0; };
   if (text.size() != 7 || text[0] != '#' || !std::all_of(text.begin() + 1, text.end(), is_hex)) {
-    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+    return refuse_type(node, rule, path);
   }
   std::vector<double> rgb(3);
   for (std::size_t i = 0; i < 3; ++i) rgb[i] = std::stoi(text.substr(1 + 2 * i, 2), nullptr, 16) / 255.0;
