@@ -128,10 +128,20 @@ class Sewing {
     return start_position(panel, meshes_[panel].points[at(point - first_point_[panel])]);
   }
 
-  // Joins the points of both edges of each seam, except closures. The points of the second edge can correspond to those
-  // of the first in two directions. For flat panels, uses the direction in which the first and last points of both
-  // edges are closer together at the start. For bent panels, and for closed edges such as a whole outline, uses the
-  // direction in which the fronts of both panels face outward.
+  // The points `b` of the second edge of a seam can correspond to the points `a` of the first in two directions. Gives
+  // `b` the direction in which the first and last points of both edges are closer together at the start, as `distance`
+  // tells. If `by_fronts`, and for closed edges such as a whole outline, uses the direction in which the fronts of both
+  // panels face outward.
+  template <class Distance>
+  static void align(const std::vector<Index>& a, std::vector<Index>& b, const Panel& panel_a, const Panel& panel_b,
+                    bool by_fronts, const Distance& distance) {
+    by_fronts = by_fronts || a.front() == a.back() || b.front() == b.back();
+    const double straight = distance(a.front(), b.front()) + distance(a.back(), b.back());
+    const double crossed = distance(a.front(), b.back()) + distance(a.back(), b.front());
+    if (by_fronts ? are_drawn_from_same_side(panel_a, panel_b) : !(straight < crossed)) std::ranges::reverse(b);
+  }
+
+  // Joins the points of both edges of each seam, except closures.
   void join_seams() {
     sewn_together_ = DisjointSets(at(point_count_));
     garment_.seams.clear();
@@ -141,16 +151,8 @@ class Sewing {
       const auto [q, f] = pattern_.find(seam.b);
       const std::vector<Index> a = chain(p, e);
       std::vector<Index> b = chain(q, f);
-      const auto end_distance = [&, p = p, q = q] {
-        return (start_of_point(p, a.front()) - start_of_point(q, b.front())).norm() +
-               (start_of_point(p, a.back()) - start_of_point(q, b.back())).norm();
-      };
-      const double straight = end_distance();
-      std::ranges::reverse(b);
-      const bool in_line = wearer_ != nullptr || a.front() == a.back() || b.front() == b.back()
-                               ? !are_drawn_from_same_side(pattern_.panels[p], pattern_.panels[q])
-                               : straight < end_distance();
-      if (in_line) std::ranges::reverse(b);
+      align(a, b, pattern_.panels[p], pattern_.panels[q], wearer_ != nullptr,
+            [&, p = p, q = q](Index i, Index j) { return (start_of_point(p, i) - start_of_point(q, j)).norm(); });
       for (std::size_t k = 0; k < a.size(); ++k) sewn_together_.join(a[k], b[k]);
       garment_.seams.push_back({a, length(p, e), length(q, f)});
     }
@@ -378,9 +380,7 @@ class Sewing {
     }
   }
 
-  // Adds the ties of closures. Of the two directions of the second edge, uses the one in which the first and last
-  // points of both edges are closer together at the start. If an edge is a loop, uses the direction in which the fronts
-  // of both panels face outward.
+  // Adds the ties of closures.
   void add_closures() {
     const std::vector<Vec3>& x = garment_.sheet.rest;
     for (const Seam& seam : pattern_.seams) {
@@ -388,18 +388,8 @@ class Sewing {
       if (seam.tearing_load) garment_.sheet.tearing_seams.push_back(seam.a + " + " + seam.b);
       const std::vector<Index>& a = garment_.edges.at(seam.a);
       std::vector<Index> b = garment_.edges.at(seam.b);
-      const auto end_distance = [&] {
-        return (x[at(a.front())] - x[at(b.front())]).norm() + (x[at(a.back())] - x[at(b.back())]).norm();
-      };
-      const double straight = end_distance();
-      std::ranges::reverse(b);
-      const auto panel_of = [&](const std::string& edge) -> const Panel& {
-        return pattern_.panels[pattern_.find(edge).first];
-      };
-      const bool in_line = a.front() == a.back() || b.front() == b.back()
-                               ? !are_drawn_from_same_side(panel_of(seam.a), panel_of(seam.b))
-                               : straight < end_distance();
-      if (in_line) std::ranges::reverse(b);
+      align(a, b, pattern_.panels[pattern_.find(seam.a).first], pattern_.panels[pattern_.find(seam.b).first], false,
+            [&](Index i, Index j) { return (x[at(i)] - x[at(j)]).norm(); });
       if (seam.buttons == 0) {
         std::vector<std::array<Index, 2>>& pairs = garment_.closures.emplace_back();
         for (std::size_t k = 0; k < a.size(); ++k) pairs.push_back({a[k], b[k]});
