@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/threads.hpp"
@@ -187,6 +188,12 @@ struct Stage {
   Heat heat = Heat::none;
   double heat_max = 0;  ///< value of the hottest colour: strain, or speed [m/s]; 0: maximum of each frame
 };
+
+/// Name of the vertex property in which files store the heat; empty for Heat::none.
+inline std::string_view name_of(Stage::Heat heat) {
+  constexpr std::string_view kNames[] = {"", "strain", "speed"};
+  return kNames[static_cast<std::size_t>(heat)];
+}
 
 /// The data of one frame. Never changes after it is made, so that threads can share it.
 struct FrameSnapshot {

@@ -8,7 +8,7 @@
 
 #include "core/log.hpp"
 #include "core/version.hpp"
-#include "film/frame/heat_name.hpp"
+#include "film/frame/frame_snapshot.hpp"
 #include "film/image/png.hpp"
 #include "film/render/framing.hpp"
 #include "film/render/seen.hpp"

@@ -7,7 +7,6 @@
 
 #include "core/temporary_file.hpp"
 #include "film/frame/cords.hpp"
-#include "film/frame/heat_name.hpp"
 #include "physics/mesh/ply.hpp"
 #include "tools/export/blender.hpp"
 #include "tools/export/gltf.hpp"
