@@ -59,7 +59,7 @@ void append_arc(const Vec2& from, const Arc& arc, const Vec2& to, Outline& outli
   double sweep = angle_between(begin, end);
   if (arc.sweep && sweep < 0) sweep += 2 * std::numbers::pi;
   if (!arc.sweep && sweep > 0) sweep -= 2 * std::numbers::pi;
-  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / (0.5 * std::numbers::pi) - 1e-9)));
+  const int pieces = std::max(1, static_cast<int>(std::ceil(std::abs(sweep) / (0.5 * std::numbers::pi) - kRoundoff)));
   const double each = sweep / pieces, handle_length = 4.0 / 3 * std::tan(0.25 * each);
   const Vec2 middle = 0.5 * (from + to) + turn * Vec2(r.cwiseProduct(centre));
   const auto placed = [&](const Vec2& unit) -> Vec2 { return middle + turn * Vec2(r.cwiseProduct(unit)); };
@@ -176,7 +176,9 @@ class PathReader {
     } while (result_.mistake.empty() && number_follows());
   }
 
-  bool is_at_start() const { return (pen_ - first_).norm() <= kMaxClosingGap * std::max(1e-9, bounds_.sizes().norm()); }
+  bool is_at_start() const {
+    return (pen_ - first_).norm() <= kMaxClosingGap * std::max(kRoundoff, bounds_.sizes().norm());
+  }
 
   void close() {
     closed_ = true;

@@ -325,7 +325,7 @@ class Reader {
     Vec2 low = panel.points[0][0], high = low;
     for (const auto& points : panel.points)
       for (const Vec2& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
-    return nearest_axis((cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9)));
+    return nearest_axis((cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(kRoundoff)));
   }
 
   /// The linear map from the drawing of a panel to its orientation when worn, seen from outside with y up.

@@ -19,7 +19,7 @@ struct SpecEdge {
   std::vector<Vec2> control;              // inner control points; empty: straight line or arc
   double radius = 0;                      // radius of a circular arc [m]; 0: no arc
   bool large_arc = false, sweep = false;  // flags of an SVG arc, for y upward
-  bool has_length() const { return (end - start).norm() > 1e-9; }
+  bool has_length() const { return (end - start).norm() > kRoundoff; }
 };
 
 /// A stitch that joins two edges: edge[0] of panel[0] and edge[1] of panel[1] (indices).

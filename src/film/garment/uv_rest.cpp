@@ -103,7 +103,7 @@ std::optional<Vec2> fit_anisotropic_scale(const std::vector<UvEdge>& edges, doub
       right += weight * row;
     }
     const double trace = matrix.trace();
-    if (!(matrix.determinant() > 1e-9 * trace * trace)) return std::nullopt;
+    if (!(matrix.determinant() > kRoundoff * trace * trace)) return std::nullopt;
     const Vec2 next = matrix.inverse() * right;
     if (!(next.minCoeff() > 0)) return std::nullopt;
     squares = next;

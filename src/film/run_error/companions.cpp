@@ -35,7 +35,7 @@ double order_of(scene::Integrator integrator) {
 }
 
 double steps_a_frame(const scene::Time& time) {
-  return std::max(1.0, std::ceil(1 / (time.fps * time.step) - 1e-9));
+  return std::max(1.0, std::ceil(1 / (time.fps * time.step) - kRoundoff));
 }
 
 // Difference between the run and a companion whose step or spacing is `ratio` times that of the run.

@@ -19,7 +19,8 @@ void add_below(const Scene& scene, const std::string& name, std::set<std::string
 int dressing_frames(const Scene& scene) {
   int frames = scene.preroll_frames();
   for (const Character& character : scene.characters)
-    if (character.dressing > 0) frames = std::min(frames, static_cast<int>(character.dressing * scene.time.fps + 1e-9));
+    if (character.dressing > 0)
+      frames = std::min(frames, static_cast<int>(character.dressing * scene.time.fps + kRoundoff));
   return frames;
 }
 

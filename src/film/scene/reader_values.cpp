@@ -103,7 +103,7 @@ Value Reader::read_numbers(const toml::node& node, const Rule& rule, const std::
     // Report only the first wrong number, because a key has at most one mistake.
     if (!read_number(*array->get(i), rule, path, numbers[i])) return {};
   }
-  if (rule.nonzero && std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) < 1e-9; })) {
+  if (rule.nonzero && std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::abs(x) < kRoundoff; })) {
     return refuse(node, path, "expected at least one number that is not 0, got 0 in all");
   }
   return numbers;

@@ -146,11 +146,11 @@ struct ClothPart {
   VertexColor vertex_color = VertexColor::none;  ///< mesh: colour channel that gives fractions
   std::string vertex_group;  ///< mesh: vertex group or bone whose weights are fractions; empty: none
 
-  /// Whether a particle at the fractions (u, v) is between `low` and `high`. With the tolerance kSlack, the part
+  /// Whether a particle at the fractions (u, v) is between `low` and `high`. With the tolerance kRoundoff, the part
   /// contains particles at a bound that the scene gives with nine digits, such as 0.333333333.
   bool holds(double u, double v) const {
-    constexpr double kSlack = 1e-9;
-    return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
+    return u >= low.x() - kRoundoff && u <= high.x() + kRoundoff && v >= low.y() - kRoundoff &&
+           v <= high.y() + kRoundoff;
   }
 };
 
@@ -460,7 +460,7 @@ struct Scene {
 
   int frame_count() const { return static_cast<int>(std::lround(time.duration * time.fps)) + 1; }
   /// Number of frames in the preroll; frame 0 follows them.
-  int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
+  int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - kRoundoff)); }
   double start_time() const { return -preroll_frames() / time.fps; }  ///< start of the run, including the preroll [s]
 };
 
