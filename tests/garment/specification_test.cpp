@@ -72,6 +72,10 @@ class Specification : public support::TestFolder {
     EXPECT_NE(at, std::string::npos) << from;
     return text.replace(at, from.size(), to);
   }
+  // The trousers with other translations of front and back, which further keys may follow.
+  static std::string legs_at(const std::string& front, const std::string& back) {
+    return changed(changed(kLegs, "[0, 10, 20]", front), "[0, 10, -20]", back);
+  }
 };
 
 TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
@@ -130,20 +134,17 @@ TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
   EXPECT_EQ(legs.panels[1].around, Around::left_leg);
   EXPECT_LT((*legs.panels[0].position - Vec2(0, 0.1)).norm(), 1e-12);
   // In a skirt of two halves, such seams join one half to the other.
-  const Pattern skirt =
-      read(changed(kLegs, R"("b": { "translation": [0, 10, -20])", R"("b": { "translation": [-28, 10, -20])")).pattern;
+  const Pattern skirt = read(legs_at("[0, 10, 20]", "[-28, 10, -20]")).pattern;
   EXPECT_EQ(skirt.panels[0].around, Around::torso);
 }
 
 // The legs of the jumpsuit are drawn down to 0.1 m below the floor. Its bodice ends at 1.45 m, the height of shoulders.
 TEST_F(Specification, JumpsuitsKeepTheirShouldersAndStartWithShorterLegs) {
-  std::string jumpsuit = changed(kLegs, R"("a": { "translation": [0, 10, 20],)",
-                                 R"("bodice": { "translation": [-20, 70, 20],
+  const std::string trousers = legs_at("[0, -10, 20]", "[0, -10, -20]");
+  const ReadPattern read = this->read(changed(trousers, R"("a": {)", R"("bodice": { "translation": [-20, 70, 20],
     "vertices": [[0, 0], [40, 0], [40, 75], [0, 75]],
     "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] }, { "endpoints": [3, 0] } ] },
-  "a": { "translation": [0, -10, 20],)");
-  jumpsuit = changed(jumpsuit, R"("b": { "translation": [0, 10, -20],)", R"("b": { "translation": [0, -10, -20],)");
-  const ReadPattern read = this->read(jumpsuit);
+  "a": {)"));
   ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
   ASSERT_EQ(read.pattern.panels.size(), 3U);
   for (const Panel& panel : read.pattern.panels) {
@@ -158,9 +159,6 @@ TEST_F(Specification, JumpsuitsKeepTheirShouldersAndStartWithShorterLegs) {
     EXPECT_EQ(panel.scale.x(), 1) << panel.name;
   }
   // Trousers alone are raised.
-  std::string trousers =
-      changed(kLegs, R"("a": { "translation": [0, 10, 20],)", R"("a": { "translation": [0, -10, 20],)");
-  trousers = changed(trousers, R"("b": { "translation": [0, 10, -20],)", R"("b": { "translation": [0, -10, -20],)");
   const Pattern raised = this->read(trousers).pattern;
   EXPECT_NEAR(raised.panels[0].position->y(), 0.02, 1e-12);
   EXPECT_EQ(raised.panels[0].scale, Vec2(1, 1));
@@ -222,11 +220,8 @@ TEST_F(Specification, OfTheForerunnerHasTheGirthsOfPanelsThatAreNarrowerThanItsB
 
 // The body of a specification may stand with its legs apart.
 TEST_F(Specification, LegsApartAreWornAlongTheLegs) {
-  std::string apart = changed(kLegs, R"("a": { "translation": [0, 10, 20],)",
-                              R"("a": { "translation": [30, 10, 20], "rotation": [0, 0, 20],)");
-  apart = changed(apart, R"("b": { "translation": [0, 10, -20],)",
-                  R"("b": { "translation": [30, 10, -20], "rotation": [0, 0, 20],)");
-  const Pattern pattern = read(apart).pattern;
+  const std::string turn = R"(, "rotation": [0, 0, 20])";
+  const Pattern pattern = read(legs_at("[30, 10, 20]" + turn, "[30, 10, -20]" + turn)).pattern;
   for (const char* edge : {"a.0", "b.3"}) {
     const auto [p, e] = pattern.find(edge);
     EXPECT_EQ(pattern.panels[p].around, Around::left_leg);
