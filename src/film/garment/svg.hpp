@@ -9,9 +9,6 @@
 
 namespace weft::garment {
 
-/// Maximum size of a drawing [bytes]. A pattern of ten panels has some kilobytes.
-inline constexpr std::uintmax_t kMaxSvgBytes = std::uintmax_t{16} << 20;
-
 /// A panel of a drawing.
 struct DrawnPanel {
   Outline outline;                 ///< [m], y upward

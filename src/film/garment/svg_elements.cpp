@@ -16,11 +16,12 @@
 #include "core/input_file.hpp"
 #include "core/nearest.hpp"
 #include "core/nesting.hpp"
-#include "film/garment/svg.hpp"
 
 namespace weft::garment {
 namespace {
 
+// Maximum size of a drawing [bytes]. A pattern of ten panels has some kilobytes.
+constexpr std::uintmax_t kMaxSvgBytes = std::uintmax_t{16} << 20;
 constexpr double kMetresPerPixel = 0.0254 / 96;
 // Maximum distance between the bounding boxes of a seam line and of its seam allowance, on each side of a panel [m].
 // Allowances are 10 to 30 mm wide, and wider at corners.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "core/catmull_rom.hpp"
 
@@ -10,6 +11,7 @@ namespace weft::scene {
 namespace {
 
 constexpr double kStandardGravity = 9.81;  // [m/s²]; the weight in RopeMaterial::bending_length refers to it
+constexpr double kRopePiece = 3;           // default length of a piece [diameters]
 constexpr int kMinRopePieces = 4;          // minimum number of pieces that the program chooses
 constexpr int kSplinePieces = 16;          // number of lines that approximate a spline between two points
 constexpr int kCatenaryPieces = 512;       // number of lines that approximate a catenary
@@ -72,6 +74,13 @@ std::vector<Vec3> resample(const std::vector<Vec3>& path, int pieces) {
   return places;
 }
 
+// Rest length at the start [m], as the scene gives it: `length` or, without it, the length of the first key frame.
+// nullopt if the scene gives neither; the rest length is then that of the start shape.
+std::optional<double> start_length(const Rope& rope) {
+  if (rope.length || rope.keys.empty()) return rope.length;
+  return rope.keys.front().length;
+}
+
 }  // namespace
 
 // Mass and stiffness of nylon, polyester, polypropylene and steel (wire with a fibre core) are from formulas for
@@ -95,11 +104,6 @@ RopeNumbers numbers_of(const Rope& rope) {
   numbers.bend = rope.bend.value_or(material.mass * square * kStandardGravity *
                                     std::pow(material.bending_length * rope.diameter, 3));
   return numbers;
-}
-
-std::optional<double> start_length(const Rope& rope) {
-  if (rope.length || rope.keys.empty()) return rope.length;
-  return rope.keys.front().length;
 }
 
 bool hangs_slack(const Rope& rope) {

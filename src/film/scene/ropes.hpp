@@ -1,7 +1,6 @@
 // Material constants and start shapes of ropes, and the one-dimensional cloth that is simulated for a rope.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,17 +35,11 @@ struct RopeShape {
 /// between its ends. `up`: up axis of the scene.
 RopeShape start_shape(const Rope& rope, UpAxis up);
 
-/// Default length of a piece [diameters].
-inline constexpr double kRopePiece = 3;
 using model::kMinRopePiece;
 /// Minimum horizontal distance between the ends of a rope that hangs slack (hangs_slack()) [diameters].
 inline constexpr double kMinRopeSpan = 4;
-/// Whether the scene gives only the ends of a rope, and start_length() exceeds their distance.
+/// Whether the scene gives only the ends of a rope, and a rest length at the start that exceeds their distance.
 bool hangs_slack(const Rope& rope);
-
-/// Rest length at the start [m], as the scene gives it: `length` or, without it, the length of the first key frame.
-/// nullopt if the scene gives neither; the rest length is then that of the start shape.
-std::optional<double> start_length(const Rope& rope);
 
 /// The one-dimensional cloth that is simulated for a rope.
 Cloth as_cloth(const Rope& rope);

@@ -123,16 +123,6 @@ void RowBuilder::bind(std::function<Value(void*)> get, std::function<void(void*,
   last().set = std::move(set);
 }
 
-void RowBuilder::bind_pair(std::function<Value(void*, bool)> get, std::function<void(void*, bool, const Value&)> set) {
-  bind(
-      [get = std::move(get)](void* s) {
-        return Value(std::vector<double>{numbers_of(get(s, false))[0], numbers_of(get(s, true))[0]});
-      },
-      [set = std::move(set)](void* s, const Value& value) {
-        for (const bool second : {false, true}) set(s, second, std::vector<double>{numbers_of(value)[second]});
-      });
-}
-
 void RowBuilder::bind_choice(const Names& choices, std::function<std::size_t(void*)> get,
                              std::function<void(void*, std::size_t)> set) {
   last().choices = choices.list;

@@ -73,9 +73,6 @@ class RowBuilder {
   void add_table(std::string_view key, Type type, const Table& inner);
   void set_components(const Names& components);
   void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
-  /// Binds one array of two numbers to two members. `second`: whether the second member is read or written.
-  void bind_pair(std::function<Value(void*, bool second)> get,
-                 std::function<void(void*, bool second, const Value&)> set);
   /// Binds a choice. The functions read and write the index of the chosen name in `choices`.
   void bind_choice(const Names& choices, std::function<std::size_t(void*)> get,
                    std::function<void(void*, std::size_t)> set);
@@ -168,14 +165,16 @@ class TableBuilder : public RowBuilder {
                      std::string_view documentation) {
     add_number(key, range, unit, documentation);
     set_components({"weft", "warp"});
-    bind_pair(
-        [first, second](void* p, bool wanted) {
+    bind(
+        [first, second](void* p) {
           S& s = *static_cast<S*>(p);
-          return wanted ? to_value(std::invoke(second, s)) : to_value(std::invoke(first, s));
+          return to_value(Vec2(std::invoke(first, s), std::invoke(second, s)));
         },
-        [first, second](void* p, bool wanted, const Value& value) {
+        [first, second](void* p, const Value& value) {
+          const auto& both = std::get<std::vector<double>>(value);
           S& s = *static_cast<S*>(p);
-          wanted ? assign(std::invoke(second, s), value) : assign(std::invoke(first, s), value);
+          assign(std::invoke(first, s), Value(std::vector{both[0]}));
+          assign(std::invoke(second, s), Value(std::vector{both[1]}));
         });
     return single_fills_all();
   }
