@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <unordered_map>
 
+#include "core/near_points.hpp"
 #include "core/parallel.hpp"
 #include "film/character/pose.hpp"
 
@@ -30,41 +29,7 @@ constexpr int kMaxEdgeSamples = 64;
 /// Vertices per parallel task.
 constexpr std::size_t kNearnessGrain = 512;
 
-/// Finds the nearest of many points within kNearCloth. Sorts the points into cubes with this edge length.
-class PointCubes {
- public:
-  void add(const Vec3& x) { cells_[key(cell_of(x))].push_back(x); }
-
-  /// Squared distance to the nearest point [m²]. If no point is within kNearCloth, the result is infinite or larger
-  /// than kNearCloth².
-  double nearest_sq(const Vec3& x) const {
-    const std::array<std::int64_t, 3> middle = cell_of(x);
-    double least = std::numeric_limits<double>::infinity();
-    for (int n = 0; n < 27; ++n) {
-      const auto found = cells_.find(key({middle[0] + n % 3 - 1, middle[1] + n / 3 % 3 - 1, middle[2] + n / 9 - 1}));
-      if (found == cells_.end()) continue;
-      for (const Vec3& place : found->second) least = std::min(least, (place - x).squaredNorm());
-    }
-    return least;
-  }
-
- private:
-  static std::array<std::int64_t, 3> cell_of(const Vec3& x) {
-    std::array<std::int64_t, 3> cell{};
-    for (int k = 0; k < 3; ++k) cell[k] = static_cast<std::int64_t>(std::floor(x[k] / kNearCloth));
-    return cell;
-  }
-  /// Key of a cube, with 21 bits per axis. Cubes about 100 km apart may share a key, which only costs time.
-  static std::uint64_t key(const std::array<std::int64_t, 3>& cell) {
-    constexpr std::uint64_t kMask = (1U << 21) - 1;
-    return (static_cast<std::uint64_t>(cell[0]) & kMask) << 42 | (static_cast<std::uint64_t>(cell[1]) & kMask) << 21 |
-           (static_cast<std::uint64_t>(cell[2]) & kMask);
-  }
-
-  std::unordered_map<std::uint64_t, std::vector<Vec3>> cells_;
-};
-
-void add_samples(const std::array<Vec3, 3>& corners, PointCubes& places) {
+void add_samples(const std::array<Vec3, 3>& corners, NearPoints& places) {
   double longest = 0;
   for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, (corners[(k + 1) % 3] - corners[k]).norm());
   const int count = static_cast<int>(std::clamp(std::ceil(longest / kSampleDistance), 1.0, double{kMaxEdgeSamples}));
@@ -105,14 +70,14 @@ double clearance_between_limbs(const CharacterContext& context) {
 }
 
 std::vector<float> nearness_of_cloth(std::span<const Vec3> skin, const ClothAtStart& cloth) {
-  PointCubes places;
+  NearPoints places(kNearCloth);
   for (const Vec3& x : cloth.x) places.add(x);
   for (const mesh::Triangle& t : cloth.triangles) add_samples({cloth.x[t[0]], cloth.x[t[1]], cloth.x[t[2]]}, places);
   std::vector<float> nearness(skin.size());
   parallel_for(skin.size(), kNearnessGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       nearness[v] =
-          static_cast<float>(std::clamp(2 - 2 * std::sqrt(places.nearest_sq(skin[v])) / kNearCloth, 0.0, 1.0));
+          static_cast<float>(std::clamp(2 - 2 * std::sqrt(places.nearest(skin[v]).distance_sq) / kNearCloth, 0.0, 1.0));
   });
   return nearness;
 }

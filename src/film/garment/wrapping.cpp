@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <set>
-#include <unordered_map>
 
 #include "core/error.hpp"
+#include "core/near_points.hpp"
 #include "film/garment/least_squares_positions.hpp"
 #include "physics/mesh/geometry.hpp"
 
@@ -249,52 +248,6 @@ class PanelPlacer {
       eases_;  // by part: first height, and the ease at each height step [m]
 };
 
-/// Finds the nearest vertex of the skin. Sorts the vertices into cubic cells.
-class SkinSearch {
- public:
-  SkinSearch(const Wearer& wearer, double radius)
-      : wearer_(wearer), radius_(radius), normals_(wearer.skin.size(), Vec3::Zero()) {
-    for (const mesh::Triangle& t : wearer.triangles) {
-      const Vec3 area = mesh::area_vector(t, wearer.skin);
-      for (const Index v : t) normals_[at(v)] += area;
-    }
-    for (std::size_t v = 0; v < normals_.size(); ++v) {
-      if (normals_[v].norm() > 0) normals_[v].normalize();
-      cells_[key(cell(wearer.skin[v]))].push_back(static_cast<Index>(v));
-    }
-  }
-  /// The nearest vertex within the search radius; −1: none.
-  Index nearest(const Vec3& x) const {
-    const auto middle = cell(x);
-    double best = radius_ * radius_;
-    Index found = -1;
-    for (long i = -1; i <= 1; ++i)
-      for (long j = -1; j <= 1; ++j)
-        for (long k = -1; k <= 1; ++k) {
-          const auto of_cell = cells_.find(key({middle[0] + i, middle[1] + j, middle[2] + k}));
-          if (of_cell == cells_.end()) continue;
-          for (const Index v : of_cell->second)
-            if (const double d = (wearer_.skin[at(v)] - x).squaredNorm(); d < best) best = d, found = v;
-        }
-    return found;
-  }
-  const Vec3& normal(Index v) const { return normals_[at(v)]; }
-
- private:
-  std::array<long, 3> cell(const Vec3& x) const {
-    return {std::lround(std::floor(x.x() / radius_)), std::lround(std::floor(x.y() / radius_)),
-            std::lround(std::floor(x.z() / radius_))};
-  }
-  static std::int64_t key(const std::array<long, 3>& c) {
-    constexpr std::int64_t kCellOffset = 1 << 20;
-    return ((c[0] + kCellOffset) * 2 * kCellOffset + c[1] + kCellOffset) * 2 * kCellOffset + c[2] + kCellOffset;
-  }
-  const Wearer& wearer_;
-  double radius_;
-  std::vector<Vec3> normals_;
-  std::unordered_map<std::int64_t, std::vector<Index>> cells_;
-};
-
 }  // namespace
 
 bool are_drawn_from_same_side(const Panel& a, const Panel& b) {
@@ -324,9 +277,13 @@ std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::
 
 void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
                       std::span<Vec3> x) {
-  constexpr double kMaxSkinDepth = 0.08;  // search radius: maximum depth inside the skin of a person [m]
+  constexpr double kMaxSkinDepth = 0.08;  // maximum depth inside the skin of a person [m]
   constexpr int kRounds = 30, kRings = 3;
-  const SkinSearch skin(wearer, kMaxSkinDepth * size_factor(wearer));
+  const double radius = kMaxSkinDepth * size_factor(wearer);
+  NearPoints skin(radius);
+  for (const Vec3& place : wearer.skin) skin.add(place);
+  std::vector<Vec3> normals(wearer.skin.size());
+  mesh::vertex_normals(wearer.triangles, wearer.skin, normals);
   std::vector<std::vector<Index>> neighbours(x.size());
   std::vector<char> rim(x.size(), 0);
   const std::vector<mesh::Triangle> all(triangles.begin(), triangles.end());
@@ -342,11 +299,12 @@ void move_out_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> tria
   std::vector<char> moving(x.size(), 0);
   for (int round = 0; round < kRounds; ++round) {
     for (std::size_t v = 0; v < x.size(); ++v) {
-      const Index near = skin.nearest(x[v]);
-      if (near < 0) continue;
-      const double missing = clearance - (x[v] - wearer.skin[at(near)]).dot(skin.normal(near));
+      const NearPoints::Nearest near = skin.nearest(x[v]);
+      if (!(near.distance_sq < radius * radius)) continue;
+      const Vec3& normal = normals[at(near.point)];
+      const double missing = clearance - (x[v] - wearer.skin[at(near.point)]).dot(normal);
       if (missing <= 0) continue;
-      x[v] += missing * skin.normal(near);
+      x[v] += missing * normal;
       moving[v] = 1;
     }
     if (std::ranges::none_of(moving, [](char m) { return m != 0; }) || round + 1 == kRounds) break;
