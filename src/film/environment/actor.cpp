@@ -103,7 +103,7 @@ character::Clip retarget_motion(const CharacterContext& context, const scene::Sk
   const std::string file = skeleton_motion.motion->string();
   assets::LoadedCharacter motion = load_upright(context, skeleton_motion, body.warnings);
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
-  const auto ours = joints_of(context, skeleton_motion.joints, &scene::JointNames::body, body.character, body.source);
+  const std::vector<Index>& ours = body.joints;
   const auto theirs = joints_of(context, skeleton_motion.joints, &scene::JointNames::motion, motion.character, file);
   check_hips(context, ours, body.character.nodes, body.source);
   check_hips(context, theirs, motion.character.nodes, file);
@@ -164,11 +164,11 @@ Body make_body(const CharacterContext& context, const scene::Mannequin& source) 
 template <class Source>
 Body make_playing_body(const CharacterContext& context, const Source& source) {
   Body body = make_body(context, source);
+  body.joints = joints_of(context, source.joints, &scene::JointNames::body, body.character, body.source);
   if (source.motion) {
     body.clip = retarget_motion(context, source, body);
   } else if (source.clip || !body.character.clips.empty()) {
-    const auto joints = joints_of(context, source.joints, &scene::JointNames::body, body.character, body.source);
-    body.clip = travel(context, source, {body.character, joints},
+    body.clip = travel(context, source, {body.character, body.joints},
                        choose_clip(context, source.clip, body.character.clips, body.source), 1, body.warnings);
   } else if (source.travel.kind == scene::Travel::Kind::speed) {
     body.warnings.push_back(
@@ -277,8 +277,7 @@ character::Performance performance_of(const CharacterContext& context, const Sou
   if (source.stance_arms) {
     const character::Pose stance =
         character::Performance(body.character, clip, playing, context.up()).at(context.begin());
-    const auto joints = joints_of(context, source.joints, &scene::JointNames::body, body.character, body.source);
-    playing.stance = character::raise_arms({body.character, joints}, stance, *source.stance_arms, context.up());
+    playing.stance = character::raise_arms({body.character, body.joints}, stance, *source.stance_arms, context.up());
   }
   return {body.character, clip, playing, context.up()};
 }
@@ -295,13 +294,12 @@ StandingBody make_standing(const CharacterContext& context, const Source& source
   standing.mesh = character.mesh;
   character::skin(character, pose, standing.mesh.positions);
   for (Vec3& x : standing.mesh.positions) x = placed.position + placed.rotation * x;
-  const std::vector<Index> nodes = joints_of(context, source.joints, &scene::JointNames::body, character, body.source);
   const std::vector<character::Affine> globals = character::global_transforms(character, pose);
-  for (const Index node : nodes) {
+  for (const Index node : body.joints) {
     auto& joint = standing.joints.emplace_back();
     if (node >= 0) joint = placed.position + placed.rotation * globals[node].translation();
   }
-  standing.limbs = character::limbs_of(character, nodes);
+  standing.limbs = character::limbs_of(character, body.joints);
   return standing;
 }
 
@@ -314,9 +312,8 @@ StandingBody make_standing(const CharacterContext& context, const scene::MeshSeq
 }
 
 /// Makes the LimbClearance for cloth; none if there is no clip, no clearance or no cloth near the body.
-template <class Source>
-std::optional<character::LimbClearance> limb_clearance_of(const CharacterContext& context, const Source& source,
-                                                          const Body& body, const character::Performance& performance,
+std::optional<character::LimbClearance> limb_clearance_of(const CharacterContext& context, const Body& body,
+                                                          const character::Performance& performance,
                                                           const std::vector<Part>& parts,
                                                           std::span<const ClothAtStart> cloths) {
   const double clearance = clearance_between_limbs(context);
@@ -327,8 +324,7 @@ std::optional<character::LimbClearance> limb_clearance_of(const CharacterContext
   for (const Part& part : parts)
     for (std::size_t v = 0; v < part.vertices.size(); ++v)
       if (!part.collide && part.vertices[v] != 0) touched[v] = 0;
-  const auto joints = joints_of(context, source.joints, &scene::JointNames::body, body.character, body.source);
-  return character::LimbClearance({body.character, joints}, touched, std::move(near_cloth), clearance,
+  return character::LimbClearance({body.character, body.joints}, touched, std::move(near_cloth), clearance,
                                   static_grounds(context));
 }
 
@@ -369,12 +365,12 @@ Actor make_actor_of(const CharacterContext& context, const Source& source, std::
         fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
                     "a crossfade would join them",
                     context.where, clip.name, gap));
-  std::vector<Part> parts = parts_of(context, source, following, body);
+  std::vector<Part> parts = parts_of(context, following, body);
   const std::size_t vertices = body.character.mesh.positions.size();
   const std::optional<character::LimbClearance> clearance =
-      limb_clearance_of(context, source, body, performance, parts, cloths);
+      limb_clearance_of(context, body, performance, parts, cloths);
   MaxDisplacement moved;
-  std::vector<Index> limbs = shells_of_limbs(context, source, body);
+  std::vector<Index> limbs = shells_of_limbs(body);
   const character::Pose start = performance.at(context.begin());
   for (const FollowerPoints& pin : following) add_follower_points(context, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(context, source, body);
@@ -438,7 +434,7 @@ template <class Source>
 KeyFrameCount count(const CharacterContext& context, const Source& source) {
   Body body = make_playing_body(context, source);
   KeyFrameCount counted = count(context, key_times(context, source, body), body.character.mesh.positions.size());
-  for (const Part& part : parts_of(context, source, {}, body))
+  for (const Part& part : parts_of(context, {}, body))
     if (!part.collide) counted.left_out.emplace_back(part.name, std::ranges::count(part.vertices, 1));
   return counted;
 }

@@ -14,10 +14,7 @@ namespace {
 /// Finds the vertices of a part by its bone, material or name.
 class PartFinder {
  public:
-  PartFinder(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion, const Body& body)
-      : context_(context),
-        body_(body),
-        joints_(joints_of(context, skeleton_motion.joints, &scene::JointNames::body, body.character, body.source)) {}
+  PartFinder(const CharacterContext& context, const Body& body) : context_(context), body_(body) {}
 
   /// The vertices of a part. Throws if the part contains no triangle. `key`: key of the part in the scene, for
   /// messages.
@@ -29,8 +26,6 @@ class PartFinder {
                                      part.bone.value_or(part.material.value_or(part.name))));
     return mask;
   }
-
-  bool has_fingers() const { return character::has_fingers(body_.character, joints_); }
 
  private:
   character::VertexMask vertices_of(const scene::BodyPart& part, const std::string& key) const {
@@ -49,12 +44,11 @@ class PartFinder {
       context_.fail(key, fmt::format("expected {} or a joint, or a part with bone or material, got \"{}\"{}",
                                      "hands, feet, arms, legs, head, torso", part.name,
                                      did_you_mean(part.name, character::part_names())));
-    return character::vertices_of(body, joints_, joints);
+    return character::vertices_of(body, body_.joints, joints);
   }
 
   const CharacterContext& context_;
   const Body& body_;
-  std::vector<Index> joints_;
 };
 
 /// Whether the scene has a [[character.part]] that includes a hand.
@@ -75,11 +69,10 @@ scene::BodyPart part_named(const std::string& name) {
 
 }  // namespace
 
-std::vector<Part> parts_of(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion,
-                           std::span<const FollowerPoints> following, Body& body) {
-  const PartFinder finder(context, skeleton_motion, body);
+std::vector<Part> parts_of(const CharacterContext& context, std::span<const FollowerPoints> following, Body& body) {
+  const PartFinder finder(context, body);
   std::vector<scene::BodyPart> wanted = context.settings.parts;
-  if (!has_hand_settings(wanted) && context.settings.collide && finder.has_fingers()) {
+  if (!has_hand_settings(wanted) && context.settings.collide && character::has_fingers(body.character, body.joints)) {
     wanted.push_back(part_named("hands"));
     wanted.back().collide = false;
     body.warnings.push_back(
@@ -98,11 +91,8 @@ std::vector<Part> parts_of(const CharacterContext& context, const scene::Skeleto
   return parts;
 }
 
-std::vector<Index> shells_of_limbs(const CharacterContext& context, const scene::SkeletonMotion& skeleton_motion,
-                                   const Body& body) {
-  const std::vector<character::Limb> limbs = character::limbs_of(
-      body.character,
-      joints_of(context, skeleton_motion.joints, &scene::JointNames::body, body.character, body.source));
+std::vector<Index> shells_of_limbs(const Body& body) {
+  const std::vector<character::Limb> limbs = character::limbs_of(body.character, body.joints);
   std::vector<Index> shells = mesh::components(body.character.mesh.topology.triangles, limbs.size());
   constexpr Index kLimbCount = static_cast<Index>(character::Limb::right_leg) + 1;
   for (std::size_t v = 0; v < limbs.size(); ++v) shells[v] = shells[v] * kLimbCount + static_cast<Index>(limbs[v]);

@@ -18,7 +18,8 @@ struct Body {
   character::Character character;
   std::optional<character::Clip> clip;
   std::vector<std::string> warnings;
-  double scale = 1;  ///< metres per unit of the file, from the file or the scene
+  double scale = 1;                ///< metres per unit of the file, from the file or the scene
+  std::vector<Index> joints = {};  ///< result of joints_of()
 };
 
 /// A character of the scene, and its name for messages.
