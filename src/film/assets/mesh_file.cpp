@@ -170,8 +170,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   RawMesh raw = from_bytes(source.read([&] { return to_bytes(read_raw_mesh(source.file, object)); }));
   if (raw.triangles.empty() && raw.quads.empty()) source.fail("expected faces, got none");
   scene::FileUp up = axes.up;
-  if (up == scene::FileUp::as_file)
-    up = raw.up.empty() ? axes.default_up : static_cast<scene::FileUp>(raw.up.front() + 1);
+  if (up == scene::FileUp::as_file) up = raw.up ? static_cast<scene::FileUp>(*raw.up + 1) : axes.default_up;
   Mat3 turn = Mat3::Identity();
   if (up != scene::FileUp::as_file) turn = rotation_to_scene_axes(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : raw.positions) {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <set>
 #include <span>
@@ -15,6 +14,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/archive.hpp"
 #include "film/assets/import.hpp"
 #include "physics/mesh/geometry.hpp"
 #include "physics/mesh/polygon.hpp"
@@ -145,23 +145,17 @@ bool share_bone(const aiMesh& a, const aiMesh& b) {
   });
 }
 
-template <class T>
-void put(std::string& bytes, const std::vector<T>& list) {
-  const std::size_t count = list.size();
-  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
-  bytes.append(reinterpret_cast<const char*>(list.data()), count * sizeof(T));
-}
-
-template <class T>
-void take(std::string_view& bytes, std::vector<T>& list) {
-  std::size_t count = 0;
-  if (bytes.size() >= sizeof count) std::memcpy(&count, bytes.data(), sizeof count);
-  if (bytes.size() < sizeof count || (bytes.size() - sizeof count) / sizeof(T) < count)
-    throw std::runtime_error("the reader's answer was cut short");
-  bytes.remove_prefix(sizeof count);
-  list.resize(count);
-  if (count > 0) std::memcpy(static_cast<void*>(list.data()), bytes.data(), count * sizeof(T));
-  bytes.remove_prefix(count * sizeof(T));
+template <class Archive>
+void serialize(Archive& archive, RawMesh& raw) {
+  serialize_plain(archive, raw.positions);
+  serialize_plain(archive, raw.uv);
+  serialize_plain(archive, raw.colors);
+  serialize_plain(archive, raw.weights);
+  serialize_each(archive, raw.group_names, [&](std::string& name) { serialize_plain(archive, name); });
+  serialize_plain(archive, raw.triangles);
+  serialize_plain(archive, raw.quads);
+  serialize_plain(archive, raw.polygons);
+  archive.value(raw.up);
 }
 
 }  // namespace
@@ -211,7 +205,7 @@ RawMesh read_raw_mesh(const std::filesystem::path& file, const std::string& obje
   }
   if (const auto metres = metres_per_unit(*scene))
     for (Vec3& x : raw.positions) x *= *metres;
-  if (const auto up = up_axis(importer, *scene)) raw.up = {*up};
+  raw.up = up_axis(importer, *scene);
   return raw;
 }
 
@@ -232,40 +226,16 @@ mesh::Topology make_topology(const RawMesh& raw, std::size_t& removed_triangles,
   return topology;
 }
 
-std::string to_bytes(const RawMesh& raw) {
-  std::string bytes;
-  put(bytes, raw.positions);
-  put(bytes, raw.uv);
-  put(bytes, raw.colors);
-  put(bytes, raw.weights);
-  std::vector<char> names;  // each with a terminating zero
-  for (const std::string& name : raw.group_names)
-    names.insert(names.end(), name.c_str(), name.c_str() + name.size() + 1);
-  put(bytes, names);
-  put(bytes, raw.triangles);
-  put(bytes, raw.quads);
-  put(bytes, raw.polygons);
-  put(bytes, raw.up);
-  return bytes;
+std::string to_bytes(RawMesh raw) {
+  ByteWriter writer;
+  serialize(writer, raw);
+  return std::move(writer.bytes);
 }
 
 RawMesh from_bytes(std::string_view bytes) {
   RawMesh raw;
-  take(bytes, raw.positions);
-  take(bytes, raw.uv);
-  take(bytes, raw.colors);
-  take(bytes, raw.weights);
-  std::vector<char> names;
-  take(bytes, names);
-  for (auto begin = names.begin(); begin != names.end();) {
-    const auto end = std::find(begin, names.end(), '\0');
-    raw.group_names.emplace_back(begin, end);
-    begin = end == names.end() ? end : end + 1;
-  }
-  take(bytes, raw.triangles);
-  take(bytes, raw.quads);
-  take(bytes, raw.polygons);
-  take(bytes, raw.up);
+  ByteReader reader{bytes};
+  serialize(reader, raw);
   return raw;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,7 +31,7 @@ struct RawMesh {
   /// The faces other than quads, before their division into triangles: for each face, the number of its corners, then
   /// their vertex indices.
   std::vector<Index> polygons;
-  std::vector<int> up;  ///< one entry: up axis of the file or its format (0 x, 1 y, 2 z); empty: not stated
+  std::optional<int> up;  ///< up axis of the file or its format: 0 x, 1 y, 2 z; absent: not stated
 };
 
 /// Reads the meshes whose name or whose node's name is `object` (empty: all meshes), and transforms them to the world.
@@ -50,7 +51,7 @@ mesh::Topology make_topology(const RawMesh& raw, std::size_t& removed_triangles,
                              std::span<const std::vector<Vec3>> later_positions = {});
 
 /// Serialises a raw mesh for transfer between two processes of the same program.
-std::string to_bytes(const RawMesh& raw);
+std::string to_bytes(RawMesh raw);
 /// The reverse of to_bytes(). Throws std::runtime_error if the data are incomplete.
 RawMesh from_bytes(std::string_view bytes);
 

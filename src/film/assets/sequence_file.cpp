@@ -79,7 +79,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
     RawMesh raw =
         source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_raw_mesh(file)); })); });
     constexpr int kUsualUp = 1;  // y
-    const int stated_up = raw.up.empty() ? kUsualUp : raw.up.front();
+    const int stated_up = raw.up.value_or(kUsualUp);
     const int up = axes.up == scene::FileUp::as_file ? stated_up : static_cast<int>(axes.up) - 1;
     const Mat3 turn = axes.scale.value_or(1) * rotation_to_scene_axes(up, axes.scene_up);
     for (Vec3& x : raw.positions) {
