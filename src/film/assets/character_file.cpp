@@ -1,7 +1,5 @@
 #include "film/assets/character_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cctype>
@@ -15,14 +13,14 @@
 namespace weft::assets {
 namespace {
 
-/// Up axis of a file if neither the scene nor the file states one: y.
-constexpr int kUsualUp = 1;
-
 ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const MeshChoice& choice) {
   if (is_bvh(file)) check_bvh(file);
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, !with_mesh);
-  return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path(), choice);
+  const aiScene& scene = import(importer, file, 0);
+  ReadCharacter read = to_character(scene, with_mesh ? file : std::filesystem::path(), choice);
+  read.up = up_axis(importer, scene);
+  return read;
 }
 
 /// BVH does not define whether the translations of a joint are positions or must be added to its offset. There are
@@ -50,8 +48,7 @@ LoadedCharacter finish(const Source& source, ReadCharacter read, const FileAxes&
   LoadedCharacter loaded{std::move(read.character), {}, axes.scale.value_or(read.metres_per_unit.value_or(1))};
   for (const std::string& warning : read.warnings) loaded.warnings.push_back(source.describe(warning));
   if (is_bvh(source.file)) add_bvh_offsets(loaded.character);
-  const int up = axes.up == scene::FileUp::as_file ? read.up.value_or(kUsualUp) : static_cast<int>(axes.up) - 1;
-  transform(loaded.character, loaded.scale, rotation_to_scene_axes(up, axes.scene_up));
+  transform(loaded.character, loaded.scale, axes.rotation(read.up));
   return loaded;
 }
 
@@ -84,6 +81,12 @@ Mat3 rotation_to_scene_axes(int up, scene::UpAxis scene_up) {
   return turn;
 }
 
+Mat3 FileAxes::rotation(std::optional<int> stated_up) const {
+  constexpr int kUsualUp = 1;  // y
+  return rotation_to_scene_axes(up == scene::FileUp::as_file ? stated_up.value_or(kUsualUp) : static_cast<int>(up) - 1,
+                                scene_up);
+}
+
 void transform(character::Character& character, double scale, const Mat3& axes) {
   const Quat turn(axes);
   const Mat3 sizes = axes.cwiseAbs();
@@ -111,10 +114,7 @@ LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes
   LoadedCharacter loaded = finish(source, read_isolated(source, true, choice), axes);
   if (loaded.character.mesh.topology.triangles.empty())
     source.fail("expected a mesh with faces that have an area, got none");
-  for (const Vec3& x : loaded.character.mesh.positions)
-    if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
-      source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
-                              x.z()));
+  for (const Vec3& x : loaded.character.mesh.positions) source.check_coordinates(x);
   return loaded;
 }
 

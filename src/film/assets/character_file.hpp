@@ -18,6 +18,9 @@ struct FileAxes {
   std::optional<double> scale;  ///< metres per unit of the file; absent: as stated in the file, or 1
   scene::FileUp up = scene::FileUp::as_file;
   scene::UpAxis scene_up = scene::UpAxis::z;
+
+  /// The rotation to the axes of the scene. `stated_up`: up axis that the file states (0 x, 1 y, 2 z); absent: none.
+  Mat3 rotation(std::optional<int> stated_up) const;
 };
 
 /// A character from a file.

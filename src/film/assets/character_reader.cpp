@@ -114,7 +114,7 @@ class CharacterReader {
     for (const aiAnimation* animation : std::span(scene_.mAnimations, scene_.mNumAnimations))
       character_.clips.push_back(to_clip(*animation, targets_, read_.warnings));
     name_clips();
-    read_units();
+    read_.metres_per_unit = metres_per_unit(scene_);
     return std::move(read_);
   }
 
@@ -444,14 +444,6 @@ class CharacterReader {
   void name_clips() {
     for (std::size_t c = 0; c < character_.clips.size(); ++c)
       if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
-  }
-
-  /// Reads unit and up axis of FBX. For other formats, assimp converts to y up, and to metres if it finds the unit.
-  void read_units() {
-    read_.metres_per_unit = metres_per_unit(scene_);
-    std::int32_t up = 0;
-    if (scene_.mMetaData == nullptr) return;
-    if (scene_.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) read_.up = up;
   }
 
   /// A morph target of one mesh.

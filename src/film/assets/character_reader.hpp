@@ -17,7 +17,7 @@ namespace weft::assets {
 struct ReadCharacter {
   character::Character character;
   std::optional<double> metres_per_unit;  ///< as the file states; absent: not stated
-  std::optional<int> up;                  ///< up axis that the file states: 0 x, 1 y, 2 z; absent: not stated
+  std::optional<int> up;                  ///< result of up_axis(); to_character() leaves it absent
   std::vector<std::string> warnings;      ///< about repaired or skipped parts, with their names
 };
 

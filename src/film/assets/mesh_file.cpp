@@ -1,7 +1,5 @@
 #include "film/assets/mesh_file.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -175,10 +173,7 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   if (up != scene::FileUp::as_file) turn = rotation_to_scene_axes(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : raw.positions) {
     x = axes.scale * (turn * x);
-    // The limit also ensures that products of squared lengths are finite.
-    if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
-      source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
-                              x.z()));
+    source.check_coordinates(x);  // also ensures that products of squared lengths are finite
   }
 
   LoadedMesh result;

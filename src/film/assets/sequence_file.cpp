@@ -78,15 +78,10 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
     const Source source{file, where, "mesh"};
     RawMesh raw =
         source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_raw_mesh(file)); })); });
-    constexpr int kUsualUp = 1;  // y
-    const int stated_up = raw.up.value_or(kUsualUp);
-    const int up = axes.up == scene::FileUp::as_file ? stated_up : static_cast<int>(axes.up) - 1;
-    const Mat3 turn = axes.scale.value_or(1) * rotation_to_scene_axes(up, axes.scene_up);
+    const Mat3 turn = axes.scale.value_or(1) * axes.rotation(raw.up);
     for (Vec3& x : raw.positions) {
       x = turn * x;
-      if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
-        source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(),
-                                x.y(), x.z()));
+      source.check_coordinates(x);
     }
     if (loaded.positions.empty()) {
       if (raw.triangles.empty() && raw.quads.empty()) source.fail("expected faces, got none");

@@ -55,6 +55,11 @@ std::string Source::describe(const std::string& what) const {
   return fmt::format("{}: {} file {}: {}", where, kind, file.string(), what);
 }
 
+void Source::check_coordinates(const Vec3& x) const {
+  if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
+    fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(), x.z()));
+}
+
 void Source::check() const {
   std::error_code error;
   const auto status = std::filesystem::status(file, error);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/types.hpp"
 
 namespace weft::assets {
 
@@ -30,6 +31,9 @@ struct Source {
   [[noreturn]] void fail(const std::string& why) const;
   /// The text that fail() throws; also used for warnings.
   std::string describe(const std::string& what) const;
+
+  /// Throws like fail() if a coordinate of `x` is not below kMaxCoordinate.
+  void check_coordinates(const Vec3& x) const;
 
   /// Throws like fail() if the file is missing, no regular file, empty, larger than kMaxMeshFileBytes, or a PLY file
   /// that assimp misreads or that blocks assimp for ever.
